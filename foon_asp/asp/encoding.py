@@ -1,0 +1,233 @@
+"""Encoding files: ours, a user's constraints, and what can be said of them before solving."""
+
+import difflib
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from clingo.ast import AST, ASTType, Location, Transformer, parse_files
+
+from foon_asp.asp.facts import FACT_PREDICATES, quote
+from foon_asp.errors import UserError
+from foon_asp.network import Source
+from foon_asp.text import Diagnostic, InputError, Severity
+
+Signature = tuple[str, int]
+
+_MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)", re.S)
+
+
+@dataclass
+class Encoding:
+    """One ``.lp`` file, parsed: what it defines, what it looks at, and its constants.
+
+    ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies with the place of their
+    first use, ``declared`` those under ``#defined``. ``constants`` maps the names of ``#const`` statements
+    to their values as written. ``minimizes`` are the places of ``#minimize`` and weak constraints.
+    """
+
+    path: Path
+    defined: set[Signature] = field(default_factory=set)
+    declared: set[Signature] = field(default_factory=set)
+    used: dict[Signature, Source] = field(default_factory=dict)
+    constants: dict[str, str] = field(default_factory=dict)
+    minimizes: list[Source] = field(default_factory=list)
+    scripts: list[Source] = field(default_factory=list)
+
+
+def read_encoding(path: Path) -> Encoding:
+    """Parse an encoding, the files it includes with it; raises :class:`InputError` for a syntax error.
+
+    ``#script`` blocks are found but not run.
+    """
+    if not path.is_file():
+        raise UserError(f"{path}: no such file; expected an encoding (.lp)")
+    encoding = Encoding(path)
+    collector = _Collector(encoding)
+    messages: list[str] = []
+    try:
+        parse_files([str(path)], collector.statement, logger=lambda _, text: messages.append(text))
+    except RuntimeError as error:
+        raise fault(messages, str(error)) from None
+    return encoding
+
+
+class _Collector(Transformer):
+    """Walks statements and notes signatures in heads and in bodies."""
+
+    def __init__(self, encoding: Encoding) -> None:
+        self.encoding = encoding
+        self._in_head = False
+
+    def statement(self, statement: AST) -> None:
+        encoding = self.encoding
+        kind = statement.ast_type
+        if kind == ASTType.Script:
+            encoding.scripts.append(_source(statement.location))
+        elif kind == ASTType.Definition:
+            encoding.constants[statement.name] = str(statement.value)
+        elif kind == ASTType.Defined:
+            encoding.declared.add((statement.name, statement.arity))
+        else:
+            if kind == ASTType.Minimize:
+                encoding.minimizes.append(_source(statement.location))
+            self.visit(statement)
+
+    def visit_Rule(self, rule: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        self._head(rule.head)
+        self.visit_sequence(rule.body)
+        return rule
+
+    def visit_External(self, external: AST) -> AST:  # noqa: N802
+        self._head(external.atom)
+        self.visit_sequence(external.body)
+        return external
+
+    def visit_ConditionalLiteral(self, literal: AST) -> AST:  # noqa: N802
+        in_head, self._in_head = self._in_head, False
+        self.visit_sequence(literal.condition)
+        self._in_head = in_head
+        self.visit(literal.literal)
+        return literal
+
+    def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802
+        symbol = atom.symbol
+        while symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
+            symbol = symbol.argument
+        if symbol.ast_type == ASTType.Function:
+            signature = symbol.name, len(symbol.arguments)
+            if self._in_head:
+                self.encoding.defined.add(signature)
+            else:
+                self.encoding.used.setdefault(signature, _source(symbol.location))
+        return atom
+
+    def _head(self, head: AST) -> None:
+        self._in_head = True
+        self.visit(head)
+        self._in_head = False
+
+
+def _source(location: Location) -> Source:
+    return Source(location.begin.filename, location.begin.line, location.begin.column)
+
+
+def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Diagnostic]:
+    """Look over a user's constraint files; ``base`` are the encodings they are added to.
+
+    Returns warnings: atoms that nothing defines, with the nearest predicate that something does. Raises
+    :class:`InputError` for ``#script`` and for statements that minimize, which would change what is best.
+    """
+    refuse_scripts((*added, *base))
+    errors = [
+        located(
+            Severity.ERROR,
+            "minimize",
+            "found a statement that minimizes, expected only rules and constraints: what is best is said by "
+            "--objective; to change it, edit a copy of objectives.lp and pass its folder with --encodings",
+            source,
+        )
+        for encoding in added
+        for source in encoding.minimizes
+    ]
+    if errors:
+        raise InputError(errors)
+    known = set(FACT_PREDICATES.items())
+    for encoding in (*added, *base):
+        known |= encoding.defined | encoding.declared
+    return [
+        located(Severity.WARNING, "undefined-atom", _undefined(signature, known), source)
+        for encoding in added
+        for signature, source in encoding.used.items()
+        if signature not in known
+    ]
+
+
+def refuse_scripts(encodings: Iterable[Encoding]) -> None:
+    """Raise :class:`InputError` where an encoding holds a ``#script``: encodings state, they do not run."""
+    found = [source for encoding in encodings for source in encoding.scripts]
+    if found:
+        message = "found #script, expected rules: scripts in encodings are not run"
+        raise InputError([located(Severity.ERROR, "script", message, source) for source in found])
+
+
+def _undefined(signature: Signature, known: set[Signature]) -> str:
+    name, arity = signature
+    message = f"no rule or fact defines {name}/{arity}, so it never holds"
+    same_name = sorted(n for other, n in known if other == name)
+    if same_name:
+        return message + f"; did you mean {name}/{same_name[0]}?"
+    nearest = difflib.get_close_matches(name, sorted({other for other, _ in known}), n=1, cutoff=0.5)
+    if not nearest:
+        return message + "; the predicates are listed in encodings/README.md"
+    arities = {n for other, n in known if other == nearest[0]}
+    return message + f"; did you mean {nearest[0]}/{min(arities, key=lambda n: (abs(n - arity), n))}?"
+
+
+def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
+    """Turn ``NAME=VALUE`` settings into clingo's, typed after the ``#const`` they set.
+
+    Where the encoding's own value is a string the setting is one too, quotes or not; where it is a number
+    the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for an unknown name.
+    """
+    defaults = {name: value for encoding in encodings for name, value in encoding.constants.items()}
+    arguments: list[str] = []
+    for setting in constants:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise UserError(f"found the constant {setting!r}, expected NAME=VALUE")
+        if name not in defaults:
+            listed = ", ".join(sorted(defaults)) or "none: add a constraint file with #const"
+            raise UserError(f"no encoding in use has the constant {name!r}; known are {listed}")
+        if defaults[name].startswith('"'):
+            value = value if value.startswith('"') and value.endswith('"') else quote(value)
+        elif not re.fullmatch(r"-?\d{1,10}", value, re.ASCII) or not -(2**31) <= int(value) < 2**31:
+            if _is_number(defaults[name]):
+                raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number")
+        arguments += ["-c", f"{name}={value}"]
+    return arguments
+
+
+def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
+    """Warn of constants without a meaning until they are set: their own value is "", #sup or #inf."""
+    given = {setting.partition("=")[0] for setting in constants}
+    return [
+        f"{encoding.path}: warning: the constant {name} is not set and the constraint has no effect; "
+        f"set it with -c {name}=VALUE"
+        for encoding in added
+        for name, value in encoding.constants.items()
+        if value in {'""', "#sup", "#inf"} and name not in given
+    ]
+
+
+def _is_number(value: str) -> bool:
+    return value in {"#sup", "#inf"} or value.lstrip("-").isdigit()
+
+
+def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
+    """Turn clingo's messages about a program into one error with places and source lines."""
+    errors: list[Diagnostic] = []
+    for message in messages:
+        match = _MESSAGE.match(message)
+        if match and match["kind"] == "error":
+            text = re.sub(r"\s*\n\s*", " ", _NOTE.sub(r"(\1)", match["text"].strip()))
+            source = Source(match["file"], int(match["line"]), int(match["column"]))
+            errors.append(located(Severity.ERROR, "clingo", text, source))
+    return InputError(errors) if errors else UserError("".join(messages).strip() or otherwise)
+
+
+_NOTE = re.compile(r"\S+:\d+:\d+[-:\d]*: note: (.*)")
+
+
+def located(severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
+    """Make a diagnostic with the line of the file that it is about."""
+    excerpt = ""
+    path = Path(source.file)
+    if path.is_file():
+        lines = path.read_text(encoding="utf-8", errors="replace").split("\n")
+        if 0 < source.line <= len(lines):
+            excerpt = lines[source.line - 1].rstrip("\r")
+    return Diagnostic(severity, code, message, source, excerpt)
+
+

@@ -1,0 +1,127 @@
+"""The facts handed to clingo, as text."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+
+from foon_asp.asp.exact_success import RateScale
+from foon_asp.errors import UserError
+from foon_asp.problem import Objective, Problem
+
+# Every predicate written here, with its arity; encodings/README.md gives the meanings.
+FACT_PREDICATES = {
+    "unit": 1,
+    "motion": 2,
+    "input": 2,
+    "output": 2,
+    "needs": 2,
+    "object": 1,
+    "label": 2,
+    "state": 2,
+    "ingredient": 2,
+    "located": 3,
+    "kitchen": 1,
+    "goal": 1,
+    "utensil": 1,
+    "inputs": 2,
+    "ingredients": 2,
+    "rate": 2,
+    "risk": 2,
+    "optimize": 2,
+    "exponent": 3,
+    "seen": 3,
+    "wanted": 2,
+}
+
+OBJECTIVE_TERMS = {
+    Objective.UNITS: "units",
+    Objective.INPUTS: "inputs",
+    Objective.INPUTS_AND_INGREDIENTS: "inputs_and_ingredients",
+    Objective.SUCCESS: "success",
+    Objective.KITCHEN: "kitchen",
+}
+
+_LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
+
+
+def write_facts(problem: Problem, units: Sequence[int], scale: RateScale | None) -> str:
+    """Describe the given units of a problem, their object nodes, the kitchen and the goals.
+
+    One line per unit and per object node. ``scale`` gives the weights of ``risk/2``; ``None`` where no
+    rates are known.
+    """
+    network, rates = problem.network, problem.rates
+    _check(len(network))
+    _check(len(network.objects))
+    described: dict[int, None] = {}
+    lines = []
+    for unit in units:
+        inputs, outputs = network.inputs[unit], network.outputs[unit]
+        described.update(dict.fromkeys(inputs + outputs))
+        ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
+        facts = [f"unit({unit}). motion({unit},{quote(network.motions[unit])})."]
+        facts += [f"input({unit},{o})." for o in inputs]
+        facts += [f"needs({unit},{o})." for o in problem.needs[unit]]
+        facts += [f"output({unit},{o})." for o in outputs]
+        facts.append(f"inputs({unit},{len(inputs)}). ingredients({unit},{_check(ingredients)}).")
+        if scale and rates:
+            rate = rates[network.motions[unit]]
+            facts.append(f"rate({unit},{_millionths(rate)}). risk({unit},{_check(scale.weights[rate])}).")
+        lines.append(" ".join(facts))
+    described.update(dict.fromkeys(problem.goals))
+    labels: set[str] = set()
+    for o in sorted(described):
+        node = network.objects[o]
+        labels.add(node.label)
+        facts = [f"object({o}). label({o},{quote(node.label)})."]
+        facts += [f"state({o},{quote(state)})." for state in sorted(node.states)]
+        facts += [f"located({o},{quote(word)},{quote(related)})." for word, related in sorted(node.relations)]
+        facts += [f"ingredient({o},{quote(item)})." for item in dict.fromkeys(node.ingredients)]
+        if o in problem.kitchen:
+            facts.append(f"kitchen({o}).")
+        lines.append(" ".join(facts))
+    lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
+    lines += [f"goal({o})." for o in problem.goals]
+    return "\n".join(lines) + "\n"
+
+
+def write_objectives(objectives: Sequence[Objective]) -> str:
+    """Switch criteria on, the first with the highest priority."""
+    return "".join(
+        f"optimize({OBJECTIVE_TERMS[objective]},{len(objectives) - place}).\n"
+        for place, objective in enumerate(objectives)
+    )
+
+
+def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) -> str:
+    """Give every unit's rate over the coprime factors of the scale."""
+    rates, motions = problem.rates or {}, problem.network.motions
+    return "".join(
+        f"exponent({unit},{factor},{_check(exponent)}).\n"
+        for unit in units
+        for factor, exponent in scale.exponents[rates[motions[unit]]].items()
+    )
+
+
+def write_seen(number: int, exponents: Mapping[int, int]) -> str:
+    """Rule out a product of rates, given by its exponents."""
+    return "".join(f"seen({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
+
+
+def write_wanted(exponents: Mapping[int, int]) -> str:
+    """Ask for trees with exactly that product of rates."""
+    return "".join(f"wanted({factor},{_check(exponent)}).\n" for factor, exponent in exponents.items())
+
+
+def quote(text: str) -> str:
+    """Give a clingo string."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+
+
+def _millionths(rate: Fraction) -> int:
+    return rate.numerator * 1_000_000 // rate.denominator
+
+
+def _check(number: int) -> int:
+    if not -_LARGEST <= number <= _LARGEST:
+        raise UserError(f"the number {number} is too large for clingo, whose numbers have 32 bits")
+    return number

@@ -1,0 +1,38 @@
+"""What a search ended with."""
+
+from enum import StrEnum
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.problem import Costs, Objective, Problem
+
+
+class Status(StrEnum):
+    """How far the claim goes.
+
+    ``optimal``: the search was exhausted, no tree is better. ``feasible``: a limit was reached with a tree
+    in hand. ``infeasible``: proved that no tree exists. ``unknown``: a limit was reached without a tree.
+    """
+
+    OPTIMAL = "optimal"
+    FEASIBLE = "feasible"
+    INFEASIBLE = "infeasible"
+    UNKNOWN = "unknown"
+
+
+class Outcome(NamedTuple):
+    """The answer to one problem under a lexicographic list of objectives.
+
+    ``units`` is the tree, by unit id in an executable order, and ``costs`` what it costs; both ``None``
+    where there is no tree. ``bounds`` gives for each objective the best value that any tree can still have
+    (for ``success`` the greatest), as far as it is proved, in the order of the list; an objective counts
+    only among the trees that are best under those before it. ``seconds`` has the time of every phase.
+    """
+
+    problem: Problem
+    objectives: tuple[Objective, ...]
+    status: Status
+    units: tuple[int, ...] | None
+    costs: Costs | None
+    bounds: dict[Objective, int | Fraction]
+    seconds: dict[str, float]

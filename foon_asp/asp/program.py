@@ -1,0 +1,116 @@
+"""Which encodings make up the program: ours or a replacement, and what the user adds."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.resources import encodings_folder
+
+# Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
+CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
+
+ENCODING_FILES = ("task_tree.lp", "objectives.lp", "show.lp")
+_EXACT_SUCCESS = "exact_success.lp"
+
+# Options that would change what an answer means, or whether it is a proof; the solver sets them itself.
+_RESERVED = (
+    "--const",
+    "--enum-mode",
+    "--help",
+    "--mode",
+    "--models",
+    "--number",
+    "--opt-mode",
+    "--opt-stop",
+    "--outf",
+    "--project",
+    "--supp-models",
+    "--text",
+    "--version",
+)
+
+
+class Settings(NamedTuple):
+    """How to solve.
+
+    ``constraints`` are files added to the encodings; ``encodings`` is a folder that replaces ours;
+    ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
+    ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
+    interrupted.
+    """
+
+    constraints: tuple[Path, ...] = ()
+    encodings: Path | None = None
+    constants: tuple[str, ...] = ()
+    clingo_options: tuple[str, ...] = ()
+    time_limit: float | None = None
+
+
+class Program(NamedTuple):
+    """Encodings in the order of loading, and clingo's arguments.
+
+    ``exact_success`` is loaded beside ``files`` when products of rates are compared exactly. ``own`` says
+    that every rule is ours, so that what the goals do not need cannot matter.
+    """
+
+    files: tuple[Path, ...]
+    exact_success: Path
+    arguments: tuple[str, ...]
+    own: bool
+
+
+def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
+    """Find and look over the encodings that the settings ask for.
+
+    Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
+    no encoding has and for clingo options that would change what an answer means.
+    """
+    ours = encodings_folder()
+    folder = settings.encodings or ours
+    base = tuple(folder / name for name in ENCODING_FILES)
+    for file in base:
+        if not file.is_file():
+            raise UserError(f"{file}: no such file; a folder of encodings holds {', '.join(ENCODING_FILES)}")
+    added = tuple(find_constraint(path) for path in settings.constraints)
+    constants: list[str] = []
+    if added or settings.encodings or settings.constants:
+        # parsing takes some milliseconds, so it is left out where every file is ours
+        from foon_asp.asp import encoding  # noqa: PLC0415
+
+        parsed = [encoding.read_encoding(file) for file in base]
+        extra = [encoding.read_encoding(file) for file in added]
+        for diagnostic in encoding.check_added(extra, parsed):
+            warn(str(diagnostic))
+        for message in encoding.unset_constants(extra, settings.constants):
+            warn(message)
+        constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
+    return Program(
+        (*base, *added),
+        ours / _EXACT_SUCCESS,
+        (*CLINGO_OPTIONS, *constants, *_clingo_options(settings.clingo_options)),
+        own=not added and settings.encodings is None,
+    )
+
+
+def find_constraint(path: Path) -> Path:
+    """Give a constraint file: the path itself, or one of ours by name (``forbid_motion``)."""
+    if path.is_file():
+        return path
+    library = encodings_folder() / "constraints"
+    if path.name == str(path):
+        bundled = library / path.with_suffix(".lp").name
+        if bundled.is_file():
+            return bundled
+    names = ", ".join(sorted(file.stem for file in library.glob("*.lp")))
+    raise UserError(f"{path}: no such file; expected an encoding (.lp) or one of ours: {names}")
+
+
+def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
+    for option in options:
+        name = option.partition("=")[0]
+        if not name.startswith("--") and not name.startswith("-t"):
+            raise UserError(f"found {option!r} after --, expected options of clingo in their long form, --NAME=VALUE")
+        if name != "--" and any(reserved.startswith(name) for reserved in _RESERVED):
+            raise UserError(f"the option {option!r} would change what an answer means, so it cannot be set")
+    return options

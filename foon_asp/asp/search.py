@@ -1,0 +1,122 @@
+"""One run of clingo over encodings and facts, with limits and without any claim of its own."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from clingo import Control, Model
+from clingo.symbol import SymbolType
+
+from foon_asp.errors import UserError
+
+
+@dataclass
+class Run:
+    """What a run of clingo ended with.
+
+    ``units`` is the last (best) answer or ``None``, ``cost`` its cost vector as clingo reports it, which
+    wraps at 32 bits. ``exhausted`` says that the search space was, so that
+    the answer is optimal, or that there is none. ``lower`` holds the proved lower bound of each priority,
+    highest first, as far as known.
+    """
+
+    units: frozenset[int] | None = None
+    cost: tuple[int, ...] = ()
+    exhausted: bool = False
+    lower: list[int] = field(default_factory=list)
+    ground_seconds: float = 0.0
+    solve_seconds: float = 0.0
+
+
+class Deadline:
+    """A moment after which to stop, shared by all runs of one question; ``None`` is never."""
+
+    def __init__(self, seconds: float | None) -> None:
+        self._end = None if seconds is None else time.monotonic() + seconds
+        self.interrupted = False
+
+    @property
+    def passed(self) -> bool:
+        """Whether to stop, by time or by ctrl-C."""
+        return self.interrupted or (self._end is not None and time.monotonic() >= self._end)
+
+    def slice(self, longest: float = 0.2) -> float:
+        """Give how long to wait before looking at the clock again."""
+        return longest if self._end is None else max(0.0, min(longest, self._end - time.monotonic()))
+
+
+def run(
+    files: Sequence[Path],
+    facts: str,
+    arguments: Sequence[str],
+    deadline: Deadline,
+    opt_mode: str = "opt",
+    on_tree: Callable[[frozenset[int]], None] | None = None,
+    on_bound: Callable[[list[int]], None] | None = None,
+) -> Run:
+    """Ground the files and facts and search for the best answer.
+
+    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do). Raises
+    what :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
+    """
+    messages: list[str] = []
+    result = Run()
+    began = time.perf_counter()
+    try:
+        control = Control(list(arguments), logger=lambda _, text: messages.append(text), message_limit=1000)
+        for file in files:
+            control.load(str(file))
+        control.add("base", [], facts)
+        control.ground([("base", [])])
+        configuration = control.configuration.solve
+        configuration.opt_mode = opt_mode
+        configuration.models = 1 if opt_mode == "ignore" else 0
+        configuration.enum_mode = "auto"
+        configuration.project = "no"
+        configuration.opt_stop = "no"
+    except RuntimeError as error:
+        from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
+
+        raise fault(messages, str(error)) from None
+    grounded = time.perf_counter()
+    result.ground_seconds = grounded - began
+
+    def model(model: Model) -> None:
+        result.units = _used(model)
+        result.cost = tuple(model.cost)
+        if on_tree:
+            on_tree(result.units)
+
+    def unsat(lower: Sequence[int]) -> None:
+        result.lower = list(lower)
+        if on_bound:
+            on_bound(result.lower)
+
+    with control.solve(async_=True, on_model=model, on_unsat=unsat) as handle:
+        while True:
+            try:
+                if handle.wait(deadline.slice()):
+                    break
+                if deadline.passed:
+                    handle.cancel()
+                    break
+            except KeyboardInterrupt:
+                deadline.interrupted = True
+                handle.cancel()
+                break
+        ended = handle.get()
+    result.exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
+    result.solve_seconds = time.perf_counter() - grounded
+    return result
+
+
+def _used(model: Model) -> frozenset[int]:
+    units = set()
+    for symbol in model.symbols(shown=True):
+        if symbol.type is SymbolType.Function and symbol.match("use", 1):
+            argument = symbol.arguments[0]
+            if argument.type is not SymbolType.Number:
+                raise UserError(f"the encodings made {symbol}, expected use(U) with the number of a unit")
+            units.add(argument.number)
+    return frozenset(units)

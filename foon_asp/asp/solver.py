@@ -1,0 +1,278 @@
+"""Optimal task trees: the cut, the runs of clingo, and the claim that comes out of them."""
+
+import time
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+
+from foon_asp.asp.exact_success import RateScale, problem_scale
+from foon_asp.asp.facts import write_exponents, write_facts, write_objectives, write_seen, write_wanted
+from foon_asp.asp.outcome import Outcome, Status
+from foon_asp.asp.program import Program, Settings, assemble
+from foon_asp.asp.search import Deadline, Run, run
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach, relevant
+from foon_asp.proof import Verdict, simulate
+
+Units = frozenset[int]
+
+
+class Reporter:
+    """Hears of progress while solving; override what you want to know."""
+
+    def warning(self, message: str) -> None:
+        """Hear of something that the user should know about a constraint or an encoding."""
+
+    def tree(self, costs: Costs) -> None:
+        """Hear of a tree that was found; the last one heard of is the best so far."""
+
+    def bound(self, objective: Objective, bound: int | Fraction) -> None:
+        """Hear of the proved bound on the objective that is being worked on."""
+
+
+def solve(
+    problem: Problem,
+    objectives: Sequence[Objective] = (Objective.UNITS,),
+    settings: Settings | None = None,
+    reporter: Reporter | None = None,
+) -> Outcome:
+    """Find the best task tree under a lexicographic list of objectives, and prove it.
+
+    ``units`` decides last, so that no tree carries a unit it does not need. Stops at the time limit or at
+    ctrl-C with the best tree so far. Raises :class:`UserError` for faults in constraints, encodings and
+    options, and where ``success`` is asked for and no rates are known.
+    """
+    return _Solver(problem, tuple(objectives), settings or Settings(), reporter or Reporter()).solve()
+
+
+def program_facts(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> str:
+    """Give the facts that :func:`solve` hands to clingo first, as text.
+
+    With them, bare clingo finds the same optimum from the same encodings.
+    """
+    solver = _Solver(problem, tuple(objectives), settings, Reporter())
+    solver.cut()
+    return solver.facts() + write_objectives(solver.levels)
+
+
+class _Solver:
+    """One question on its way to its outcome.
+
+    ``units`` is what is left of the network after the cut, ``levels`` the objectives as optimized.
+    """
+
+    def __init__(
+        self, problem: Problem, objectives: tuple[Objective, ...], settings: Settings, reporter: Reporter
+    ) -> None:
+        self.problem = problem
+        self.objectives = objectives
+        self.levels = levels(objectives)
+        self.settings = settings
+        self.reporter = reporter
+        self.deadline = Deadline(settings.time_limit)
+        self.units: tuple[int, ...] = ()
+        self.scale: RateScale | None = None
+        self.seconds: dict[str, float] = {}
+        self._facts: str | None = None
+        if Objective.SUCCESS in self.levels and problem.rates is None:
+            raise UserError(
+                "the objective success needs the success rates of the motions; give a rates file with --rates"
+            )
+        self.program: Program = assemble(settings, reporter.warning)
+
+    def solve(self) -> Outcome:
+        first = self.cut()
+        if first is None:
+            return self._outcome(Status.INFEASIBLE, None, {})
+        incumbent: Units | None = None
+        if self.program.own:
+            incumbent = Units(first)
+        else:  # the user's rules decide what a tree is: let them find the first one
+            some = self._run(self.levels, opt_mode="ignore")
+            if some.units is None:
+                return self._outcome(Status.INFEASIBLE if some.exhausted else Status.UNKNOWN, None, {})
+            incumbent = some.units
+        self.reporter.tree(self.problem.costs(incumbent))
+
+        ended = self._run(self.levels)
+        if ended.units is None and ended.exhausted:
+            raise BugError("a tree is at hand, but the encodings say that there is none")
+        best = self._better(incumbent, ended.units)
+        if not ended.exhausted:
+            return self._outcome(Status.FEASIBLE, best, self._bounds(ended.lower))
+        best = ended.units or best
+        if self._measures_agree(ended) and Objective.SUCCESS in self.levels:
+            best, settled = self._settle_success(best)
+            if not settled:
+                return self._outcome(Status.FEASIBLE, best, self._bounds(ended.lower))
+        costs = self.problem.costs(best)
+        return self._outcome(Status.OPTIMAL, best, {o: costs.measure(o) for o in self.levels})
+
+    def cut(self) -> tuple[int, ...] | None:
+        """Cut the network down to what can matter; give some tree, or ``None`` when there is none.
+
+        Without constraints of the user's, that is what the goals can need; with them, all that can be
+        made, since a constraint may ask for units that no goal does.
+        """
+        began = time.perf_counter()
+        reached = reach(self.problem)
+        first = first_tree(self.problem, reached)
+        if first is not None:
+            self.units = relevant(self.problem, reached) if self.program.own else tuple(sorted(reached.units))
+            if self.problem.rates is not None:
+                self.scale = problem_scale(self.problem, self.units)
+        self._spent("cut", began)
+        return first
+
+    def facts(self) -> str:
+        if self._facts is None:
+            began = time.perf_counter()
+            self._facts = write_facts(self.problem, self.units, self.scale)
+            self._spent("facts", began)
+        return self._facts
+
+    def _run(self, objectives: Sequence[Objective], extra: str = "", opt_mode: str = "opt") -> Run:
+        facts = self.facts() + write_objectives(objectives) + extra
+        files = (*self.program.files, self.program.exact_success) if extra else self.program.files
+        first = opt_mode == "opt" and not extra  # only then is every tree better than the ones before
+        ended = run(
+            files,
+            facts,
+            self.program.arguments,
+            self.deadline,
+            opt_mode,
+            on_tree=(lambda units: self.reporter.tree(self._costs(units))) if first else None,
+            on_bound=self._report_bound if first else None,
+        )
+        self.seconds["ground"] = self.seconds.get("ground", 0.0) + ended.ground_seconds
+        self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
+        if ended.units is not None:
+            self._costs(ended.units)
+        return ended
+
+    def _settle_success(self, best: Units) -> tuple[Units, bool]:
+        """Look at every product of rates that rounding may have hidden; see docs/exact-success.md.
+
+        Returns the best tree by exact products, and whether the search came to its end.
+        """
+        scale = self.scale
+        if scale is None or not any(scale.weights.values()) or not self.problem.rates:
+            return best, True
+        place = self.levels.index(Objective.SUCCESS)
+        before, after = self.levels[:place], self.levels[place + 1 :]
+        exponents = write_exponents(self.problem, self.units, scale)
+        fixed = [self.problem.costs(best).measure(objective) for objective in before]
+        chosen, rival, number = best, best, 0
+        while True:
+            # A better product has a weight of at most W + n - 1, where n units of the tree weigh less
+            # than their logarithm (all but those of rate 1).
+            inexact = sum(self._rate(unit) != 1 for unit in chosen)
+            band = self._weight(chosen) + inexact - 1
+            exponents += write_seen(number, scale.product_exponents(map(self._rate, rival)))
+            number += 1
+            mode = ",".join(["opt", *map(str, fixed), str(band)])
+            ended = self._run((*before, Objective.SUCCESS), exponents, mode)
+            if not ended.exhausted:
+                return chosen, False
+            if ended.units is None:
+                break
+            rival = ended.units
+            if self._success(rival) > self._success(chosen):
+                chosen = rival
+        if not after:
+            return chosen, True
+        wanted = write_wanted(scale.product_exponents(map(self._rate, chosen)))
+        extra = write_exponents(self.problem, self.units, scale) + wanted
+        ended = self._run((*before, *after), extra)
+        if ended.exhausted and ended.units is None:
+            raise BugError("the best product of success rates was lost")
+        return (ended.units or chosen), ended.exhausted
+
+    def _measures_agree(self, ended: Run) -> bool:
+        """Hold clingo's cost vector (modulo 2^32) against the costs computed from the units.
+
+        A replaced objectives.lp may measure something else: then the optimum is the one it defines.
+        """
+        if ended.units is None:
+            return False
+        costs = self._costs(ended.units)
+        weights = [
+            self._weight(ended.units) if objective is Objective.SUCCESS else costs.measure(objective)
+            for objective in self.levels
+        ]
+        if len(weights) == len(ended.cost) and all(
+            (ours - theirs) % 2**32 == 0 for ours, theirs in zip(weights, ended.cost, strict=True)
+        ):
+            return True
+        if self.settings.encodings is None:
+            raise BugError(f"clingo reports the costs {list(ended.cost)}, the units cost {weights}")
+        self.reporter.warning(
+            f"{self.settings.encodings / 'objectives.lp'} does not measure what the objectives "
+            f"{', '.join(self.levels)} measure here: the tree is optimal in its sense, and the costs shown "
+            "are the usual ones"
+        )
+        return False
+
+    def _better(self, one: Units, other: Units | None) -> Units:
+        if other is None:
+            return one
+        return min(other, one, key=lambda units: self._costs(units).key(self.levels))
+
+    def _costs(self, units: Units) -> Costs:
+        """Compute costs; the numbers in an answer come from encodings, which may be the user's."""
+        for unit in sorted(units):
+            if not 0 <= unit < len(self.problem.network):
+                raise UserError(f"the encodings made use({unit}), but the network has no unit of that number")
+        return self.problem.costs(units)
+
+    def _rate(self, unit: int) -> Fraction:
+        return (self.problem.rates or {})[self.problem.network.motions[unit]]
+
+    def _weight(self, units: Iterable[int]) -> int:
+        weights = self.scale.weights if self.scale else {}
+        return sum(weights[self._rate(unit)] for unit in units)
+
+    def _success(self, units: Units) -> Fraction:
+        return self.problem.costs(units).success or Fraction(0)
+
+    def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
+        """Turn clingo's lower bounds, highest priority first, into bounds on the objectives."""
+        return {
+            objective: self.scale.success_bound(max(0, value))
+            if objective is Objective.SUCCESS and self.scale
+            else max(0, value)
+            for objective, value in zip(self.levels, lower, strict=False)
+        }
+
+    def _report_bound(self, lower: Sequence[int]) -> None:
+        for objective, bound in list(self._bounds(lower).items())[-1:]:
+            self.reporter.bound(objective, bound)
+
+    def _outcome(
+        self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
+    ) -> Outcome:
+        """Check the tree by simulation and state the outcome."""
+        if units is None:
+            return Outcome(self.problem, self.objectives, status, None, None, bounds, self.seconds)
+        began = time.perf_counter()
+        problem, objects = self.problem, self.problem.network.objects
+        order = executable_order(problem, units)
+        listed = tuple(sorted(units)) if order is None else order
+        simulation = simulate(
+            problem.tree(listed),
+            frozenset(objects[o] for o in problem.kitchen),
+            tuple(objects[o] for o in problem.goals),
+            problem.containers,
+            problem.utensils,
+        )
+        if simulation.verdict is not Verdict.AS_LISTED:
+            message = f"the tree found {simulation.verdict}"
+            if self.program.own:
+                raise BugError(message)
+            raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
+        self._spent("check", began)
+        return Outcome(
+            problem, self.objectives, status, listed, problem.costs(listed), bounds, self.seconds
+        )
+
+    def _spent(self, phase: str, began: float) -> None:
+        self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began

@@ -1,0 +1,30 @@
+"""The exit codes, and what each promises."""
+
+from enum import IntEnum
+
+from foon_asp.asp import Status
+
+
+class ExitCode(IntEnum):
+    """How a command ended."""
+
+    DONE = 0
+    """Done, and where something was to be proved, proved."""
+    NEGATIVE = 1
+    """Proved that no tree exists, or a check failed."""
+    USAGE = 2
+    """Bad usage or input."""
+    LIMIT = 3
+    """Stopped at a limit without a proof; the best tree and its bound were printed."""
+    BUG = 70
+    """A bug of ours."""
+
+
+def of_status(status: Status) -> ExitCode:
+    """Give the code for the status of an answer."""
+    return {
+        Status.OPTIMAL: ExitCode.DONE,
+        Status.INFEASIBLE: ExitCode.NEGATIVE,
+        Status.FEASIBLE: ExitCode.LIMIT,
+        Status.UNKNOWN: ExitCode.LIMIT,
+    }[status]

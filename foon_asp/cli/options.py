@@ -1,0 +1,128 @@
+"""Options that several verbs share, and reading the data they name."""
+
+import functools
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple, TypeVar
+
+import click
+
+from foon_asp.errors import UserError
+from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.resources import bundled_kitchen
+from foon_asp.text import Data, find_data, find_goal, read_data, summarize
+
+_Command = TypeVar("_Command", bound=Callable[..., object])
+_PATH = click.Path(path_type=Path)
+
+_DATA_OPTIONS = (
+    click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with a network and what goes with it."),
+    click.option("--network", multiple=True, type=_PATH, metavar="FILE|DIR", help="FOON text to read; repeat to merge."),
+    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand (JSON)."),
+    click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
+    click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
+    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name by label (JSON)."),
+    click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
+)
+
+_CONSTRAINT_OPTIONS = (
+    click.option("--constraint", "constraints", multiple=True, type=_PATH, metavar="FILE.lp",
+                 help="Add an encoding of yours, or one of ours by name; repeatable."),
+    click.option("--encodings", type=_PATH, metavar="DIR", help="Replace our encodings by those of a folder."),
+)  # fmt: skip
+
+goal_option = click.option(
+    "--goal", "goals_named", multiple=True, metavar="NAME",
+    help="Label or one-line notation of a goal; repeat for one tree that makes all.",
+)  # fmt: skip
+
+objective_option = click.option(
+    "--objective", "objectives", multiple=True, default=("units",), show_default=True, metavar="LIST",
+    help=f"What is best, most important first: {', '.join(Objective)}.",
+)  # fmt: skip
+
+containers_option = click.option(
+    "--containers", type=click.Choice([str(rule) for rule in ContainerRule]), default="strict", show_default=True,
+    help="Whether a unit needs every input, or takes utensils that hold one of them as given.",
+)  # fmt: skip
+
+constant_option = click.option(
+    "-c", "constants", multiple=True, metavar="NAME=VALUE", help="Set a #const of an encoding; repeatable."
+)
+
+time_limit_option = click.option(
+    "--time-limit", type=click.FloatRange(min=0), metavar="SECONDS",
+    help="Stop searching after so long, with the best tree and its bound.",
+)  # fmt: skip
+
+debug_option = click.option("--debug", is_flag=True, expose_value=False, help="Show where an error was raised.")
+
+
+def format_option(*formats: str) -> Callable[[_Command], _Command]:
+    """Make ``--format`` with the formats of a verb, the first by default."""
+    return click.option("--format", "format_", type=click.Choice(formats), default=formats[0], show_default=True)
+
+
+def data_options(command: _Command) -> _Command:
+    """Add the options that name the data."""
+    return functools.reduce(lambda f, option: option(f), reversed((*_DATA_OPTIONS, debug_option)), command)
+
+
+def constraint_options(command: _Command) -> _Command:
+    """Add the options that add or replace encodings."""
+    return functools.reduce(lambda f, option: option(f), reversed(_CONSTRAINT_OPTIONS), command)
+
+
+class Question(NamedTuple):
+    """The data that the options name, read, and how long that took."""
+
+    data: Data
+    read_seconds: float
+
+    def goals(self, names: Sequence[str]) -> tuple[int, ...]:
+        """Find the goals by name; without a name, the goals file has to hold exactly one."""
+        data = self.data
+        if not names and len(data.goals) == 1:
+            names = [data.goals[0].pattern.label]
+        if not names:
+            listed = "\n".join(f"  --goal {entry.pattern.label!r}" for entry in data.goals)
+            raise UserError("name a goal with --goal" + (f"; the goals file has\n{listed}" if listed else ""))
+        found = (find_goal(name, data.network, data.goals) for name in names)
+        return tuple(dict.fromkeys(found))
+
+    def problem(self, goals: tuple[int, ...], containers: str) -> Problem:
+        """Ask for goals under a container rule."""
+        data = self.data
+        return Problem(
+            data.network, data.kitchen, goals, data.rates, data.utensils, ContainerRule(containers)
+        )
+
+
+def read_question(
+    folder: Path | None,
+    network: Sequence[Path],
+    kitchen: Path | None,
+    rates: Path | None,
+    utensils: Path | None,
+    goals: Path | None,
+    lenient: bool,
+) -> Question:
+    """Read the data that the options name; warnings go to stderr.
+
+    Without --data and --network it is the bundled kitchen. A network of its own does not get the bundled
+    kitchen and rates, which are made for another one.
+    """
+    began = time.perf_counter()
+    if folder is None and not network:
+        folder = bundled_kitchen()
+    files = find_data(folder, network, kitchen, rates, utensils, goals)
+    data = read_data(files, lenient)
+    seconds = time.perf_counter() - began
+    for text in summarize(data.warnings):
+        click.echo(text, err=True)
+    if data.left_out:
+        click.echo(f"warning: {data.left_out} lines were left out", err=True)
+    if files.kitchen is None:
+        click.echo("warning: no kitchen is given, so nothing is at hand; name one with --kitchen", err=True)
+    return Question(data, seconds)

@@ -1,0 +1,63 @@
+"""What is seen on stderr while a search goes on: the best tree and the bound, on a terminal only."""
+
+import sys
+import time
+from fractions import Fraction
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+import click
+
+from foon_asp.asp import Reporter
+from foon_asp.problem import Costs, Objective
+from foon_asp.report.answer import costs_text, success_text
+
+if TYPE_CHECKING:
+    from rich.status import Status
+
+_PATIENCE = 0.3  # seconds before anything is shown: most answers are there by then
+
+
+class Progress(Reporter):
+    """Shows the best tree so far and the proved bound in one line that keeps changing."""
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
+        self._live: Status | None = None
+        self._tree = "no tree yet"
+        self._bound = "no bound yet"
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._live:
+            self._live.stop()
+
+    def warning(self, message: str) -> None:
+        click.echo(message, err=True)
+
+    def tree(self, costs: Costs) -> None:
+        self._tree = f"best tree: {costs_text(costs)}"
+        self._show()
+
+    def bound(self, objective: Objective, bound: int | Fraction) -> None:
+        if objective is Objective.SUCCESS:
+            self._bound = f"proved: success at most {success_text(Fraction(bound))}"
+        else:
+            self._bound = f"proved: at least {bound} {objective}"
+        self._show()
+
+    def _show(self) -> None:
+        if not sys.stderr.isatty() or time.monotonic() - self._began < _PATIENCE:
+            return
+        text = f"{self._tree}  |  {self._bound}  |  ctrl-C stops with the best"
+        if self._live:
+            self._live.update(text)
+            return
+        from rich.console import Console
+
+        self._live = Console(stderr=True).status(text)
+        self._live.start()

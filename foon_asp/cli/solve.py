@@ -1,0 +1,64 @@
+"""``foon-asp solve``: the optimal task tree, and what is proved of it."""
+
+from pathlib import Path
+
+import click
+
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.progress import Progress
+from foon_asp.errors import UserError
+from foon_asp.problem import parse_objectives, reach
+from foon_asp.report import answer
+
+
+@click.command("solve")
+@options.goal_option
+@options.objective_option
+@options.containers_option
+@options.constraint_options
+@options.constant_option
+@options.time_limit_option
+@options.format_option("text", "json", "foon")
+@options.data_options
+@click.argument("clingo_options", nargs=-1, type=click.UNPROCESSED, metavar="[-- CLINGO OPTIONS]")
+def command(
+    goals_named: tuple[str, ...],
+    objectives: tuple[str, ...],
+    containers: str,
+    constraints: tuple[Path, ...],
+    encodings: Path | None,
+    constants: tuple[str, ...],
+    time_limit: float | None,
+    format_: str,
+    clingo_options: tuple[str, ...],
+    **data: object,
+) -> ExitCode:
+    """Find the best task tree for a goal, and prove that none is better.
+
+    \b
+    foon-asp solve --goal 'greek salad'
+    foon-asp solve --goal macaroni --objective success --containers implied
+    foon-asp solve --goal ice --constraint forbid_motion -c forbidden_motion=crush
+
+    Exits with 0 when the tree is proved optimal, 1 when no tree exists, 2 for bad input, 3 when stopped
+    at a limit.
+    """
+    if clingo_options and not clingo_options[0].startswith("-"):
+        raise UserError(f"found {clingo_options[0]!r}, expected an option; a goal is named by --goal NAME")
+    chosen = parse_objectives(objectives)
+    question = options.read_question(**data)  # type: ignore[arg-type]
+    problem = question.problem(question.goals(goals_named), containers)
+    settings = Settings(constraints, encodings, constants, clingo_options, time_limit)
+    with Progress() as progress:
+        outcome = solve(problem, chosen, settings, progress)
+    outcome.seconds["read"] = question.read_seconds
+    render = {"text": answer.outcome_text, "json": answer.outcome_json, "foon": answer.outcome_foon}[format_]
+    click.echo(render(outcome), nl=False)
+    if format_ == "text" and outcome.status is Status.INFEASIBLE:
+        for line in answer.makers_that_lack(problem, reach(problem).available):
+            click.echo(line)
+    if format_ != "text" and outcome.status is not Status.OPTIMAL:
+        click.echo(answer.headline(outcome), err=True)
+    return of_status(outcome.status)

@@ -1,0 +1,40 @@
+"""Functional units: one motion that takes object nodes to object nodes."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from foon_asp.network.object_node import ObjectNode
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FunctionalUnit:
+    """One motion with its input and output object nodes, each listed once, in the order first read.
+
+    Two units are the same when motion, set of inputs and set of outputs are: the order is only kept
+    for people.
+    """
+
+    motion: str
+    inputs: tuple[ObjectNode, ...]
+    outputs: tuple[ObjectNode, ...]
+
+    @classmethod
+    def of(
+        cls, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode]
+    ) -> "FunctionalUnit":
+        """Build a unit; a node listed twice on one side is kept once."""
+        return cls(motion, tuple(dict.fromkeys(inputs)), tuple(dict.fromkeys(outputs)))
+
+    @property
+    def identity(self) -> tuple[str, frozenset[ObjectNode], frozenset[ObjectNode]]:
+        """What makes it this unit and no other."""
+        return self.motion, frozenset(self.inputs), frozenset(self.outputs)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, FunctionalUnit) and self.identity == other.identity
+
+    def __hash__(self) -> int:
+        return hash(self.identity)
+
+    def __str__(self) -> str:
+        return f"{self.motion}: {' + '.join(map(str, self.inputs))} → {' + '.join(map(str, self.outputs))}"

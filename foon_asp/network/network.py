@@ -1,0 +1,146 @@
+"""The merged network (universal FOON): object nodes and units, each interned once."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+
+from foon_asp.network.functional_unit import FunctionalUnit
+from foon_asp.network.node_pattern import NodePattern
+from foon_asp.network.object_node import ObjectNode
+from foon_asp.network.source import Source
+
+# motion, ids of the inputs, ids of the outputs: the identity of a unit within one network
+UnitKey = tuple[str, frozenset[int], frozenset[int]]
+
+
+class Network:
+    """An immutable directed hypergraph of object nodes and functional units.
+
+    Nodes and units are numbered from 0 in the order in which they were first read; the numbers are the
+    ids used in facts, answers and messages. ``inputs[u]`` and ``outputs[u]`` are the node ids of unit
+    ``u``; ``sources[u]`` lists where each copy of it was read. Build one with :class:`NetworkBuilder`.
+    """
+
+    def __init__(
+        self,
+        objects: tuple[ObjectNode, ...],
+        motions: tuple[str, ...],
+        inputs: tuple[tuple[int, ...], ...],
+        outputs: tuple[tuple[int, ...], ...],
+        sources: tuple[tuple[Source, ...], ...],
+        object_ids: dict[ObjectNode, int],
+        unit_ids: dict[UnitKey, int],
+    ) -> None:
+        self.objects = objects
+        self.motions = motions
+        self.inputs = inputs
+        self.outputs = outputs
+        self.sources = sources
+        self._object_ids = object_ids
+        self._unit_ids = unit_ids
+
+    def __len__(self) -> int:
+        """Count the units."""
+        return len(self.motions)
+
+    def unit(self, unit_id: int) -> FunctionalUnit:
+        """Give the unit with that id as a value of its own."""
+        objects = self.objects
+        return FunctionalUnit(
+            self.motions[unit_id],
+            tuple(objects[o] for o in self.inputs[unit_id]),
+            tuple(objects[o] for o in self.outputs[unit_id]),
+        )
+
+    def object_id(self, node: ObjectNode) -> int | None:
+        """Give the id of a node, or ``None`` when the network does not have it."""
+        return self._object_ids.get(node)
+
+    def unit_id(self, unit: FunctionalUnit) -> int | None:
+        """Give the id of a unit, or ``None`` when the network does not have it."""
+        ids = self._object_ids
+        if not all(node in ids for node in (*unit.inputs, *unit.outputs)):
+            return None
+        inputs, outputs = (frozenset(ids[node] for node in side) for side in (unit.inputs, unit.outputs))
+        return self._unit_ids.get((unit.motion, inputs, outputs))
+
+    @cached_property
+    def producers(self) -> tuple[tuple[int, ...], ...]:
+        """For each object node, the units that have it as an output, in order."""
+        return _invert(self.outputs, len(self.objects))
+
+    @cached_property
+    def consumers(self) -> tuple[tuple[int, ...], ...]:
+        """For each object node, the units that have it as an input, in order."""
+        return _invert(self.inputs, len(self.objects))
+
+    @cached_property
+    def by_label(self) -> dict[str, tuple[int, ...]]:
+        """Node ids by object label, in order."""
+        ids: defaultdict[str, list[int]] = defaultdict(list)
+        for object_id, node in enumerate(self.objects):
+            ids[node.label].append(object_id)
+        return {label: tuple(found) for label, found in ids.items()}
+
+    def find(self, pattern: NodePattern) -> tuple[int, ...]:
+        """Give the ids of the nodes that a kitchen or goals entry stands for."""
+        found = self._by_attributes.get((pattern.label, pattern.states, pattern.ingredients), ())
+        return tuple(o for o in found if pattern.matches(self.objects[o]))
+
+    @cached_property
+    def _by_attributes(self) -> dict[tuple[str, frozenset[str], tuple[str, ...]], list[int]]:
+        ids: dict[tuple[str, frozenset[str], tuple[str, ...]], list[int]] = {}
+        for object_id, node in enumerate(self.objects):
+            ids.setdefault((node.label, node.states, node.ingredients), []).append(object_id)
+        return ids
+
+
+class NetworkBuilder:
+    """Collects units from any number of files; copies of a unit are merged and all sources kept."""
+
+    def __init__(self) -> None:
+        self._object_ids: dict[ObjectNode, int] = {}
+        self._unit_ids: dict[UnitKey, int] = {}
+        self._motions: list[str] = []
+        self._inputs: list[tuple[int, ...]] = []
+        self._outputs: list[tuple[int, ...]] = []
+        self._sources: list[list[Source]] = []
+
+    def add(
+        self, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode], source: Source
+    ) -> int:
+        """Add one copy of a unit and return the unit's id."""
+        ids = self._object_ids
+        # dict.fromkeys: a node that one unit lists twice is one input, in the place of its first mention
+        ins = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))
+        outs = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in outputs]))
+        key = (motion, frozenset(ins), frozenset(outs))
+        unit_id = self._unit_ids.setdefault(key, len(self._motions))
+        if unit_id == len(self._motions):
+            self._motions.append(motion)
+            self._inputs.append(ins)
+            self._outputs.append(outs)
+            self._sources.append([source])
+        else:
+            self._sources[unit_id].append(source)
+        return unit_id
+
+    def build(self) -> Network:
+        """Freeze what was added so far into a network."""
+        return Network(
+            tuple(self._object_ids),
+            tuple(self._motions),
+            tuple(self._inputs),
+            tuple(self._outputs),
+            tuple(map(tuple, self._sources)),
+            dict(self._object_ids),
+            dict(self._unit_ids),
+        )
+
+
+def _invert(lists: Sequence[Sequence[int]], size: int) -> tuple[tuple[int, ...], ...]:
+    found: list[list[int]] = [[] for _ in range(size)]
+    for owner, members in enumerate(lists):
+        for member in members:
+            found[member].append(owner)
+    return tuple(map(tuple, found))

@@ -1,0 +1,75 @@
+"""Object nodes: objects in a state."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+
+class Relation(NamedTuple):
+    """A located object: the word and the label of the related object, ``in [bowl]``."""
+
+    word: str
+    object: str
+
+    def __str__(self) -> str:
+        return f"{self.word} [{self.object}]"
+
+
+class Contents(NamedTuple):
+    """What an object holds: the word and the sorted multiset of ingredients, ``contains {a,b}``."""
+
+    word: str
+    ingredients: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{self.word} {{{','.join(self.ingredients)}}}"
+
+
+class ObjectNode(NamedTuple):
+    """An object in a state; two nodes are the same when all four parts are (level 3 of FOON).
+
+    A named tuple, because nodes are hashed and compared by the ten thousand.
+    Motion flags, times and ids belong to the line they were read from and are no part of it.
+    Use :meth:`of` to build one: it sorts what has no order.
+    """
+
+    label: str
+    states: frozenset[str] = frozenset()
+    relations: frozenset[Relation] = frozenset()
+    contents: tuple[Contents, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        label: str,
+        states: Iterable[str] = (),
+        relations: Iterable[tuple[str, str]] = (),
+        contents: Iterable[tuple[str, Iterable[str]]] = (),
+    ) -> "ObjectNode":
+        """Build a node from plain values: states, ``(word, object)`` and ``(word, ingredients)`` pairs."""
+        return cls(
+            label,
+            frozenset(states),
+            frozenset(Relation(*relation) for relation in relations),
+            tuple(sorted(Contents(word, tuple(sorted(items))) for word, items in contents)),
+        )
+
+    @property
+    def ingredients(self) -> tuple[str, ...]:
+        """The ingredients of all contents together, sorted; duplicates are kept."""
+        if len(self.contents) == 1:
+            return self.contents[0].ingredients
+        return tuple(sorted(item for contents in self.contents for item in contents.ingredients))
+
+    def is_in(self, container: str) -> bool:
+        """Whether the node has a relation, by any word, to the object with that label."""
+        return any(relation.object == container for relation in self.relations)
+
+    def __str__(self) -> str:
+        """Give the one-line notation: ``sweet potato; chopped; in [cutting board]``."""
+        parts = [
+            self.label,
+            *sorted(self.states),
+            *map(str, sorted(self.relations)),
+            *map(str, self.contents),
+        ]
+        return "; ".join(parts)

@@ -1,0 +1,24 @@
+"""One question over a network, and its cut down to what can matter."""
+
+from foon_asp.problem.containers import ContainerRule, needed_inputs
+from foon_asp.problem.costs import Costs
+from foon_asp.problem.objective import Objective, levels, parse_objectives
+from foon_asp.problem.order import executable_order
+from foon_asp.problem.problem import Problem, require_rates
+from foon_asp.problem.relevance import Reached, first_tree, reach, relevant
+
+__all__ = [
+    "ContainerRule",
+    "Costs",
+    "Objective",
+    "Problem",
+    "Reached",
+    "executable_order",
+    "first_tree",
+    "levels",
+    "needed_inputs",
+    "parse_objectives",
+    "reach",
+    "relevant",
+    "require_rates",
+]

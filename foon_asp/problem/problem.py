@@ -1,0 +1,91 @@
+"""One question: a network, a kitchen, goals, rates and the container rule."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from foon_asp.errors import UserError
+from foon_asp.network import Network, TaskTree
+from foon_asp.problem.containers import ContainerRule, needed_inputs
+from foon_asp.problem.costs import Costs
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is asked, before any cut.
+
+    ``kitchen`` and ``goals`` are object node ids of ``network``; all goals have to be made by one tree.
+    ``rates`` gives the success rate of every motion, or is ``None`` where none are known. ``utensils``
+    are the labels that the rule ``implied`` looks at.
+    """
+
+    network: Network
+    kitchen: frozenset[int]
+    goals: tuple[int, ...]
+    rates: Mapping[str, Fraction] | None
+    utensils: frozenset[str]
+    containers: ContainerRule = ContainerRule.STRICT
+
+    def __post_init__(self) -> None:
+        if not self.goals:
+            raise UserError("no goal is given")
+        if self.rates is not None:
+            require_rates(self.network, self.rates)
+
+    @cached_property
+    def needs(self) -> tuple[tuple[int, ...], ...]:
+        """For each unit, the ids of the inputs that the container rule asks for."""
+        network = self.network
+        if self.containers is ContainerRule.STRICT:
+            return network.inputs
+        vessels = {
+            o
+            for o, node in enumerate(network.objects)
+            if node.label in self.utensils and len(node.ingredients) == 1
+        }
+        needs: list[tuple[int, ...]] = []
+        for unit, inputs in enumerate(network.inputs):
+            if vessels.isdisjoint(inputs):
+                needs.append(inputs)
+                continue
+            needed = set(needed_inputs(network.unit(unit), self.containers, self.utensils))
+            needs.append(tuple(o for o in inputs if network.objects[o] in needed))
+        return tuple(needs)
+
+    def tree(self, units: Iterable[int]) -> TaskTree:
+        """Give units, by id and in the order given, as a tree."""
+        return TaskTree(tuple(self.network.unit(unit) for unit in units))
+
+    def costs(self, units: Iterable[int]) -> Costs:
+        """Compute what a set of units costs; each unit counts once."""
+        network = self.network
+        chosen = sorted(set(units))
+        taken = {o for unit in chosen for o in self.needs[unit] if o in self.kitchen}
+        return Costs(
+            units=len(chosen),
+            inputs=sum(len(network.inputs[unit]) for unit in chosen),
+            ingredients=sum(len(network.objects[o].ingredients) for u in chosen for o in network.inputs[u]),
+            kitchen=len(taken),
+            success=None
+            if self.rates is None
+            else math.prod((self.rates[network.motions[unit]] for unit in chosen), start=Fraction(1)),
+        )
+
+
+def require_rates(network: Network, rates: Mapping[str, Fraction]) -> None:
+    """Raise :class:`UserError` naming every motion of the network that has no success rate."""
+    missing: dict[str, int] = {}
+    for unit, motion in enumerate(network.motions):
+        if motion not in rates:
+            missing.setdefault(motion, unit)
+    if missing:
+        lines = [
+            f"{network.sources[unit][0]}: error: the motion {motion!r} has no success rate"
+            for motion, unit in list(missing.items())[:10]
+        ]
+        if len(missing) > 10:
+            lines.append(f"... and {len(missing) - 10} more motions")
+        lines.append("add a line with the motion, a tab and its rate to the rates file (motion.txt)")
+        raise UserError("\n".join(lines))

@@ -1,0 +1,93 @@
+"""What can be made from the kitchen, and what of it can matter for the goals; both in linear time."""
+
+from collections import deque
+from typing import NamedTuple
+
+from foon_asp.problem.problem import Problem
+
+
+class Reached(NamedTuple):
+    """The forward closure of the kitchen.
+
+    ``units`` are all units that some tree can contain, in an order in which they execute.
+    ``makers[o]`` is the first of them to make object ``o`` (kitchen items have none), so following the
+    makers back never runs in a circle. ``available`` has a 1 for every object at hand or made.
+    """
+
+    units: tuple[int, ...]
+    makers: dict[int, int]
+    available: bytearray
+
+
+def reach(problem: Problem) -> Reached:
+    """Close the kitchen under the units: the counting algorithm, linear in the size of the network."""
+    network, needs = problem.network, problem.needs
+    available = bytearray(len(network.objects))
+    missing = [len(needed) for needed in needs]
+    waiting: list[list[int]] = [[] for _ in network.objects]
+    for unit, needed in enumerate(needs):
+        for o in needed:
+            waiting[o].append(unit)
+    order: list[int] = []
+    makers: dict[int, int] = {}
+    found = deque(sorted(problem.kitchen))
+    for o in found:
+        available[o] = 1
+
+    def execute(unit: int) -> None:
+        order.append(unit)
+        for o in network.outputs[unit]:
+            if not available[o]:
+                available[o] = 1
+                makers[o] = unit
+                found.append(o)
+
+    for unit, count in enumerate(missing):
+        if not count:  # possible where the container rule takes every input as given
+            execute(unit)
+    while found:
+        for unit in waiting[found.popleft()]:
+            missing[unit] -= 1
+            if not missing[unit]:
+                execute(unit)
+    return Reached(tuple(order), makers, available)
+
+
+def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
+    """Give the reached units that some tree without spare units can contain, in order of id.
+
+    Goes backwards from the goals through all reached producers and stops at the kitchen.
+    """
+    network, needs, kitchen = problem.network, problem.needs, problem.kitchen
+    can_run = bytearray(len(network))
+    for unit in reached.units:
+        can_run[unit] = 1
+    chosen = bytearray(len(network))
+    wanted = {o for o in problem.goals if o not in kitchen}
+    stack = list(wanted)
+    while stack:
+        for unit in network.producers[stack.pop()]:
+            if can_run[unit] and not chosen[unit]:
+                chosen[unit] = 1
+                for o in needs[unit]:
+                    if o not in wanted and o not in kitchen:
+                        wanted.add(o)
+                        stack.append(o)
+    return tuple(unit for unit in range(len(network)) if chosen[unit])
+
+
+def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
+    """Give some tree, in an executable order, by following the makers; ``None`` when there is none.
+
+    It promises nothing about costs: it is what a search stopped at once still has in hand.
+    """
+    if not all(reached.available[o] for o in problem.goals):
+        return None
+    chosen: set[int] = set()
+    stack = list(problem.goals)
+    while stack:
+        unit = reached.makers.get(stack.pop())
+        if unit is not None and unit not in chosen:
+            chosen.add(unit)
+            stack.extend(problem.needs[unit])
+    return tuple(unit for unit in reached.units if unit in chosen)

@@ -1,0 +1,5 @@
+"""What every answer is held against: does a tree execute?"""
+
+from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate
+
+__all__ = ["Obstacle", "Simulation", "Verdict", "simulate"]

@@ -1,0 +1,90 @@
+"""Does a tree execute? Simulated forwards, in plain Python, with no solver in sight."""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from foon_asp.network import ObjectNode, TaskTree
+from foon_asp.problem import ContainerRule, needed_inputs
+
+
+class Verdict(StrEnum):
+    """How a tree executes, if at all."""
+
+    AS_LISTED = "executes as listed"
+    REORDERED = "executes in another order"
+    NEVER = "does not execute"
+
+
+class Obstacle(NamedTuple):
+    """Why a tree does not execute: the position of a unit in the tree (from 0) and an input it lacks.
+
+    ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
+    """
+
+    unit: int | None
+    missing: ObjectNode
+
+
+class Simulation(NamedTuple):
+    """The outcome: ``order`` lists positions in the tree in an order that executes (as far as any does).
+
+    ``as_listed`` is what stops the listed order, ``obstacle`` what stops every order; each is ``None``
+    where nothing does.
+    """
+
+    verdict: Verdict
+    order: tuple[int, ...]
+    as_listed: Obstacle | None
+    obstacle: Obstacle | None
+
+
+def simulate(
+    tree: TaskTree,
+    kitchen: frozenset[ObjectNode],
+    goals: tuple[ObjectNode, ...],
+    containers: ContainerRule,
+    utensils: frozenset[str],
+) -> Simulation:
+    """Execute the units of a tree from the kitchen, first as listed, then in any order that works.
+
+    Items do not run out. The tree executes when all of its units do and all goals are then at hand.
+    """
+    needs = [needed_inputs(unit, containers, utensils) for unit in tree]
+    at_hand = set(kitchen)
+    as_listed: Obstacle | None = None
+    for position, unit in enumerate(tree):
+        lacking = next((node for node in needs[position] if node not in at_hand), None)
+        if lacking is not None:
+            as_listed = Obstacle(position, lacking)
+            break
+        at_hand.update(unit.outputs)
+    if as_listed is None:
+        as_listed = _missing_goal(goals, at_hand)
+        if as_listed is None:
+            return Simulation(Verdict.AS_LISTED, tuple(range(len(tree))), None, None)
+
+    at_hand = set(kitchen)
+    order: list[int] = []
+    waiting = list(range(len(tree)))
+    progress = True
+    while waiting and progress:
+        held_back: list[int] = []
+        for position in waiting:
+            if at_hand.issuperset(needs[position]):
+                at_hand.update(tree.units[position].outputs)
+                order.append(position)
+            else:
+                held_back.append(position)
+        progress = len(held_back) < len(waiting)
+        waiting = held_back
+    if waiting:
+        lacking = next(node for node in needs[waiting[0]] if node not in at_hand)
+        return Simulation(Verdict.NEVER, tuple(order), as_listed, Obstacle(waiting[0], lacking))
+    obstacle = _missing_goal(goals, at_hand)
+    verdict = Verdict.REORDERED if obstacle is None else Verdict.NEVER
+    return Simulation(verdict, tuple(order), as_listed, obstacle)
+
+
+def _missing_goal(goals: tuple[ObjectNode, ...], at_hand: set[ObjectNode]) -> Obstacle | None:
+    missing = next((goal for goal in goals if goal not in at_hand), None)
+    return None if missing is None else Obstacle(None, missing)

@@ -1,0 +1,1 @@
+"""Tables, texts and JSON for what was found."""

@@ -1,0 +1,169 @@
+"""An outcome for people, for programs and as FOON text."""
+
+import json
+from collections.abc import Iterator
+from fractions import Fraction
+
+from foon_asp.asp import Outcome, Status
+from foon_asp.network import Network
+from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.text import write_units
+
+
+def fraction_json(value: Fraction | None) -> dict[str, object] | None:
+    """Give an exact number and a float beside it for people; ``None`` stays ``None``."""
+    return None if value is None else {"exact": str(value), "approx": float(value)}
+
+
+def costs_json(costs: Costs | None) -> dict[str, object] | None:
+    """Give all measures of a tree."""
+    if costs is None:
+        return None
+    return {
+        "units": costs.units,
+        "inputs": costs.inputs,
+        "ingredients": costs.ingredients,
+        "kitchen": costs.kitchen,
+        "success": fraction_json(costs.success),
+    }
+
+
+def unit_json(network: Network, unit: int) -> dict[str, object]:
+    """Give a unit with its id, motion, nodes in one-line notation and every place it was read from."""
+    objects = network.objects
+    return {
+        "id": unit,
+        "motion": network.motions[unit],
+        "inputs": [str(objects[o]) for o in network.inputs[unit]],
+        "outputs": [str(objects[o]) for o in network.outputs[unit]],
+        "source": [
+            {"file": source.file, "line": source.line, "videos": list(source.videos)}
+            for source in network.sources[unit]
+        ],
+    }
+
+
+def outcome_json(outcome: Outcome) -> str:
+    """Give an outcome as JSON; README.md has the keys."""
+    problem = outcome.problem
+    goals = [str(problem.network.objects[o]) for o in problem.goals]
+    result = {
+        "goal": " + ".join(goals),
+        "goals": goals,
+        "containers": str(problem.containers),
+        "objective": [str(objective) for objective in outcome.objectives],
+        "status": str(outcome.status),
+        "costs": costs_json(outcome.costs),
+        "lower_bound": {
+            str(objective): fraction_json(bound) if objective is Objective.SUCCESS else bound
+            for objective, bound in ((o, outcome.bounds[o]) for o in outcome.bounds)
+            if isinstance(bound, int | Fraction)
+        },
+        "units": None
+        if outcome.units is None
+        else [unit_json(problem.network, unit) for unit in outcome.units],
+        "seconds": {phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
+    }
+    return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
+
+
+def outcome_foon(outcome: Outcome) -> str:
+    """Give the tree as FOON text with a comment that says what it is; empty where there is no tree."""
+    if outcome.units is None:
+        return ""
+    goals = " + ".join(str(outcome.problem.network.objects[o]) for o in outcome.problem.goals)
+    comments = [f"Task tree for: {goals}", headline(outcome)]
+    return write_units(map(outcome.problem.network.unit, outcome.units), comments)
+
+
+def outcome_text(outcome: Outcome) -> str:
+    """Give an outcome for people: what was proved, and the steps with where each input comes from."""
+    problem = outcome.problem
+    objects = problem.network.objects
+    goals = "\n".join(f"goal: {objects[o]}" for o in problem.goals)
+    lines = [goals, headline(outcome)]
+    if outcome.status is Status.FEASIBLE:
+        lines.append(_bound_line(outcome))
+    if outcome.units is not None:
+        if outcome.units:
+            lines.append("")
+            lines += steps(problem, outcome.units)
+        else:
+            lines.append("the kitchen already holds it: nothing to do")
+    return "\n".join(lines) + "\n"
+
+
+def headline(outcome: Outcome) -> str:
+    """Say in one line what is claimed."""
+    rule = f"{outcome.problem.containers} containers"
+    best = ", then ".join(outcome.objectives)
+    if outcome.costs is None:
+        if outcome.status is Status.INFEASIBLE:
+            return f"infeasible: proved that no task tree exists ({rule})"
+        return f"unknown: stopped at a limit before any task tree was found ({rule})"
+    claim = "optimal" if outcome.status is Status.OPTIMAL else "feasible, not proved best"
+    return f"{claim} by {best} ({rule}): {costs_text(outcome.costs)}"
+
+
+def costs_text(costs: Costs) -> str:
+    """Give the measures of a tree in a few words."""
+    text = f"{_count(costs.units, 'unit')}, {_count(costs.inputs, 'input')}"
+    if costs.success is not None:
+        text += f", success {success_text(costs.success)}"
+    return text
+
+
+def success_text(success: Fraction) -> str:
+    """Give a success rate to four significant digits, with ``≈`` where that is rounded."""
+    shown = f"{float(success):.4g}"
+    return shown if Fraction(shown) == success else f"≈ {shown}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def _bound_line(outcome: Outcome) -> str:
+    bounds = [
+        f"success at most {success_text(Fraction(bound))}"
+        if objective is Objective.SUCCESS
+        else f"{objective} at least {bound}"
+        for objective, bound in outcome.bounds.items()
+    ]
+    return "proved so far: " + (", ".join(bounds) or "nothing")
+
+
+def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
+    """Number the units, and say of every input whether it is from the kitchen or from which step."""
+    network = problem.network
+    maker: dict[int, int] = {}
+    for number, unit in enumerate(units, 1):
+        yield f"{number:>3}  {network.motions[unit]}    [{network.sources[unit][0]}]"
+        for o in network.inputs[unit]:
+            origin = "implied"
+            if o in problem.kitchen:
+                origin = "kitchen"
+            elif o in maker:
+                origin = f"step {maker[o]}"
+            yield f"       {network.objects[o]}  ({origin})"
+        for o in network.outputs[unit]:
+            yield f"     → {network.objects[o]}"
+            maker.setdefault(o, number)
+
+
+def makers_that_lack(problem: Problem, available: bytearray, shown: int = 5) -> Iterator[str]:
+    """Say for each goal that cannot be made which units would make it and what the first of them lack."""
+    network = problem.network
+    for goal in problem.goals:
+        if available[goal]:
+            continue
+        producers = network.producers[goal]
+        if not producers:
+            yield f"no unit makes {network.objects[goal]}, and it is not in the kitchen"
+        else:
+            yield f"no unit that makes {network.objects[goal]} can run:"
+        for unit in producers[:shown]:
+            yield f"  {network.motions[unit]}    [{network.sources[unit][0]}] lacks"
+            yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
+        if len(producers) > shown:
+            yield f"  ... and {len(producers) - shown} more units"

@@ -1,0 +1,24 @@
+"""Where the encodings and the bundled kitchen are: inside an installed package, or beside it in a checkout."""
+
+from pathlib import Path
+
+from foon_asp.errors import BugError
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def _folder(name: str, witness: str) -> Path:
+    for parent in (_PACKAGE, _PACKAGE.parent):
+        if (parent / name / witness).is_file():
+            return parent / name
+    raise BugError(f"the folder {name!r} is missing from this installation; please reinstall foon-asp")
+
+
+def encodings_folder() -> Path:
+    """Give the folder of the answer-set encodings."""
+    return _folder("encodings", "task_tree.lp")
+
+
+def bundled_kitchen() -> Path:
+    """Give the folder of the bundled universal FOON and its kitchen."""
+    return _folder("data", "kitchen/FOON.txt") / "kitchen"

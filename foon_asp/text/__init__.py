@@ -1,0 +1,35 @@
+"""FOON text and the tables beside it, in and out."""
+
+from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
+from foon_asp.text.goal_name import find_goal, listed_nodes
+from foon_asp.text.label_list import read_labels
+from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.object_list import ListedObject, read_object_list
+from foon_asp.text.rate_table import read_rates
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.writer import write_node, write_unit, write_units
+
+__all__ = [
+    "Data",
+    "DataFiles",
+    "Diagnostic",
+    "FoonReader",
+    "InputError",
+    "LineError",
+    "ListedObject",
+    "Severity",
+    "excerpt_with_caret",
+    "find_data",
+    "find_goal",
+    "listed_nodes",
+    "parse_node",
+    "read_data",
+    "read_labels",
+    "read_object_list",
+    "read_rates",
+    "summarize",
+    "write_node",
+    "write_unit",
+    "write_units",
+]

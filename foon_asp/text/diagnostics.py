@@ -1,0 +1,72 @@
+"""What the readers have to say about their input, each remark with its place."""
+
+from collections.abc import Sequence
+from enum import StrEnum
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.network import Source
+
+
+class Severity(StrEnum):
+    """How bad it is: an error stops the reading, a warning says what was assumed."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+class Diagnostic(NamedTuple):
+    """One remark about one place in an input file.
+
+    ``code`` names the kind of remark in a few words and is the same for all remarks of that kind;
+    ``excerpt`` is the line of the file that it is about, without its end, or empty.
+    """
+
+    severity: Severity
+    code: str
+    message: str
+    source: Source
+    excerpt: str = ""
+
+    def __str__(self) -> str:
+        """Give ``file:line:column: severity: message`` and, where known, the line with a caret."""
+        file, line, column, _ = self.source
+        text = f"{file}:{line}:{column}: {self.severity}: {self.message}"
+        if self.excerpt:
+            text += "\n" + excerpt_with_caret(self.excerpt, column)
+        return text
+
+
+def excerpt_with_caret(line: str, column: int, width: int = 100) -> str:
+    """Show a source line with a caret under ``column`` (from 1); tabs are drawn as ``→``.
+
+    A line longer than ``width`` is cut around the column.
+    """
+    start = max(0, column - 1 - width // 2) if len(line) > width else 0
+    shown = line[start : start + width].replace("\t", "→")
+    shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in shown)
+    return f"    {shown}\n    {' ' * (column - 1 - start)}^"
+
+
+class InputError(UserError):
+    """Input that could not be read; carries every error found, in file order."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        super().__init__("\n".join(map(str, diagnostics)))
+        self.diagnostics = tuple(diagnostics)
+
+
+def summarize(diagnostics: Sequence[Diagnostic], places: int = 5) -> list[str]:
+    """Fold warnings for a terminal: the first of each kind in full, the others as a count with lines."""
+    kinds: dict[tuple[str, str], list[Diagnostic]] = {}
+    for diagnostic in diagnostics:
+        kinds.setdefault((diagnostic.source.file, diagnostic.code), []).append(diagnostic)
+    lines = []
+    for (_, code), found in kinds.items():
+        text = str(found[0])
+        if len(found) > 1:
+            others = ", ".join(str(d.source.line) for d in found[1 : places + 1])
+            more = ", ..." if len(found) > places + 1 else ""
+            text += f"\n    {len(found)} warnings of this kind ({code}); others on line {others}{more}"
+        lines.append(text)
+    return lines

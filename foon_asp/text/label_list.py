@@ -1,0 +1,11 @@
+"""Lists of object labels, one on each line: ``utensils.txt``."""
+
+from pathlib import Path
+
+from foon_asp.text.plain_file import read_plain_text
+
+
+def read_labels(file: Path) -> frozenset[str]:
+    """Read one label per line; blank lines and ``#`` comments are passed over."""
+    lines = (line.strip() for line in read_plain_text(file).split("\n"))
+    return frozenset(line for line in lines if line and not line.startswith("#"))
