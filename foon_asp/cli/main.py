@@ -1,6 +1,5 @@
 """``foon-asp``: the verbs, and how every ending becomes an exit code."""
 
-import atexit
 import gc
 import importlib
 import os
@@ -42,7 +41,6 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with the documented code."""
     # Networks are many small objects that stay to the end: looking for garbage among them finds none.
     gc.set_threshold(100_000, 50, 50)
-    atexit.register(gc.freeze)
     words = sys.argv[1:] if arguments is None else arguments
     debug = "--debug" in words
     try:

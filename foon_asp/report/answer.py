@@ -44,10 +44,15 @@ def unit_json(network: Network, unit: int) -> dict[str, object]:
 
 
 def outcome_json(outcome: Outcome) -> str:
-    """Give an outcome as JSON; README.md has the keys."""
+    """Give an outcome as JSON."""
+    return json.dumps(outcome_dict(outcome), indent=2, ensure_ascii=False) + "\n"
+
+
+def outcome_dict(outcome: Outcome) -> dict[str, object]:
+    """Give the keys and values of an outcome in JSON; docs/json.md describes them."""
     problem = outcome.problem
     goals = [str(problem.network.objects[o]) for o in problem.goals]
-    result = {
+    return {
         "goal": " + ".join(goals),
         "goals": goals,
         "containers": str(problem.containers),
@@ -55,16 +60,14 @@ def outcome_json(outcome: Outcome) -> str:
         "status": str(outcome.status),
         "costs": costs_json(outcome.costs),
         "lower_bound": {
-            str(objective): fraction_json(bound) if objective is Objective.SUCCESS else bound
-            for objective, bound in ((o, outcome.bounds[o]) for o in outcome.bounds)
-            if isinstance(bound, int | Fraction)
+            str(objective): fraction_json(Fraction(bound)) if objective is Objective.SUCCESS else bound
+            for objective, bound in outcome.bounds.items()
         },
         "units": None
         if outcome.units is None
         else [unit_json(problem.network, unit) for unit in outcome.units],
         "seconds": {phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
     }
-    return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
 
 
 def outcome_foon(outcome: Outcome) -> str:

@@ -1,0 +1,65 @@
+"""``foon-asp optima``: the optimum of every goal under every objective, in one table."""
+
+import click
+
+from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.progress import Progress
+from foon_asp.errors import UserError
+from foon_asp.problem import parse_objectives
+from foon_asp.report.optima_table import optima_json, print_optima
+from foon_asp.text import find_goal, listed_nodes
+
+
+@click.command("optima")
+@options.goal_option
+@click.option(
+    "--objective",
+    "objectives",
+    multiple=True,
+    default=("units", "inputs", "success"),
+    show_default=True,
+    metavar="LIST",
+    help="An objective, or a list by commas of which the first counts most; one row each.",
+)
+@options.containers_option
+@options.time_limit_option
+@options.format_option("text", "json")
+@options.data_options
+def command(
+    goals_named: tuple[str, ...],
+    objectives: tuple[str, ...],
+    containers: str,
+    time_limit: float | None,
+    format_: str,
+    **data: object,
+) -> ExitCode:
+    """Solve every goal of the goals file under several objectives and compare the optimal trees.
+
+    --time-limit is for each answer. Exits with 0 when every answer is proved, a goal without a tree
+    included, and with 3 when one was stopped at the limit.
+    """
+    lists = [parse_objectives([text]) for text in objectives]
+    question = options.read_question(**data)  # type: ignore[arg-type]
+    network, listed = question.data.network, question.data.goals
+    if goals_named:
+        goals = [find_goal(name, network, listed) for name in goals_named]
+    else:
+        goals = [node for entry in listed for node in listed_nodes(entry, network)]
+    if not goals:
+        raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
+    outcomes: list[Outcome] = []
+    with Progress() as progress:
+        for goal in goals:
+            problem = question.problem((goal,), containers)
+            for chosen in lists:
+                outcome = solve(problem, chosen, Settings(time_limit=time_limit), progress)
+                outcomes.append(outcome)
+    if format_ == "json":
+        click.echo(optima_json(outcomes), nl=False)
+    else:
+        print_optima(outcomes)
+    if any(outcome.status in {Status.FEASIBLE, Status.UNKNOWN} for outcome in outcomes):
+        return of_status(Status.UNKNOWN)
+    return ExitCode.DONE

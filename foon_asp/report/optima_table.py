@@ -1,0 +1,90 @@
+"""The table of optima: one row for each tree that is best by something."""
+
+import json
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from foon_asp.asp import Outcome, Status
+from foon_asp.problem import Objective
+from foon_asp.report.answer import outcome_dict
+
+_STYLES = {
+    Status.OPTIMAL: "green",
+    Status.FEASIBLE: "yellow",
+    Status.INFEASIBLE: "red",
+    Status.UNKNOWN: "yellow",
+}
+
+
+def optima_json(outcomes: Sequence[Outcome]) -> str:
+    """Give every outcome, as ``foon-asp solve --format json`` does, in a list."""
+    return json.dumps([outcome_dict(outcome) for outcome in outcomes], indent=2, ensure_ascii=False) + "\n"
+
+
+def print_optima(outcomes: Sequence[Outcome], console: Console | None = None) -> None:
+    """Print the table; outcomes of one goal stand together, and equal trees share a row."""
+    rule = outcomes[0].problem.containers
+    table = Table(
+        title=f"The best task trees ({rule} containers)",
+        caption="optimal: proved best by the objective named, whose figure is bold\n"
+        "infeasible: proved that no tree exists",
+        box=SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+        title_justify="left",
+        caption_justify="left",
+        title_style="bold",
+    )
+    table.add_column("goal", style="bold", no_wrap=True)
+    table.add_column("best by")
+    for heading in ("units", "inputs", "success"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("status", no_wrap=True)
+    table.add_column("seconds", justify="right", no_wrap=True)
+    asked = list(dict.fromkeys(outcome.objectives for outcome in outcomes))
+    for goal, rows in _by_goal(outcomes):
+        for place, row in enumerate(rows):
+            table.add_row(goal if place == 0 else "", *_cells(row, asked))
+    (console or Console()).print(table)
+
+
+def _by_goal(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, list[list[Outcome]]]]:
+    """Group outcomes by goal, and within a goal those of the same status and costs."""
+    goals: dict[tuple[int, ...], dict[object, list[Outcome]]] = {}
+    for outcome in outcomes:
+        rows = goals.setdefault(outcome.problem.goals, {})
+        rows.setdefault((outcome.status, outcome.costs), []).append(outcome)
+    for rows in goals.values():
+        problem = next(iter(rows.values()))[0].problem
+        labels = [problem.network.objects[goal].label for goal in problem.goals]
+        yield " + ".join(labels), list(rows.values())
+
+
+def _cells(row: list[Outcome], every: list[tuple[Objective, ...]]) -> list[Text | str]:
+    status, costs = row[0].status, row[0].costs
+    seconds = f"{sum(sum(outcome.seconds.values()) for outcome in row):.2f}"
+    names = [" then ".join(outcome.objectives) for outcome in row]
+    shown = Text(status, style=_STYLES[status])
+    if costs is None:
+        return ["", "", "", "", shown, seconds]
+    asked = {outcome.objectives[0] for outcome in row}
+
+    def figure(text: str, objective: Objective) -> Text:
+        return Text(text, style="bold green" if objective in asked and status is Status.OPTIMAL else "")
+
+    return [
+        "all" if len(names) == len(every) > 1 else ", ".join(names),
+        figure(str(costs.units), Objective.UNITS),
+        figure(str(costs.inputs), Objective.INPUTS),
+        "–" if costs.success is None else figure(_rate(costs.success), Objective.SUCCESS),
+        shown,
+        seconds,
+    ]
+
+
+def _rate(success: Fraction) -> str:
+    return f"{float(success):.4f}" if success >= Fraction(1, 1000) else f"{float(success):.3e}"

@@ -1,0 +1,80 @@
+"""What a simulation found, for people and for programs."""
+
+import json
+from collections.abc import Sequence
+
+from foon_asp.network import FunctionalUnit, Source
+from foon_asp.problem import Problem
+from foon_asp.proof import Obstacle, Simulation, Verdict
+from foon_asp.report.answer import costs_json, costs_text
+
+Listed = Sequence[tuple[FunctionalUnit, Source]]
+
+
+def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> str:
+    """Say whether the listed units execute, in which order, and what stops them."""
+    rule = f"{problem.containers} containers"
+    lines = [f"{simulation.verdict} ({rule})"]
+    if simulation.as_listed is not None:
+        lines.append("as listed: " + _obstacle_text(listed, simulation.as_listed))
+    if simulation.obstacle is not None:
+        lines.append("in any order: " + _obstacle_text(listed, simulation.obstacle))
+    foreign = [n for n, (unit, _) in enumerate(listed) if problem.network.unit_id(unit) is None]
+    lines += [f"unit {n + 1} is not one of the network: {_unit_text(listed, n)}" for n in foreign]
+    if not foreign:
+        lines.append(costs_text(problem.costs(_ids(problem, listed))))
+    repeated = len(listed) - len({unit for unit, _ in listed})
+    if repeated:
+        lines.append(f"{repeated} of the {len(listed)} listed units are repetitions and count once")
+    if simulation.verdict is Verdict.REORDERED:
+        lines.append("an order that executes:")
+        lines += [f"  {position + 1:>3}  {_unit_text(listed, position)}" for position in simulation.order]
+    return "\n".join(lines) + "\n"
+
+
+def verdict_json(problem: Problem, listed: Listed, simulation: Simulation) -> str:
+    """Give the same as JSON; positions count from 1."""
+    ids = [problem.network.unit_id(unit) for unit, _ in listed]
+    known = None not in ids
+    result = {
+        "goals": [str(problem.network.objects[o]) for o in problem.goals],
+        "containers": str(problem.containers),
+        "verdict": str(simulation.verdict),
+        "as_listed": _obstacle_json(listed, simulation.as_listed),
+        "in_any_order": _obstacle_json(listed, simulation.obstacle),
+        "order": [position + 1 for position in simulation.order],
+        "not_in_network": [position + 1 for position, unit in enumerate(ids) if unit is None],
+        "costs": costs_json(problem.costs(_ids(problem, listed))) if known else None,
+    }
+    return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
+
+
+def _ids(problem: Problem, listed: Listed) -> list[int]:
+    ids = (problem.network.unit_id(unit) for unit, _ in listed)
+    return [unit for unit in ids if unit is not None]
+
+
+def _unit_text(listed: Listed, position: int) -> str:
+    unit, source = listed[position]
+    return f"{unit.motion}    [{source}]"
+
+
+def _obstacle_text(listed: Listed, obstacle: Obstacle) -> str:
+    if obstacle.unit is None:
+        return f"every unit runs, but the goal is not made: {obstacle.missing}"
+    return f"unit {obstacle.unit + 1}, {_unit_text(listed, obstacle.unit)}, lacks {obstacle.missing}"
+
+
+def _obstacle_json(listed: Listed, obstacle: Obstacle | None) -> dict[str, object] | None:
+    if obstacle is None:
+        return None
+    if obstacle.unit is None:
+        return {"unit": None, "missing": str(obstacle.missing)}
+    unit, source = listed[obstacle.unit]
+    return {
+        "unit": obstacle.unit + 1,
+        "motion": unit.motion,
+        "file": source.file,
+        "line": source.line,
+        "missing": str(obstacle.missing),
+    }
