@@ -1,4 +1,4 @@
-"""Where the encodings and the bundled kitchen are: inside an installed package, or beside it in a checkout."""
+"""Where the encodings and the bundled kitchen are: in the installed package, or beside it in a checkout."""
 
 from pathlib import Path
 

@@ -15,7 +15,9 @@ from foon_asp.text import Diagnostic, InputError, Severity
 
 Signature = tuple[str, int]
 
-_MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)", re.S)
+_MESSAGE = re.compile(
+    r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)", re.S
+)
 
 
 @dataclass
@@ -182,9 +184,8 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
             raise UserError(f"no encoding in use has the constant {name!r}; known are {listed}")
         if defaults[name].startswith('"'):
             value = value if value.startswith('"') and value.endswith('"') else quote(value)
-        elif not re.fullmatch(r"-?\d{1,10}", value, re.ASCII) or not -(2**31) <= int(value) < 2**31:
-            if _is_number(defaults[name]):
-                raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number")
+        elif _is_number(defaults[name]) and not _fits(value):
+            raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
         arguments += ["-c", f"{name}={value}"]
     return arguments
 
@@ -203,6 +204,10 @@ def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list
 
 def _is_number(value: str) -> bool:
     return value in {"#sup", "#inf"} or value.lstrip("-").isdigit()
+
+
+def _fits(value: str) -> bool:
+    return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and -(2**31) <= int(value) < 2**31
 
 
 def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
@@ -229,5 +234,3 @@ def located(severity: Severity, code: str, message: str, source: Source) -> Diag
         if 0 < source.line <= len(lines):
             excerpt = lines[source.line - 1].rstrip("\r")
     return Diagnostic(severity, code, message, source, excerpt)
-
-

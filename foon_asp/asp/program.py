@@ -110,7 +110,9 @@ def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
     for option in options:
         name = option.partition("=")[0]
         if not name.startswith("--") and not name.startswith("-t"):
-            raise UserError(f"found {option!r} after --, expected options of clingo in their long form, --NAME=VALUE")
+            raise UserError(
+                f"found {option!r} after --, expected options of clingo in their long form, --NAME=VALUE"
+            )
         if name != "--" and any(reserved.startswith(name) for reserved in _RESERVED):
             raise UserError(f"the option {option!r} would change what an answer means, so it cannot be set")
     return options

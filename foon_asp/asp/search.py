@@ -69,12 +69,8 @@ def run(
             control.load(str(file))
         control.add("base", [], facts)
         control.ground([("base", [])])
-        configuration = control.configuration.solve
-        configuration.opt_mode = opt_mode
-        configuration.models = 1 if opt_mode == "ignore" else 0
-        configuration.enum_mode = "auto"
-        configuration.project = "no"
-        configuration.opt_stop = "no"
+        models = 1 if opt_mode == "ignore" else 0
+        _set(control, opt_mode=opt_mode, models=models, enum_mode="auto", project="no", opt_stop="no")
     except RuntimeError as error:
         from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
@@ -109,6 +105,12 @@ def run(
     result.exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
     result.solve_seconds = time.perf_counter() - grounded
     return result
+
+
+def _set(control: Control, **values: str | int) -> None:
+    """Set how to search, whatever the options say: a proof needs the whole search space."""
+    for name, value in values.items():
+        setattr(control.configuration.solve, name, value)
 
 
 def _used(model: Model) -> frozenset[int]:

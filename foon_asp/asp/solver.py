@@ -270,9 +270,7 @@ class _Solver:
                 raise BugError(message)
             raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
         self._spent("check", began)
-        return Outcome(
-            problem, self.objectives, status, listed, problem.costs(listed), bounds, self.seconds
-        )
+        return Outcome(problem, self.objectives, status, listed, problem.costs(listed), bounds, self.seconds)
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began

@@ -6,9 +6,9 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.network import TaskTree
 from foon_asp.proof import Verdict, simulate
 from foon_asp.report.verdict import verdict_json, verdict_text
-from foon_asp.network import TaskTree
 from foon_asp.text import FoonReader, summarize
 
 

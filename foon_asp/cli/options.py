@@ -17,51 +17,74 @@ _Command = TypeVar("_Command", bound=Callable[..., object])
 _PATH = click.Path(path_type=Path)
 
 _DATA_OPTIONS = (
-    click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with a network and what goes with it."),
-    click.option("--network", multiple=True, type=_PATH, metavar="FILE|DIR", help="FOON text to read; repeat to merge."),
+    click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with all of the following."),
+    click.option("--network", multiple=True, type=_PATH, metavar="FILE|DIR", help="FOON text; repeatable."),
     click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand (JSON)."),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
-    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name by label (JSON)."),
+    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name (JSON)."),
     click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
 )
 
 _CONSTRAINT_OPTIONS = (
-    click.option("--constraint", "constraints", multiple=True, type=_PATH, metavar="FILE.lp",
-                 help="Add an encoding of yours, or one of ours by name; repeatable."),
-    click.option("--encodings", type=_PATH, metavar="DIR", help="Replace our encodings by those of a folder."),
-)  # fmt: skip
+    click.option(
+        "--constraint",
+        "constraints",
+        multiple=True,
+        type=_PATH,
+        metavar="FILE.lp",
+        help="Add an encoding of yours, or one of ours by name; repeatable.",
+    ),
+    click.option("--encodings", type=_PATH, metavar="DIR", help="Use the encodings of a folder, not ours."),
+)
 
 goal_option = click.option(
-    "--goal", "goals_named", multiple=True, metavar="NAME",
+    "--goal",
+    "goals_named",
+    multiple=True,
+    metavar="NAME",
     help="Label or one-line notation of a goal; repeat for one tree that makes all.",
-)  # fmt: skip
+)
 
 objective_option = click.option(
-    "--objective", "objectives", multiple=True, default=("units",), show_default=True, metavar="LIST",
+    "--objective",
+    "objectives",
+    multiple=True,
+    default=("units",),
+    show_default=True,
+    metavar="LIST",
     help=f"What is best, most important first: {', '.join(Objective)}.",
-)  # fmt: skip
+)
 
 containers_option = click.option(
-    "--containers", type=click.Choice([str(rule) for rule in ContainerRule]), default="strict", show_default=True,
+    "--containers",
+    type=click.Choice([str(rule) for rule in ContainerRule]),
+    default="strict",
+    show_default=True,
     help="Whether a unit needs every input, or takes utensils that hold one of them as given.",
-)  # fmt: skip
+)
 
 constant_option = click.option(
     "-c", "constants", multiple=True, metavar="NAME=VALUE", help="Set a #const of an encoding; repeatable."
 )
 
 time_limit_option = click.option(
-    "--time-limit", type=click.FloatRange(min=0), metavar="SECONDS",
+    "--time-limit",
+    type=click.FloatRange(min=0),
+    metavar="SECONDS",
     help="Stop searching after so long, with the best tree and its bound.",
-)  # fmt: skip
+)
 
-debug_option = click.option("--debug", is_flag=True, expose_value=False, help="Show where an error was raised.")
+debug_option = click.option(
+    "--debug", is_flag=True, expose_value=False, help="Show where an error was raised."
+)
 
 
 def format_option(*formats: str) -> Callable[[_Command], _Command]:
     """Make ``--format`` with the formats of a verb, the first by default."""
-    return click.option("--format", "format_", type=click.Choice(formats), default=formats[0], show_default=True)
+    return click.option(
+        "--format", "format_", type=click.Choice(formats), default=formats[0], show_default=True
+    )
 
 
 def data_options(command: _Command) -> _Command:

@@ -37,13 +37,16 @@ class Progress(Reporter):
             self._live.stop()
 
     def warning(self, message: str) -> None:
+        """Print a warning at once."""
         click.echo(message, err=True)
 
     def tree(self, costs: Costs) -> None:
+        """Note the best tree."""
         self._tree = f"best tree: {costs_text(costs)}"
         self._show()
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
+        """Note the bound."""
         if objective is Objective.SUCCESS:
             self._bound = f"proved: success at most {success_text(Fraction(bound))}"
         else:

@@ -19,9 +19,7 @@ class FunctionalUnit:
     outputs: tuple[ObjectNode, ...]
 
     @classmethod
-    def of(
-        cls, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode]
-    ) -> "FunctionalUnit":
+    def of(cls, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode]) -> "FunctionalUnit":
         """Build a unit; a node listed twice on one side is kept once."""
         return cls(motion, tuple(dict.fromkeys(inputs)), tuple(dict.fromkeys(outputs)))
 

@@ -34,6 +34,8 @@ def print_optima(outcomes: Sequence[Outcome], console: Console | None = None) ->
         caption="optimal: proved best by the objective named, whose figure is bold\n"
         "infeasible: proved that no tree exists",
         box=SIMPLE_HEAD,
+        pad_edge=False,
+        show_edge=False,
         padding=(0, 1, 0, 0),
         title_justify="left",
         caption_justify="left",

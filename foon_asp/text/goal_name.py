@@ -35,7 +35,9 @@ def find_goal(name: str, network: Network, listed: Sequence[ListedObject] = ()) 
         return exact
     labelled = network.by_label.get(node.label, ())
     if labelled:
-        raise UserError(f"no object node is exactly {str(node)!r}; with that label there are\n" + _list(network, labelled))
+        raise UserError(
+            f"no object node is exactly {str(node)!r}; with that label there are\n" + _list(network, labelled)
+        )
     near = difflib.get_close_matches(node.label, network.by_label, n=3, cutoff=0.6)
     message = f"no object node has the label {node.label!r}"
     if near:
@@ -61,7 +63,8 @@ def _only(name: str, network: Network, candidates: Iterable[int]) -> int:
     found = list(dict.fromkeys(candidates))
     if len(found) > 1:
         raise UserError(
-            f"the goal {name!r} means {len(found)} object nodes; paste the one you mean\n" + _list(network, found)
+            f"the goal {name!r} means {len(found)} object nodes; paste the one you mean\n"
+            + _list(network, found)
         )
     return found[0]
 

@@ -45,7 +45,7 @@ Line = ObjectLine | StateLine | MotionLine
 
 
 class LineError(Exception):
-    """A line that the grammar does not accept: where (column from 1), what was found, what may stand there."""
+    """A line that the grammar does not accept: where (column from 1), what was found, what may be there."""
 
     def __init__(self, column: int, found: str, expected: tuple[str, ...]) -> None:
         wanted = ", ".join(expected[:-1]) + " or " + expected[-1] if len(expected) > 1 else "".join(expected)
@@ -192,7 +192,9 @@ def _related(name: str, bracket: Token, remarks: list[Remark]) -> str | Relation
         return Contents(name, items)
     related = bracket[1:-1].strip()
     if not related:
-        remarks.append(_remark(bracket, "empty-relation", f"nothing in {bracket}; read as the state {name!r}"))
+        remarks.append(
+            _remark(bracket, "empty-relation", f"nothing in {bracket}; read as the state {name!r}")
+        )
         return name
     if related != bracket[1:-1]:
         remarks.append(_remark(bracket, "outer-space", f"spaces around {related!r} left out"))

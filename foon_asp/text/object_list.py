@@ -86,7 +86,9 @@ def _elements(text: str) -> list[tuple[int, object]]:
 
 def _pattern(value: object) -> NodePattern:
     if not isinstance(value, dict):
-        raise ValueError(f'found {json.dumps(value)[:40]}, expected an object {{"label": ..., "states": [...]}}')
+        raise ValueError(
+            f'found {json.dumps(value)[:40]}, expected an object {{"label": ..., "states": [...]}}'
+        )
     if not value.keys() <= _KEYS:
         unknown = min(value.keys() - _KEYS)
         raise ValueError(f"found the key {unknown!r}, expected one of {', '.join(sorted(_KEYS))}")

@@ -1,15 +1,33 @@
 """Reading FOON text files into a network."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from foon_asp.network import Contents, Network, NetworkBuilder, ObjectNode, Relation, Source
-from foon_asp.network.functional_unit import FunctionalUnit
+from foon_asp.network import Contents, FunctionalUnit, Network, NetworkBuilder, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, Remark, StateLine, parse_line, parse_lines
+from foon_asp.text.line import (
+    Line,
+    LineError,
+    MotionLine,
+    ObjectLine,
+    Remark,
+    StateLine,
+    parse_line,
+    parse_lines,
+)
 from foon_asp.text.plain_file import read_plain_text
 
 _VIDEO = "# Source:"
+
+
+class ReadUnit(NamedTuple):
+    """One copy of a unit as it stands in a file, nodes in the order listed."""
+
+    motion: str
+    inputs: list[ObjectNode]
+    outputs: list[ObjectNode]
+    source: Source
 
 
 class FoonReader:
@@ -21,26 +39,26 @@ class FoonReader:
     """
 
     def __init__(self, lenient: bool = False) -> None:
+        self.lenient = lenient
         self.diagnostics: list[Diagnostic] = []
         self.left_out = 0
-        self._lenient = lenient
+        self.nodes: dict[str, ObjectNode] = {}  # by object block; only those without a remark
         self._lines: dict[str, Line | LineError] = {}
-        self._nodes: dict[str, ObjectNode] = {}  # only blocks that need no remark
 
     def read_network(self, files: Iterable[Path]) -> Network:
         """Read and merge files; raises :class:`InputError` with all errors of all files."""
         builder = NetworkBuilder()
         for file in files:
-            for motion, inputs, outputs, source in self.units(read_plain_text(file), str(file)):
-                builder.add(motion, inputs, outputs, source)
+            for unit in self.units(read_plain_text(file), str(file)):
+                builder.add(*unit)
         self.raise_errors()
         return builder.build()
 
     def read_tree(self, file: Path) -> list[tuple[FunctionalUnit, Source]]:
         """Read one file as units in listed order, copies kept; raises :class:`InputError`."""
         units = [
-            (FunctionalUnit.of(motion, inputs, outputs), source)
-            for motion, inputs, outputs, source in self.units(read_plain_text(file), str(file))
+            (FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs), unit.source)
+            for unit in self.units(read_plain_text(file), str(file))
         ]
         self.raise_errors()
         return units
@@ -51,57 +69,72 @@ class FoonReader:
         if errors:
             raise InputError(errors)
 
-    def units(
-        self, text: str, file: str
-    ) -> Iterator[tuple[str, list[ObjectNode], list[ObjectNode], Source]]:
-        """Give the units of a text in order, as motion, inputs, outputs and source."""
-        lines = text.replace("\r\n", "\n").split("\n")
-        self._parse_new(lines)
-        videos: tuple[str, ...] = ()
+    def units(self, text: str, file: str) -> Iterator[ReadUnit]:
+        """Give the units of a text in order; ``file`` is the name used in messages and sources."""
+        return _FileReading(self, text, file).units()
+
+    def parse_new(self, lines: Sequence[str]) -> None:
+        """Parse the lines not met before together; if one is at fault, each is parsed in its turn."""
+        known = self._lines
+        new = [line for line in dict.fromkeys(lines) if line[:1] in {"O", "S", "M"} and line not in known]
+        parsed = parse_lines(new)
+        if parsed is not None:
+            known.update(zip(new, parsed, strict=True))
+
+    def parse(self, line: str) -> Line | LineError:
+        """Parse a line, or remember what came of it."""
+        parsed = self._lines.get(line)
+        if parsed is None:
+            try:
+                parsed = parse_line(line)
+            except LineError as error:
+                parsed = error
+            self._lines[line] = parsed
+        return parsed
+
+
+class _FileReading:
+    """One pass over the lines of one file."""
+
+    def __init__(self, reader: FoonReader, text: str, file: str) -> None:
+        self.reader = reader
+        self.file = file
+        self.lines = text.replace("\r\n", "\n").split("\n")
+        self.videos: tuple[str, ...] = ()
+        reader.parse_new(self.lines)
+
+    def units(self) -> Iterator[ReadUnit]:
+        lines = self.lines
         header_open = True  # further "# Source:" lines add to the videos until a unit comes between
         start = 0
-        for end, line in enumerate(lines):
+        for index, line in enumerate(lines):
             first = line[:1]
             if first == "#":
                 if line.startswith(_VIDEO):
                     video = line[len(_VIDEO) :].strip()
-                    videos = (*videos, video) if header_open else (video,)
+                    self.videos = (*self.videos, video) if header_open else (video,)
                     header_open = True
             elif first == "/" and line.rstrip(" \t") == "//":
-                unit = self._unit(lines, start, end, file, videos)
+                unit = self._unit(start, index)
                 if unit:
                     header_open = False
                     yield unit
-                start = end + 1
-        unit = self._unit(lines, start, len(lines), file, videos)
+                start = index + 1
+        unit = self._unit(start, len(lines))
         if unit:
             last = next(i for i in reversed(range(len(lines))) if lines[i].strip())
-            self._warn(
-                "missing-separator",
-                "the last unit is not closed by //",
-                Source(file, last + 1, len(lines[last]) + 1),
-                lines[last],
-            )
+            self._warn("missing-separator", "the last unit is not closed by //", last, len(lines[last]) + 1)
             yield unit
 
-    def _unit(
-        self, lines: list[str], start: int, end: int, file: str, videos: tuple[str, ...]
-    ) -> tuple[str, list[ObjectNode], list[ObjectNode], Source] | None:
+    def _unit(self, start: int, end: int) -> ReadUnit | None:
         """Read the lines between two separators; ``None`` when they hold no unit."""
+        lines = self.lines
         motion: str | None = None
         inputs: list[ObjectNode] = []
         outputs: list[ObjectNode] = []
         side = inputs
         block: list[str] = []  # the open object block, which began on line block_start
         block_start = first_line = -1
-        nodes = self._nodes
-
-        def close_block() -> None:
-            node = nodes.get("\n".join(block)) or self._node(block, lines, block_start, file)
-            if node:
-                side.append(node)
-            block.clear()
-
         for index in range(start, end):
             line = lines[index]
             letter = line[:1]
@@ -113,55 +146,64 @@ class FoonReader:
             if first_line < 0:
                 first_line = index
             if block:
-                close_block()
+                self._close(block, block_start, side)
             if letter == "O":
                 block.append(line)
                 block_start = index
-                continue
-            parsed = self._parse(line)
-            if isinstance(parsed, MotionLine):
-                self._remark(parsed.remarks, file, index, line)
-                if motion is not None:
-                    message = "found a second motion in one unit, expected an object line or //"
-                    self._reject("second-motion", message, file, index, line)
-                    continue
-                if not inputs:
-                    message = "found a motion line, expected an object line: the unit has no inputs"
-                    self._reject("no-inputs", message, file, index, line, count=end - first_line)
-                    return None
-                motion, side = parsed.motion, outputs
-            elif isinstance(parsed, LineError):
-                self._reject("syntax", str(parsed), file, index, line, parsed.column)
+            elif letter == "M" and motion is None:
+                motion = self._motion(index)
+                side = outputs
             else:
-                message = "found a state line, expected an object line before it"
-                self._reject("state-without-object", message, file, index, line)
+                self._misplaced(index)
         if block:
-            close_block()
+            self._close(block, block_start, side)
         if first_line < 0:
             return None
-        source = Source(file, first_line + 1, 1, videos)
         if motion is None:
-            where = "the file ends" if end == len(lines) else "found //"
-            self._reject(
-                "no-motion",
-                f"{where}, expected a motion line: the unit that starts on line {first_line + 1} has no motion",
-                file,
-                min(end, len(lines) - 1),
-                lines[min(end, len(lines) - 1)],
-                count=end - first_line,
-            )
+            at_end = end == len(lines)
+            found = "the file ends" if at_end else "found //"
+            message = f"{found}, expected a motion line: the unit of line {first_line + 1} has no motion"
+            self._reject("no-motion", message, end - 1 if at_end else end, count=end - first_line)
+            return None
+        if not inputs:
+            message = f"expected an object line before the motion {motion!r}: the unit has no input objects"
+            self._reject("no-inputs", message, first_line, count=end - first_line)
             return None
         if not outputs:
-            self._warn(
-                "no-outputs", f"the unit {motion!r} has no output objects", source, lines[first_line]
-            )
-        return motion, inputs, outputs, source
+            self._warn("no-outputs", f"the unit {motion!r} has no output objects", first_line)
+        return ReadUnit(motion, inputs, outputs, Source(self.file, first_line + 1, 1, self.videos))
 
-    def _node(self, block: list[str], lines: list[str], start: int, file: str) -> ObjectNode | None:
+    def _motion(self, index: int) -> str | None:
+        parsed = self.reader.parse(self.lines[index])
+        if isinstance(parsed, MotionLine):
+            self._remark(parsed.remarks, index)
+            return parsed.motion
+        if isinstance(parsed, LineError):
+            self._reject("syntax", str(parsed), index, parsed.column)
+        return None
+
+    def _misplaced(self, index: int) -> None:
+        """Reject a line that is not understood or cannot stand where it does."""
+        parsed = self.reader.parse(self.lines[index])
+        if isinstance(parsed, LineError):
+            self._reject("syntax", str(parsed), index, parsed.column)
+        elif isinstance(parsed, StateLine):
+            message = "found a state line, expected an object line before it"
+            self._reject("state-without-object", message, index)
+        else:
+            message = "found a second motion in one unit, expected an object line or //"
+            self._reject("second-motion", message, index)
+
+    def _close(self, block: list[str], start: int, side: list[ObjectNode]) -> None:
+        node = self.reader.nodes.get("\n".join(block)) or self._node(block, start)
+        if node:
+            side.append(node)
+        block.clear()
+
+    def _node(self, block: list[str], start: int) -> ObjectNode | None:
         """Build the node of an object line and the state lines under it, and remember it.
 
-        The block begins at ``lines[start]``. ``None`` when the object line cannot be read; the state lines
-        under it are then lost with it.
+        ``None`` when the object line cannot be read; the state lines under it are then lost with it.
         """
         label = ""
         states: list[str] = []
@@ -169,7 +211,7 @@ class FoonReader:
         contents: list[Contents] = []
         clean = True
         for line in block:
-            parsed = self._parse(line)
+            parsed = self.reader.parse(line)
             if isinstance(parsed, StateLine):
                 attribute = parsed.attribute
                 if isinstance(attribute, str):
@@ -180,67 +222,47 @@ class FoonReader:
                     contents.append(attribute)
             elif isinstance(parsed, ObjectLine):
                 label = parsed.label
-            else:
-                clean = False
-                continue
-            if parsed.remarks:
+            if isinstance(parsed, LineError) or parsed.remarks:
                 clean = False
         if not clean:
-            self._explain(block, lines, start, file)
+            self._explain(block, start)
             if not label:
                 return None
         contents.sort()
         node = ObjectNode(label, frozenset(states), frozenset(relations), tuple(contents))
         if clean:
-            self._nodes["\n".join(block)] = node
+            self.reader.nodes["\n".join(block)] = node
         return node
 
-    def _explain(self, block: list[str], lines: list[str], start: int, file: str) -> None:
+    def _explain(self, block: list[str], start: int) -> None:
         """Say what is wrong with the lines of a block; comments may stand between them."""
         index = start - 1
         for line in block:
-            index = lines.index(line, index + 1)
-            parsed = self._parse(line)
+            index = self.lines.index(line, index + 1)
+            parsed = self.reader.parse(line)
             if not isinstance(parsed, LineError):
-                self._remark(parsed.remarks, file, index, line)
+                self._remark(parsed.remarks, index)
             elif index == start:
-                self._reject("syntax", str(parsed), file, index, line, parsed.column, count=len(block))
+                self._reject("syntax", str(parsed), index, parsed.column, count=len(block))
                 return
             else:
-                self._reject("syntax", str(parsed), file, index, line, parsed.column)
+                self._reject("syntax", str(parsed), index, parsed.column)
 
-    def _parse_new(self, lines: list[str]) -> None:
-        """Parse the lines not met before together; if one of them is at fault, each when it is its turn."""
-        new = [line for line in dict.fromkeys(lines) if line[:1] in {"O", "S", "M"} and line not in self._lines]
-        parsed = parse_lines(new)
-        if parsed is not None:
-            self._lines.update(zip(new, parsed, strict=True))
-
-    def _parse(self, line: str) -> Line | LineError:
-        parsed = self._lines.get(line)
-        if parsed is None:
-            try:
-                parsed = parse_line(line)
-            except LineError as error:
-                parsed = error
-            self._lines[line] = parsed
-        return parsed
-
-    def _remark(self, remarks: tuple[Remark, ...], file: str, index: int, line: str) -> None:
+    def _remark(self, remarks: tuple[Remark, ...], index: int) -> None:
         for column, code, message in remarks:
-            self._warn(code, message, Source(file, index + 1, column), line)
+            self._warn(code, message, index, column)
 
-    def _warn(self, code: str, message: str, source: Source, line: str) -> None:
-        self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, line))
+    def _warn(self, code: str, message: str, index: int, column: int = 1) -> None:
+        source = Source(self.file, index + 1, column)
+        self.reader.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, self.lines[index]))
 
-    def _reject(
-        self, code: str, message: str, file: str, index: int, line: str, column: int = 1, count: int = 1
-    ) -> None:
+    def _reject(self, code: str, message: str, index: int, column: int = 1, count: int = 1) -> None:
         """Note an error, or under ``lenient`` a warning that ``count`` lines were left out."""
+        reader = self.reader
         severity = Severity.ERROR
-        if self._lenient:
+        if reader.lenient:
             severity = Severity.WARNING
             message += "; left out"
-            self.left_out += count
-        source = Source(file, index + 1, column)
-        self.diagnostics.append(Diagnostic(severity, code, message, source, line))
+            reader.left_out += count
+        source = Source(self.file, index + 1, column)
+        reader.diagnostics.append(Diagnostic(severity, code, message, source, self.lines[index]))
