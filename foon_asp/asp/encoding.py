@@ -15,9 +15,8 @@ from foon_asp.text import Diagnostic, InputError, Severity
 
 Signature = tuple[str, int]
 
-_MESSAGE = re.compile(
-    r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)", re.S
-)
+# A message of clingo: file, line and column of what it is about, its kind, and its first line.
+_MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)")
 
 
 @dataclass
@@ -26,7 +25,8 @@ class Encoding:
 
     ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies with the place of their
     first use, ``declared`` those under ``#defined``. ``constants`` maps the names of ``#const`` statements
-    to their values as written. ``minimizes`` are the places of ``#minimize`` and weak constraints.
+    to their values as written. ``minimizes`` are the places of ``#minimize`` and weak constraints,
+    ``parts`` those of ``#program`` statements other than ``base``, ``scripts`` those of ``#script``.
     """
 
     path: Path
@@ -35,6 +35,7 @@ class Encoding:
     used: dict[Signature, Source] = field(default_factory=dict)
     constants: dict[str, str] = field(default_factory=dict)
     minimizes: list[Source] = field(default_factory=list)
+    parts: list[Source] = field(default_factory=list)
     scripts: list[Source] = field(default_factory=list)
 
 
@@ -67,6 +68,9 @@ class _Collector(Transformer):
         kind = statement.ast_type
         if kind == ASTType.Script:
             encoding.scripts.append(_source(statement.location))
+        elif kind == ASTType.Program:
+            if statement.name != "base" or statement.parameters:
+                encoding.parts.append(_source(statement.location))
         elif kind == ASTType.Definition:
             encoding.constants[statement.name] = str(statement.value)
         elif kind == ASTType.Defined:
@@ -132,6 +136,13 @@ def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Dia
         )
         for encoding in added
         for source in encoding.minimizes
+    ]
+    errors += [
+        located(
+            Severity.ERROR, "program-part", "found #program, expected rules: parts are not solved", source
+        )
+        for encoding in added
+        for source in encoding.parts
     ]
     if errors:
         raise InputError(errors)
@@ -214,15 +225,21 @@ def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
     """Turn clingo's messages about a program into one error with places and source lines."""
     errors: list[Diagnostic] = []
     for message in messages:
-        match = _MESSAGE.match(message)
-        if match and match["kind"] == "error":
-            text = re.sub(r"\s*\n\s*", " ", _NOTE.sub(r"(\1)", match["text"].strip()))
-            source = Source(match["file"], int(match["line"]), int(match["column"]))
-            errors.append(located(Severity.ERROR, "clingo", text, source))
+        first, *notes = (_MESSAGE.match(line) for line in message.strip().split("\n"))
+        if first is None or first["kind"] != "error":
+            continue
+        if first["text"].startswith("unsafe variables"):
+            for note in filter(None, notes):
+                text = f"the variable {note['text'].split()[0]} is unsafe: no literal of the body binds it"
+                errors.append(located(Severity.ERROR, "clingo", text, _message_source(note)))
+        else:
+            text = " ".join(line.strip() for line in [first["text"], *message.strip().split("\n")[1:]])
+            errors.append(located(Severity.ERROR, "clingo", text, _message_source(first)))
     return InputError(errors) if errors else UserError("".join(messages).strip() or otherwise)
 
 
-_NOTE = re.compile(r"\S+:\d+:\d+[-:\d]*: note: (.*)")
+def _message_source(match: re.Match[str]) -> Source:
+    return Source(match["file"], int(match["line"]), int(match["column"]))
 
 
 def located(severity: Severity, code: str, message: str, source: Source) -> Diagnostic:

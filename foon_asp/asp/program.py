@@ -32,7 +32,7 @@ _RESERVED = (
 
 
 class Settings(NamedTuple):
-    """How to solve.
+    """How to solve, and under which constraints.
 
     ``constraints`` are files added to the encodings; ``encodings`` is a folder that replaces ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
@@ -72,7 +72,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     for file in base:
         if not file.is_file():
             raise UserError(f"{file}: no such file; a folder of encodings holds {', '.join(ENCODING_FILES)}")
-    added = tuple(find_constraint(path) for path in settings.constraints)
+    added = tuple(dict.fromkeys(find_constraint(path) for path in settings.constraints))
     constants: list[str] = []
     if added or settings.encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
@@ -88,7 +88,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     return Program(
         (*base, *added),
         ours / _EXACT_SUCCESS,
-        (*CLINGO_OPTIONS, *constants, *_clingo_options(settings.clingo_options)),
+        (*constants, *_clingo_options(settings.clingo_options)),
         own=not added and settings.encodings is None,
     )
 
@@ -107,12 +107,11 @@ def find_constraint(path: Path) -> Path:
 
 
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
-    for option in options:
-        name = option.partition("=")[0]
-        if not name.startswith("--") and not name.startswith("-t"):
-            raise UserError(
-                f"found {option!r} after --, expected options of clingo in their long form, --NAME=VALUE"
-            )
-        if name != "--" and any(reserved.startswith(name) for reserved in _RESERVED):
+    """Look over the user's options; those of ours that they set differently give way."""
+    names = [option.partition("=")[0] for option in options]
+    for option, name in zip(options, names, strict=True):
+        if not (name.startswith("--") and len(name) > 2) and not name.startswith("-t"):
+            raise UserError(f"found {option!r} after --, expected options of clingo, --NAME=VALUE")
+        if any(reserved.startswith(name) for reserved in _RESERVED):
             raise UserError(f"the option {option!r} would change what an answer means, so it cannot be set")
-    return options
+    return (*(ours for ours in CLINGO_OPTIONS if ours.partition("=")[0] not in names), *options)

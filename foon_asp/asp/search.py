@@ -78,11 +78,17 @@ def run(
     grounded = time.perf_counter()
     result.ground_seconds = grounded - began
 
-    def model(model: Model) -> None:
-        result.units = _used(model)
-        result.cost = tuple(model.cost)
-        if on_tree:
-            on_tree(result.units)
+    faults: list[UserError] = []  # raised in clingo's thread, to be raised in ours
+
+    def model(model: Model) -> bool:
+        try:
+            result.units = _used(model)
+            result.cost = tuple(model.cost)
+            if on_tree:
+                on_tree(result.units)
+        except UserError as error:
+            faults.append(error)
+        return not faults
 
     def unsat(lower: Sequence[int]) -> None:
         result.lower = list(lower)
@@ -102,6 +108,8 @@ def run(
                 handle.cancel()
                 break
         ended = handle.get()
+    if faults:
+        raise faults[0]
     result.exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
     result.solve_seconds = time.perf_counter() - grounded
     return result

@@ -266,6 +266,11 @@ class _Solver:
         )
         if simulation.verdict is not Verdict.AS_LISTED:
             message = f"the tree found {simulation.verdict}"
+            if simulation.obstacle and simulation.obstacle.unit is not None:
+                unit = problem.network.unit(listed[simulation.obstacle.unit])
+                message += f" (the unit {unit.motion!r} lacks {simulation.obstacle.missing})"
+            elif simulation.obstacle:
+                message += f" (nothing in it makes {simulation.obstacle.missing})"
             if self.program.own:
                 raise BugError(message)
             raise UserError(f"{message}: check the constraints and encodings that were added or replaced")

@@ -57,7 +57,7 @@ def command(
     render = {"text": answer.outcome_text, "json": answer.outcome_json, "foon": answer.outcome_foon}[format_]
     click.echo(render(outcome), nl=False)
     if format_ == "text" and outcome.status is Status.INFEASIBLE:
-        for line in answer.makers_that_lack(problem, reach(problem).available):
+        for line in answer.why_infeasible(problem, reach(problem).available):
             click.echo(line)
     if format_ != "text" and outcome.status is not Status.OPTIMAL:
         click.echo(answer.headline(outcome), err=True)

@@ -154,9 +154,15 @@ def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
             maker.setdefault(o, number)
 
 
-def makers_that_lack(problem: Problem, available: bytearray, shown: int = 5) -> Iterator[str]:
-    """Say for each goal that cannot be made which units would make it and what the first of them lack."""
+def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> Iterator[str]:
+    """Say for each goal that cannot be made which units would make it and what the first of them lack.
+
+    ``available`` has a 1 for every object node at hand or made, by id. Where every goal can be made, it is
+    the constraints that leave no tree.
+    """
     network = problem.network
+    if all(available[goal] for goal in problem.goals):
+        yield "without the constraints there is one: together they rule out every tree"
     for goal in problem.goals:
         if available[goal]:
             continue
