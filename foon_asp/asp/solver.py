@@ -73,6 +73,7 @@ class _Solver:
         self.scale: RateScale | None = None
         self.seconds: dict[str, float] = {}
         self._facts: str | None = None
+        self._best: Costs | None = None  # the best tree reported
         if Objective.SUCCESS in self.levels and problem.rates is None:
             raise UserError(
                 "the objective success needs the success rates of the motions; give a rates file with --rates"
@@ -91,7 +92,7 @@ class _Solver:
             if some.units is None:
                 return self._outcome(Status.INFEASIBLE if some.exhausted else Status.UNKNOWN, None, {})
             incumbent = some.units
-        self.reporter.tree(self.problem.costs(incumbent))
+        self._report_tree(incumbent)
 
         ended = self._run(self.levels)
         if ended.units is None and ended.exhausted:
@@ -133,14 +134,14 @@ class _Solver:
     def _run(self, objectives: Sequence[Objective], extra: str = "", opt_mode: str = "opt") -> Run:
         facts = self.facts() + write_objectives(objectives) + extra
         files = (*self.program.files, self.program.exact_success) if extra else self.program.files
-        first = opt_mode == "opt" and not extra  # only then is every tree better than the ones before
+        first = opt_mode == "opt" and not extra
         ended = run(
             files,
             facts,
             self.program.arguments,
             self.deadline,
             opt_mode,
-            on_tree=(lambda units: self.reporter.tree(self._costs(units))) if first else None,
+            on_tree=self._report_tree if first else None,
             on_bound=self._report_bound if first else None,
         )
         self.seconds["ground"] = self.seconds.get("ground", 0.0) + ended.ground_seconds
@@ -235,13 +236,22 @@ class _Solver:
         return self.problem.costs(units).success or Fraction(0)
 
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
-        """Turn clingo's lower bounds, highest priority first, into bounds on the objectives."""
+        """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
+
+        Where it has none yet, no cost is below 0 and no success above 1.
+        """
         return {
             objective: self.scale.success_bound(max(0, value))
             if objective is Objective.SUCCESS and self.scale
             else max(0, value)
-            for objective, value in zip(self.levels, lower, strict=False)
+            for objective, value in zip(self.levels, lower or [0], strict=False)
         }
+
+    def _report_tree(self, units: Units) -> None:
+        costs = self._costs(units)
+        if self._best is None or costs.key(self.levels) < self._best.key(self.levels):
+            self._best = costs
+            self.reporter.tree(costs)
 
     def _report_bound(self, lower: Sequence[int]) -> None:
         for objective, bound in list(self._bounds(lower).items())[-1:]:

@@ -1,0 +1,5 @@
+"""``python -m foon_asp``."""
+
+from foon_asp.cli.main import main
+
+main()

@@ -1,0 +1,469 @@
+"""The encodings against their own documentation, and the ready-made constraints against a network by hand.
+
+The files are parsed here anew, with clingo's own parser and nothing of ``foon_asp.asp.encoding``.
+"""
+
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from click.testing import CliRunner
+from clingo import Control, Model
+from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
+
+from foon_asp.asp import Settings, program_facts
+from foon_asp.asp.facts import FACT_PREDICATES
+from foon_asp.cli.main import cli
+from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.resources import bundled_kitchen
+from foon_asp.text import find_data, find_goal, read_data
+
+FOLDER = Path(__file__).resolve().parent.parent / "encodings"
+README = (FOLDER / "README.md").read_text(encoding="utf-8")
+FILES = {path.relative_to(FOLDER).as_posix(): path for path in sorted(FOLDER.rglob("*.lp"))}
+CONSTRAINTS = [name for name in FILES if name.startswith("constraints/")]
+BASE = [FOLDER / name for name in ("task_tree.lp", "objectives.lp", "show.lp")]
+
+Signature = tuple[str, int]
+
+
+# --- What the files say.
+
+
+class Parsed(NamedTuple):
+    """The predicates and constants of one file; shown ones count as read."""
+
+    heads: set[Signature]
+    read: set[Signature]
+    declared: set[Signature]
+    constants: dict[str, str]
+    kinds: set[ASTType]
+
+
+@cache
+def parsed(name: str) -> Parsed:
+    statements: list[AST] = []
+    parse_files([str(FILES[name])], statements.append)
+    return survey(statements)
+
+
+def survey(statements: Iterable[AST]) -> Parsed:
+    found = Parsed(set(), set(), set(), {}, set())
+    for statement in statements:
+        found.kinds.add(statement.ast_type)
+        if statement.ast_type == ASTType.Definition:
+            found.constants[statement.name] = str(statement.value)
+        elif statement.ast_type == ASTType.Defined:
+            found.declared.add((statement.name, statement.arity))
+        elif statement.ast_type == ASTType.ShowSignature:
+            found.read.add((statement.name, statement.arity))
+        for signature, in_head in atoms(statement, in_head=False):
+            (found.heads if in_head else found.read).add(signature)
+    return found
+
+
+def atoms(node: AST, in_head: bool) -> Iterator[tuple[Signature, bool]]:
+    """Give every atom below a node with whether it stands in a head; conditions never do."""
+    if node.ast_type == ASTType.SymbolicAtom:
+        symbol = node.symbol
+        while symbol.ast_type == ASTType.UnaryOperation:
+            symbol = symbol.argument
+        yield (symbol.name, len(symbol.arguments)), in_head
+        return
+    for key in node.child_keys:
+        child = getattr(node, key)
+        opens = key == "head" or (node.ast_type == ASTType.External and key == "atom")
+        here = opens or (in_head and key not in {"condition", "body"})
+        for part in child if isinstance(child, ASTSequence) else [child]:
+            if isinstance(part, AST):
+                yield from atoms(part, here)
+
+
+def files_where(holds: Callable[[Parsed], bool]) -> set[str]:
+    return {name for name in FILES if holds(parsed(name))}
+
+
+def mentioned(name: str) -> set[Signature]:
+    found = parsed(name)
+    return found.heads | found.read | found.declared
+
+
+def test_survey_tells_heads_from_bodies() -> None:
+    program = """
+        a(X) : b(X) :- c(X), d : e(X).   { f(X) : g(X) } = 1.   1 { h : i ; j } 2 :- k.   -l(1).
+        :- m, not n(1,2), 1 < #sum { X,Y : o(X,Y), not p }.   #minimize { X@1 : q(X) }.   :~ r. [1]
+        #external s : t.   #show u/3.   #show v : w.   #defined x/1.   #const y = 1.
+        #sum { X : z(X) : aa(X) } :- bb.   cc(dd(1)).
+    """
+    statements: list[AST] = []
+    parse_string(program, statements.append)
+    found = survey(statements)
+    assert {name for name, _ in found.heads} == {"a", "f", "h", "j", "l", "s", "z", "cc"}
+    assert {name for name, _ in found.read} == {*"bcdegikmnopqrtuw", "aa", "bb"}
+    assert found.declared == {("x", 1)}
+    assert found.constants == {"y": "1"}
+
+
+# --- What the README says.
+
+CODE = re.compile(r"`([^`]+)`")
+ATOM = re.compile(r"([a-z]\w*)\(([^()]*)\)")
+
+
+class Row(NamedTuple):
+    """One row of the predicate table."""
+
+    atom: str
+    meaning: str
+    written: set[str]
+    read: set[str]
+
+
+def table(heading: str) -> list[list[str]]:
+    """Give the cells of the only table under a heading."""
+    section = README.split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
+    rows = [line for line in section.splitlines() if line.startswith("|")]
+    assert set(rows[1]) <= set("|- "), rows[1]
+    cells = [[cell.strip() for cell in re.split(r"(?<!\\)\|", row.strip("|"))] for row in rows[2:]]
+    assert all(len(row) == rows[0].count("|") - 1 for row in cells)
+    return cells
+
+
+def signature(atom: str) -> Signature:
+    match = ATOM.fullmatch(atom)
+    assert match, atom
+    return match[1], match[2].count(",") + 1
+
+
+@cache
+def predicates() -> dict[Signature, Row]:
+    rows: dict[Signature, Row] = {}
+    for predicate, meaning, written, read in table("Predicates"):
+        short, atom = CODE.findall(predicate)
+        name, _, arity = short.partition("/")
+        assert signature(atom) == (name, int(arity)), f"{short} is not {atom}"
+        assert signature(atom) not in rows, f"{short} is listed twice"
+        rows[signature(atom)] = Row(atom, meaning, set(CODE.findall(written)), set(CODE.findall(read)))
+    return rows
+
+
+def test_every_predicate_is_in_the_table_and_the_other_way_round() -> None:
+    in_files = {found for name in FILES for found in mentioned(name)}
+    assert set(predicates()) == in_files | set(FACT_PREDICATES.items())
+    assert all(row.meaning for row in predicates().values())
+
+
+@pytest.mark.parametrize("predicate", predicates(), ids="{0[0]}/{0[1]}".format)
+def test_written_by_and_read_by_are_what_the_files_say(predicate: Signature) -> None:
+    row = predicates()[predicate]
+    written = files_where(lambda file: predicate in file.heads)
+    if predicate in FACT_PREDICATES.items():
+        written.add("facts")
+    assert row.written == written
+    assert row.read == files_where(lambda file: predicate in file.read)
+
+
+def test_facts_are_what_the_table_says() -> None:
+    """All predicates but those of the second step are printed for a bundled goal, and no others."""
+    data = read_data(find_data(bundled_kitchen()))
+    goal = find_goal("macaroni and cheese", data.network, data.goals)
+    problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, ContainerRule.STRICT)
+    statements: list[AST] = []
+    parse_string(program_facts(problem, tuple(Objective), Settings()), statements.append)
+    second_step = {
+        predicate
+        for predicate, row in predicates().items()
+        if "facts" in row.written and "second step" in row.meaning
+    }
+    assert survey(statements).heads == set(FACT_PREDICATES.items()) - second_step
+    assert second_step == {("exponent", 3), ("seen", 3), ("wanted", 2)}
+
+
+def test_every_constant_is_in_the_table_with_its_own_value() -> None:
+    listed = [(CODE.findall(file)[0], CODE.findall(name)[0], CODE.findall(value)[0], meaning)
+              for name, file, value, meaning in table("Constants")]  # fmt: skip
+    in_files = [(name, *constant) for name in FILES for constant in parsed(name).constants.items()]
+    assert sorted(row[:3] for row in listed) == sorted(in_files)
+    assert all(row[3] for row in listed)
+
+
+def test_every_file_of_the_program_is_introduced() -> None:
+    listed = {CODE.findall(row[0])[0] for row in table("What makes a program")}
+    assert listed == {name.split("/")[0] + "/" if "/" in name else name for name in FILES}
+
+
+# --- What the headers say.
+
+
+@cache
+def header(name: str) -> list[str]:
+    """Give the comment block that opens a file, without its percent signs."""
+    lines = FILES[name].read_text(encoding="utf-8").split("\n")
+    end = next(number for number, line in enumerate(lines) if not line.startswith("%"))
+    return [line[1:] for line in lines[:end]]
+
+
+@cache
+def sections(name: str) -> dict[str, str]:
+    """Give the text of Purpose, Input and Output in a header, in its order."""
+    found: dict[str, str] = {}
+    current = ""
+    for line in header(name)[1:]:
+        match = re.match(r" (\w+):\s+(.+)$", line)
+        if match:
+            current = match[1]
+            assert current not in found, f"{name}: {current} comes twice"
+            found[current] = match[2]
+        elif current:
+            assert line == "" or line.startswith("   "), f"{name}: {line!r} belongs to no section"
+            found[current] += "\n" + line.strip()
+    return found
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_header_has_a_title_and_its_sections(name: str) -> None:
+    lines = header(name)
+    assert re.fullmatch(r" [A-Z].*\.", lines[0]), f"{name}: no title"
+    assert lines[1] == "", f"{name}: the title is one line, with an empty comment under it"
+    assert list(sections(name)) == ["Purpose", "Input", "Output"]
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_header_names_the_predicates_read_and_defined(name: str) -> None:
+    """Input are the predicates read from elsewhere, Output those defined here, spelt as in the table."""
+    found = parsed(name)
+    for section, expected in {"Input": found.read - found.heads, "Output": found.heads}.items():
+        text = sections(name)[section].strip()
+        named = [match[0] for match in ATOM.finditer(text)]
+        assert sorted(map(signature, named)) == sorted(expected), f"{name}: {section}"
+        assert (text == "(none)") == (not expected), f"{name}: {section}"
+        assert [predicates()[signature(atom)].atom for atom in named] == named, f"{name}: {section}"
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_header_examples_set_the_constants_of_the_file(name: str) -> None:
+    examples = re.findall(r"-c (\w+)=", "\n".join(header(name)))
+    assert sorted(examples) == sorted(parsed(name).constants)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_declared_predicates_are_used(name: str) -> None:
+    assert parsed(name).declared <= parsed(name).read
+
+
+# --- What may not be in the folder.
+
+
+def test_no_python_in_the_folder() -> None:
+    assert not [*FOLDER.rglob("*.py*"), *FOLDER.rglob("__pycache__")]
+
+
+def test_only_plain_statements() -> None:
+    shows = {ASTType.ShowSignature, ASTType.ShowTerm}
+    assert files_where(lambda file: bool(shows & file.kinds)) == {"show.lp"}
+    assert files_where(lambda file: ASTType.Minimize in file.kinds) == {"objectives.lp"}
+    assert not files_where(lambda file: ASTType.Script in file.kinds)
+
+
+# --- The ready-made constraints, in bare clingo.
+#
+#   slice:  apple, clean knife   → slices, knife
+#   wash 1: apple                → washed apple
+#   crank:  washed apple         → slices, peel
+#   wash 2: knife                → rinsed knife
+#
+# Apple and knife are at hand, slices are wanted. A tree slices or cranks, and to crank it washes the apple.
+
+KITCHEN_TABLE = """
+    unit(1). motion(1,"slice"). input(1,(1;2)). needs(1,(1;2)). output(1,(4;2)).
+    unit(2). motion(2,"wash").  input(2,1).     needs(2,1).     output(2,3).
+    unit(3). motion(3,"crank"). input(3,3).     needs(3,3).     output(3,(4;5)).
+    unit(4). motion(4,"wash").  input(4,2).     needs(4,2).     output(4,6).
+    object(1..6). kitchen(1..2). goal(4).
+    label((1;3),"apple"). label((2;6),"knife"). label(4,"slices"). label(5,"peel").
+    state(2,"clean"). state(3,"washed"). state(6,"rinsed").
+    inputs(1,2). inputs(2..4,1). ingredients(1..4,0). rate(1..4,500000). risk(1..4,1).
+    optimize(units,1).
+"""
+SLICE, WASH_APPLE, CRANK, WASH_KNIFE = 1, 2, 3, 4
+Tree = frozenset[int]
+CRANKED: Tree = frozenset({WASH_APPLE, CRANK})
+SLICED: Tree = frozenset({SLICE})
+TREES = {
+    SLICED,
+    SLICED | {WASH_APPLE},
+    SLICED | {WASH_KNIFE},
+    SLICED | {WASH_APPLE, WASH_KNIFE},
+    SLICED | CRANKED,
+    SLICED | CRANKED | {WASH_KNIFE},
+    CRANKED,
+    CRANKED | {WASH_KNIFE},
+}
+
+
+def clingo(files: Iterable[Path], constants: dict[str, str], facts: str, *options: str) -> list[Tree]:
+    """Give the answers of clingo in its order; fails at any message of clingo's."""
+    messages: list[str] = []
+    arguments = [argument for item in constants.items() for argument in ("-c", "=".join(item))]
+    control = Control([*arguments, *options], logger=lambda _, text: messages.append(text))
+    for file in files:
+        control.load(str(file))
+    control.add("base", [], facts)
+    control.ground([("base", [])])
+    assert not messages
+    trees: list[Tree] = []
+
+    def note(model: Model) -> None:
+        trees.append(frozenset(symbol.arguments[0].number for symbol in model.symbols(shown=True)))
+
+    control.solve(on_model=note)
+    assert not messages
+    return trees
+
+
+def all_trees(files: Iterable[Path], constants: dict[str, str], facts: str = KITCHEN_TABLE) -> list[Tree]:
+    return clingo(files, constants, facts, "--models=0", "--opt-mode=ignore")
+
+
+class Case(NamedTuple):
+    """One setting of a constraint: which of the trees are left, and the smallest of them."""
+
+    constraint: str
+    constants: dict[str, str]
+    keeps: Callable[[Tree], bool]
+    best: Tree | None
+
+
+CASES = [
+    Case("at_most_motion", {"limited_motion": '"wash"', "max_uses": "1"}, lambda t: not {2, 4} <= t, SLICED),
+    Case("at_most_motion", {"limited_motion": '"wash"', "max_uses": "0"}, lambda t: t == SLICED, SLICED),
+    Case("at_most_motion", {"limited_motion": '"slice"', "max_uses": "0"}, lambda t: SLICE not in t, CRANKED),
+    Case("at_most_motion", {"limited_motion": '"bake"', "max_uses": "0"}, lambda _: True, SLICED),
+    Case("at_most_motion", {"limited_motion": '"wash"'}, lambda _: True, SLICED),
+    Case("at_most_motion", {"max_uses": "0"}, lambda _: True, SLICED),
+    Case("at_most_units", {"max_units": "4"}, lambda _: True, SLICED),
+    Case("at_most_units", {"max_units": "2"}, lambda t: len(t) <= 2, SLICED),
+    Case("at_most_units", {"max_units": "1"}, lambda t: t == SLICED, SLICED),
+    Case("at_most_units", {"max_units": "0"}, lambda _: False, None),
+    Case("forbid_motion", {"forbidden_motion": '"slice"'}, lambda t: SLICE not in t, CRANKED),
+    Case("forbid_motion", {"forbidden_motion": '"wash"'}, lambda t: t == SLICED, SLICED),
+    Case("forbid_motion", {"forbidden_motion": '"bake"'}, lambda _: True, SLICED),
+    Case("forbid_object", {"forbidden_object": '"knife"'}, lambda t: t == CRANKED, CRANKED),
+    Case("forbid_object", {"forbidden_object": '"peel"'}, lambda t: CRANK not in t, SLICED),
+    Case("forbid_object", {"forbidden_object": '"apple"'}, lambda _: False, None),
+    Case("forbid_object", {"forbidden_object": '"oven"'}, lambda _: True, SLICED),
+    Case("require_motion", {"required_motion": '"crank"'}, lambda t: CRANK in t, CRANKED),
+    Case("require_motion", {"required_motion": '"wash"'}, lambda t: bool({2, 4} & t), CRANKED),
+    Case("require_motion", {"required_motion": '"slice"'}, lambda t: SLICE in t, SLICED),
+    Case("require_motion", {"required_motion": '"bake"'}, lambda _: False, None),
+]
+
+
+def test_trees_of_the_network_by_hand() -> None:
+    trees = all_trees(BASE, {})
+    assert len(trees) == len(TREES)
+    assert set(trees) == TREES
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.constraint} {case.constants}")
+def test_constraint_does_what_it_says(case: Case) -> None:
+    files = [*BASE, FILES[f"constraints/{case.constraint}.lp"]]
+    assert set(all_trees(files, case.constants)) == {tree for tree in TREES if case.keeps(tree)}
+    best = clingo(files, case.constants, KITCHEN_TABLE)
+    if case.best is None:
+        assert best == []
+    else:
+        assert len(best[-1]) == len(case.best)
+        assert case.keeps(best[-1])
+
+
+@pytest.mark.parametrize("name", CONSTRAINTS)
+def test_constraint_has_cases_and_without_its_constants_no_effect(name: str) -> None:
+    assert set(all_trees([*BASE, FILES[name]], {})) == TREES
+    cases = [case for case in CASES if FILES[name].stem == case.constraint]
+    assert {constant for case in cases for constant in case.constants} == set(parsed(name).constants)
+    assert all(value in {'""', "#sup", "#inf"} for value in parsed(name).constants.values())
+
+
+def test_constraints_do_not_disturb_each_other() -> None:
+    assert set(all_trees([*BASE, *(FILES[name] for name in CONSTRAINTS)], {})) == TREES
+
+
+def test_bare_clingo_wants_quotes_as_the_readme_says() -> None:
+    files = [*BASE, FILES["constraints/forbid_motion.lp"]]
+    assert """`-c forbidden_motion='"fry"'`""" in README
+    assert set(all_trees(files, {"forbidden_motion": "slice"})) == TREES
+    assert set(all_trees(files, {"forbidden_motion": '"slice"'})) == {CRANKED, CRANKED | {WASH_KNIFE}}
+
+
+def test_exact_success_rules_out_seen_products_and_keeps_the_wanted_one() -> None:
+    """With the rate of slice 2/3 and of all others 1/2, factors 0 and 1 being 2 and 3."""
+    files = [*BASE, FILES["exact_success.lp"]]
+    exponents = "exponent(1,0,1). exponent(1,1,-1). exponent(2..4,0,-1)."
+    seen_sliced = KITCHEN_TABLE + exponents + "seen(0,0,1). seen(0,1,-1)."
+    assert set(all_trees(files, {}, seen_sliced)) == TREES - {SLICED}
+    seen_quarter = KITCHEN_TABLE + exponents + "seen(7,0,-2). seen(7,1,0)."
+    assert set(all_trees(files, {}, seen_quarter)) == TREES - {CRANKED}
+    wanted_third = KITCHEN_TABLE + exponents + "wanted(0,0). wanted(1,-1)."
+    assert set(all_trees(files, {}, wanted_third)) == {SLICED | {WASH_APPLE}, SLICED | {WASH_KNIFE}}
+
+
+# --- The commands of the README.
+
+
+def run(words: list[str]) -> str:
+    """Run ``foon-asp``; fails unless it ends with 0 and says nothing on stderr."""
+    result = CliRunner().invoke(cli, words, standalone_mode=False)
+    assert result.exception is None, result.output
+    assert result.return_value == 0, result.output
+    assert result.stderr == ""
+    return result.stdout
+
+
+@pytest.mark.parametrize("name", CONSTRAINTS)
+def test_example_call_changes_the_tree(name: str) -> None:
+    rows = {CODE.findall(row[0])[0]: row for row in table("Ready-made constraints")}
+    assert sorted(rows) == CONSTRAINTS
+    program, *words = shlex.split(CODE.findall(rows[name][2])[-1])
+    assert program == "foon-asp"
+    assert words[words.index("--constraint") + 1] == FILES[name].stem
+    settings = [words[at + 1].partition("=")[0] for at, word in enumerate(words) if word == "-c"]
+    assert sorted(settings) == sorted(parsed(name).constants)
+    assert run([*words, "--format", "foon"]) != run(
+        [*words[: words.index("--constraint")], "--format", "foon"]
+    )
+
+
+def test_readme_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the README shows of writing a constraint works as shown, through clingo's own command."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "encodings").symlink_to(FOLDER)
+    constraint = README.split("```clingo\n", 1)[1].split("```", 1)[0]
+    assert constraint.count("\n") == 5
+    (tmp_path / "mine.lp").write_text(constraint, encoding="utf-8")
+    optima: list[int] = []
+    for block in re.findall(r"```sh\n(.*?)```", README, re.S):
+        for line in block.splitlines():
+            command, _, target = line.partition(" > ")
+            program, *words = shlex.split(command)
+            if program == "foon-asp":
+                output = run(words)
+                found = re.search(r"(\d+) units", output)
+                if words[0] == "solve" and found:
+                    optima.append(int(found[1]))
+            else:
+                assert program == "python"
+                output = subprocess.run(
+                    [sys.executable, *words], capture_output=True, text=True, check=True
+                ).stdout
+                assert "OPTIMUM FOUND" in output
+                optima.append(int(re.findall(r"Optimization: (\d+)", output)[-1]))
+            if target:
+                (tmp_path / target).write_text(output, encoding="utf-8")
+    assert optima == [2, 7, 7]

@@ -1,0 +1,127 @@
+"""A limit gives the best tree so far with its bound, and never a wrong claim."""
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.problem import Costs, Objective
+from foon_asp.proof import Verdict, simulate
+from foon_asp.text import write_units
+from tests.hard_problem import hard_problem
+
+
+class Recorder(Reporter):
+    def __init__(self) -> None:
+        self.trees: list[Costs] = []
+        self.bounds: list[int | Fraction] = []
+
+    def tree(self, costs: Costs) -> None:
+        self.trees.append(costs)
+
+    def bound(self, objective: Objective, bound: int | Fraction) -> None:
+        self.bounds.append(bound)
+
+
+@pytest.mark.parametrize("objective", [Objective.UNITS, Objective.SUCCESS])
+@pytest.mark.parametrize("seconds", [0, 1])
+def test_time_limit(objective: Objective, seconds: float) -> None:
+    problem, recorder = hard_problem(), Recorder()
+    began = time.monotonic()
+    outcome = solve(problem, (objective,), Settings(time_limit=seconds), recorder)
+    assert time.monotonic() - began < seconds + 3
+    assert outcome.status is Status.FEASIBLE
+    assert outcome.units is not None
+    assert outcome.costs == recorder.trees[-1]
+    objects = problem.network.objects
+    simulation = simulate(
+        problem.tree(outcome.units),
+        frozenset(objects[o] for o in problem.kitchen),
+        tuple(objects[o] for o in problem.goals),
+        problem.containers,
+        problem.utensils,
+    )
+    assert simulation.verdict is Verdict.AS_LISTED
+    keys = [costs.key((objective, Objective.UNITS)) for costs in recorder.trees]
+    assert keys == sorted(keys, reverse=True)
+    bound, value = outcome.bounds[objective], outcome.costs.measure(objective)
+    assert bound >= value if objective is Objective.SUCCESS else bound <= value
+
+
+def test_trees_improve_and_bounds_close_in_on_the_optimum() -> None:
+    recorder = Recorder()
+    outcome = solve(hard_problem(12, 8, 3, 3), (Objective.UNITS,), None, recorder)
+    assert outcome.status is Status.OPTIMAL
+    assert outcome.costs is not None
+    assert len(recorder.trees) > 2
+    assert recorder.trees[-1] == outcome.costs
+    assert recorder.bounds == sorted(recorder.bounds)
+    assert all(bound <= outcome.costs.units for bound in recorder.bounds)
+    assert outcome.bounds == {Objective.UNITS: outcome.costs.units}
+
+
+@pytest.fixture(scope="module")
+def hard_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the hard problem as a data folder."""
+    folder = tmp_path_factory.mktemp("hard")
+    problem = hard_problem()
+    network = problem.network
+    (folder / "FOON.txt").write_text(write_units(map(network.unit, range(len(network)))))
+    assert problem.rates is not None
+    rates = "".join(f"{motion}\t{float(rate):.3f}\n" for motion, rate in problem.rates.items())
+    (folder / "motion.txt").write_text(rates)
+    kitchen = [{"label": network.objects[o].label} for o in sorted(problem.kitchen)]
+    (folder / "kitchen.json").write_text(json.dumps(kitchen))
+    return folder
+
+
+def command(folder: Path, *more: str) -> list[str]:
+    goal = ["--goal", "part 11 0", "--data", str(folder)]
+    return [sys.executable, "-m", "foon_asp", "solve", *goal, *more]
+
+
+def test_ctrl_c_gives_the_best_tree_and_exits_with_3(hard_folder: Path) -> None:
+    with subprocess.Popen(
+        command(hard_folder, "--format", "json"), stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        time.sleep(2.5)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=20)
+    result = json.loads(output)
+    assert process.returncode == 3, errors
+    assert result["status"] == "feasible"
+    assert 0 < result["lower_bound"]["units"] <= result["costs"]["units"] == len(result["units"])
+
+
+def test_progress_is_shown_on_a_terminal_only(hard_folder: Path) -> None:
+    arguments = command(hard_folder, "--time-limit", "2", "--format", "json")
+    piped = subprocess.run(arguments, capture_output=True, check=False)
+    assert piped.returncode == 3
+    assert b"best tree" not in piped.stderr
+
+    master, slave = pty.openpty()
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=slave) as process:
+        os.close(slave)
+        seen = b""
+        while True:
+            try:
+                chunk = os.read(master, 4096)
+            except OSError:  # the terminal is closed when the program ends
+                break
+            if not chunk:
+                break
+            seen += chunk
+        assert process.stdout is not None
+        output = process.stdout.read()
+    os.close(master)
+    assert b"best tree" in seen
+    assert b"at least" in seen
+    assert json.loads(output)["status"] == "feasible"
