@@ -13,16 +13,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from click.testing import CliRunner
 from clingo import Control, Model
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 
 from foon_asp.asp import Settings, program_facts
 from foon_asp.asp.facts import FACT_PREDICATES
-from foon_asp.cli.main import cli
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import find_data, find_goal, read_data
+from tests.conftest import Cli, Ran
 
 FOLDER = Path(__file__).resolve().parent.parent / "encodings"
 README = (FOLDER / "README.md").read_text(encoding="utf-8")
@@ -79,7 +78,8 @@ def atoms(node: AST, in_head: bool) -> Iterator[tuple[Signature, bool]]:
     for key in node.child_keys:
         child = getattr(node, key)
         opens = key == "head" or (node.ast_type == ASTType.External and key == "atom")
-        here = opens or (in_head and key not in {"condition", "body"})
+        closes = key == "body" or (node.ast_type == ASTType.ConditionalLiteral and key == "condition")
+        here = opens or (in_head and not closes)
         for part in child if isinstance(child, ASTSequence) else [child]:
             if isinstance(part, AST):
                 yield from atoms(part, here)
@@ -186,11 +186,12 @@ def test_facts_are_what_the_table_says() -> None:
 
 
 def test_every_constant_is_in_the_table_with_its_own_value() -> None:
-    listed = [(CODE.findall(file)[0], CODE.findall(name)[0], CODE.findall(value)[0], meaning)
-              for name, file, value, meaning in table("Constants")]  # fmt: skip
+    listed: list[tuple[str, str, str]] = []
+    for constant, file, value, meaning in table("Constants"):
+        assert meaning
+        listed.append((CODE.findall(file)[0], CODE.findall(constant)[0], CODE.findall(value)[0]))
     in_files = [(name, *constant) for name in FILES for constant in parsed(name).constants.items()]
-    assert sorted(row[:3] for row in listed) == sorted(in_files)
-    assert all(row[3] for row in listed)
+    assert sorted(listed) == sorted(in_files)
 
 
 def test_every_file_of_the_program_is_introduced() -> None:
@@ -295,6 +296,7 @@ SLICE, WASH_APPLE, CRANK, WASH_KNIFE = 1, 2, 3, 4
 Tree = frozenset[int]
 CRANKED: Tree = frozenset({WASH_APPLE, CRANK})
 SLICED: Tree = frozenset({SLICE})
+WASHES: Tree = frozenset({WASH_APPLE, WASH_KNIFE})
 TREES = {
     SLICED,
     SLICED | {WASH_APPLE},
@@ -341,7 +343,12 @@ class Case(NamedTuple):
 
 
 CASES = [
-    Case("at_most_motion", {"limited_motion": '"wash"', "max_uses": "1"}, lambda t: not {2, 4} <= t, SLICED),
+    Case(
+        "at_most_motion",
+        {"limited_motion": '"wash"', "max_uses": "1"},
+        lambda t: not t.issuperset(WASHES),
+        SLICED,
+    ),
     Case("at_most_motion", {"limited_motion": '"wash"', "max_uses": "0"}, lambda t: t == SLICED, SLICED),
     Case("at_most_motion", {"limited_motion": '"slice"', "max_uses": "0"}, lambda t: SLICE not in t, CRANKED),
     Case("at_most_motion", {"limited_motion": '"bake"', "max_uses": "0"}, lambda _: True, SLICED),
@@ -359,7 +366,7 @@ CASES = [
     Case("forbid_object", {"forbidden_object": '"apple"'}, lambda _: False, None),
     Case("forbid_object", {"forbidden_object": '"oven"'}, lambda _: True, SLICED),
     Case("require_motion", {"required_motion": '"crank"'}, lambda t: CRANK in t, CRANKED),
-    Case("require_motion", {"required_motion": '"wash"'}, lambda t: bool({2, 4} & t), CRANKED),
+    Case("require_motion", {"required_motion": '"wash"'}, lambda t: bool(WASHES & t), CRANKED),
     Case("require_motion", {"required_motion": '"slice"'}, lambda t: SLICE in t, SLICED),
     Case("require_motion", {"required_motion": '"bake"'}, lambda _: False, None),
 ]
@@ -417,17 +424,14 @@ def test_exact_success_rules_out_seen_products_and_keeps_the_wanted_one() -> Non
 # --- The commands of the README.
 
 
-def run(words: list[str]) -> str:
-    """Run ``foon-asp``; fails unless it ends with 0 and says nothing on stderr."""
-    result = CliRunner().invoke(cli, words, standalone_mode=False)
-    assert result.exception is None, result.output
-    assert result.return_value == 0, result.output
-    assert result.stderr == ""
-    return result.stdout
+def quietly(ran: Ran) -> str:
+    """Give the output of a command that ended with 0 and had nothing to say on stderr."""
+    assert (ran.code, ran.err) == (0, "")
+    return ran.out
 
 
 @pytest.mark.parametrize("name", CONSTRAINTS)
-def test_example_call_changes_the_tree(name: str) -> None:
+def test_example_call_changes_the_tree(name: str, cli: Cli) -> None:
     rows = {CODE.findall(row[0])[0]: row for row in table("Ready-made constraints")}
     assert sorted(rows) == CONSTRAINTS
     program, *words = shlex.split(CODE.findall(rows[name][2])[-1])
@@ -435,12 +439,12 @@ def test_example_call_changes_the_tree(name: str) -> None:
     assert words[words.index("--constraint") + 1] == FILES[name].stem
     settings = [words[at + 1].partition("=")[0] for at, word in enumerate(words) if word == "-c"]
     assert sorted(settings) == sorted(parsed(name).constants)
-    assert run([*words, "--format", "foon"]) != run(
-        [*words[: words.index("--constraint")], "--format", "foon"]
-    )
+    unconstrained = words[: words.index("--constraint")]
+    constrained, free = (quietly(cli(*call, "--format", "foon")) for call in (words, unconstrained))
+    assert constrained != free
 
 
-def test_readme_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_readme_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cli: Cli) -> None:
     """What the README shows of writing a constraint works as shown, through clingo's own command."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "encodings").symlink_to(FOLDER)
@@ -453,7 +457,7 @@ def test_readme_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
             command, _, target = line.partition(" > ")
             program, *words = shlex.split(command)
             if program == "foon-asp":
-                output = run(words)
+                output = quietly(cli(*words))
                 found = re.search(r"(\d+) units", output)
                 if words[0] == "solve" and found:
                     optima.append(int(found[1]))
@@ -467,3 +471,24 @@ def test_readme_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
             if target:
                 (tmp_path / target).write_text(output, encoding="utf-8")
     assert optima == [2, 7, 7]
+
+
+@pytest.mark.xfail(strict=True, reason="a constraint file that redefines what is measured is taken as it is")
+@pytest.mark.parametrize(
+    ("rule", "objective"),
+    [
+        ('inputs(U,9) :- motion(U,"crush").', "inputs"),
+        ('ingredients(U,9) :- motion(U,"crush").', "inputs+ingredients"),
+        ('risk(U,99999999) :- motion(U,"pound").', "success"),
+        ("optimize(inputs,5).", "units"),
+        ("wanted(0,9). exponent(U,0,9) :- unit(U).", "success"),
+    ],
+    ids=["inputs", "ingredients", "risk", "optimize", "wanted"],
+)
+def test_a_constraint_does_not_change_what_is_measured(
+    rule: str, objective: str, tmp_path: Path, cli: Cli
+) -> None:
+    """Written into the predicates of objectives, it is the user's fault, and no claim is made."""
+    (tmp_path / "mine.lp").write_text(rule, encoding="utf-8")
+    ran = cli("solve", "--goal", "ice", "--objective", objective, "--constraint", tmp_path / "mine.lp")
+    assert (ran.code, ran.out) == (2, "")

@@ -145,7 +145,8 @@ def read_question(
     for text in summarize(data.warnings):
         click.echo(text, err=True)
     if data.left_out:
-        click.echo(f"warning: {data.left_out} lines were left out", err=True)
+        lines = "1 line" if data.left_out == 1 else f"{data.left_out} lines"
+        click.echo(f"warning: {lines} left out", err=True)
     if files.kitchen is None:
         click.echo("warning: no kitchen is given, so nothing is at hand; name one with --kitchen", err=True)
     return Question(data, seconds)

@@ -1,0 +1,57 @@
+"""What tests share: the bundled kitchen, the real corpus where it is at hand, and the command line."""
+
+import io
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from foon_asp.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[1]
+CORPUS = ROOT.parent / "shared" / "corpus"
+
+
+class Ran(NamedTuple):
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> Any:
+        """Parse what was printed."""
+        return json.loads(self.out)
+
+
+Cli = Callable[..., Ran]
+
+
+@pytest.fixture
+def cli(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Cli:
+    """Run ``foon-asp`` with words and give exit code, stdout and stderr."""
+    monkeypatch.setattr(sys, "stdin", io.StringIO())
+
+    def run(*words: str | Path) -> Ran:
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as ended:
+            main([str(word) for word in words])
+        captured = capsys.readouterr()
+        code = ended.value.code
+        assert isinstance(code, int)
+        return Ran(code, captured.out, captured.err)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def universal() -> Path:
+    """Give the folder of the real universal FOON, or skip."""
+    folder = CORPUS / "universal"
+    if not folder.is_dir():
+        pytest.skip(f"the real corpus is not at {CORPUS}")
+    return folder

@@ -1,0 +1,178 @@
+"""The house: who may import whom, who may print, how modules are named, what is documented."""
+
+import ast
+import tomllib
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "foon_asp"
+MODULES = {path.relative_to(ROOT).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+# From the ground up. A room may import from the floors below its own and from itself. The face is
+# foon_asp/__init__.py. Rooms that are planned and not built yet are named too.
+FACE = "the face"
+FLOORS = (
+    {"errors", "resources"},
+    {"network"},
+    {"text", "problem"},
+    {"asp", "search", "proof"},
+    {"explain", "report"},
+    {FACE},
+    {"cli"},
+    {"__main__"},
+)
+
+# The only imports within a floor, each one way.
+SIDEWAYS = {
+    ("resources", "errors"): "a broken installation is reported as such",
+    ("asp", "proof"): "every tree found is simulated before it is given out",
+}
+
+# What a room may not import although, or as if, the floors allowed it.
+FORBIDDEN = {
+    ("network", "errors"): "network imports nothing of ours",
+    ("network", "resources"): "network imports nothing of ours",
+    ("proof", "asp"): "proof is what the solver is held against",
+    ("proof", "search"): "proof is what the searches are held against",
+}
+
+# The only rooms that may know a third-party library.
+LIBRARIES = {
+    "clingo": {"asp"},
+    "lark": {"text"},
+    "click": {"cli"},
+    "rich": {"report", "cli"},
+}
+
+# The only module outside cli/ that prints: a rich table has to know the width of its console.
+PRINTS = {"foon_asp/report/optima_table.py"}
+
+MEANINGLESS = {"common", "helper", "helpers", "misc", "tools", "util", "utils"}
+
+
+@cache
+def tree(module: str) -> ast.Module:
+    return ast.parse(MODULES[module].read_text(encoding="utf-8"), module)
+
+
+def room(module: str) -> str:
+    """Give the room of a module, given by path or by dotted name."""
+    parts = module.removesuffix(".py").replace("/", ".").split(".")
+    return FACE if len(parts) == 1 or parts[1] == "__init__" else parts[1]
+
+
+def imports(module: str) -> Iterator[tuple[int, str]]:
+    """Give every import of a module, wherever it stands, as line and dotted name."""
+    for node in ast.walk(tree(module)):
+        if isinstance(node, ast.Import):
+            yield from ((node.lineno, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{module}:{node.lineno}: a relative import"
+            assert node.module
+            if node.module == "foon_asp":  # of the face itself, or of a room as a whole
+                rooms = {name for floor in FLOORS for name in floor}
+                for alias in node.names:
+                    yield node.lineno, f"foon_asp.{alias.name}" if alias.name in rooms else "foon_asp"
+            else:
+                yield node.lineno, node.module
+
+
+def floor(name: str) -> int:
+    return next(number for number, rooms in enumerate(FLOORS) if name in rooms)
+
+
+def may_import(here: str, there: str) -> bool:
+    if here == there:
+        return True
+    return (here, there) not in FORBIDDEN and (floor(there) < floor(here) or (here, there) in SIDEWAYS)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_module_is_in_a_known_room(module: str) -> None:
+    assert any(room(module) in rooms for rooms in FLOORS), f"{module}: say in FLOORS where {room(module)} is"
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_imports_go_downwards(module: str) -> None:
+    here = room(module)
+    wrong = [
+        f"{module}:{line}: {here} imports {name}"
+        for line, name in imports(module)
+        if name.split(".")[0] == "foon_asp" and not may_import(here, room(name))
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_every_exception_is_needed() -> None:
+    taken = {(room(module), room(name)) for module in MODULES for _, name in imports(module)}
+    assert set(SIDEWAYS) <= taken
+    assert all(floor(here) == floor(there) for here, there in SIDEWAYS)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_libraries_stay_in_their_rooms(module: str) -> None:
+    wrong = [
+        f"{module}:{line}: {name}"
+        for line, name in imports(module)
+        if room(module) not in LIBRARIES.get(name.split(".")[0], {room(module)})
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_libraries_are_the_declared_dependencies() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert {line.partition(">")[0].strip() for line in project["dependencies"]} == set(LIBRARIES)
+
+
+def writes(call: ast.Call) -> bool:
+    """Whether a call writes to stdout or stderr: print, .print, .echo, .print_exc, sys.stdout.write, ..."""
+    function = call.func
+    if isinstance(function, ast.Name):
+        return function.id in {"print", "echo"}
+    return isinstance(function, ast.Attribute) and (
+        function.attr in {"print", "echo", "secho", "print_exc", "print_exception"}
+        or ast.unparse(function) in {f"sys.{stream}.write" for stream in ("stdout", "stderr")}
+    )
+
+
+def test_nothing_but_the_command_line_prints() -> None:
+    printing = {
+        module
+        for module in MODULES
+        if room(module) != "cli"
+        and any(isinstance(node, ast.Call) and writes(node) for node in ast.walk(tree(module)))
+    }
+    assert printing == PRINTS
+
+
+def test_module_names_mean_something() -> None:
+    parts = {part for module in MODULES for part in module.removesuffix(".py").split("/")}
+    assert not MEANINGLESS & parts
+
+
+def public(
+    node: ast.Module | ast.ClassDef,
+) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef]:
+    """Give the public classes and functions of a module or class, and those of its public classes."""
+    for child in node.body:
+        if not isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            continue
+        if not child.name.startswith("_"):
+            yield child
+            if isinstance(child, ast.ClassDef):
+                yield from public(child)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_what_is_public_is_documented(module: str) -> None:
+    assert ast.get_docstring(tree(module)), f"{module}: no docstring"
+    silent = [
+        f"{module}:{node.lineno}: {node.name} has no docstring"
+        for node in public(tree(module))
+        if not ast.get_docstring(node)
+    ]
+    assert not silent, "\n".join(silent)

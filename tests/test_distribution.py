@@ -1,0 +1,146 @@
+"""The sdist and the wheel: complete, and working where there is no checkout."""
+
+import json
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+pytestmark = pytest.mark.slow
+
+
+def run(*arguments: str | Path, cwd: Path, **environment: str) -> str:
+    """Run Python in a folder and give its stdout; fails with its stderr when it does not end with 0."""
+    command = [sys.executable, *map(str, arguments)]
+    variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    ended = subprocess.run(
+        command, cwd=cwd, env=variables | environment, capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 0, f"{command} ended with {ended.returncode}\n{ended.stderr}"
+    return ended.stdout
+
+
+def files_in(folder: str) -> set[str]:
+    """Give the files of a folder of the checkout, relative to the checkout."""
+    paths = (path for path in (ROOT / folder).rglob("*") if path.is_file())
+    return {path.relative_to(ROOT).as_posix() for path in paths if "__pycache__" not in path.parts}
+
+
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the sdist from the checkout."""
+    folder = tmp_path_factory.mktemp("sdist")
+    run("-m", "hatchling", "build", "-t", "sdist", "-d", folder, cwd=ROOT)
+    (built,) = folder.glob("*.tar.gz")
+    return built
+
+
+@pytest.fixture(scope="module")
+def unpacked(sdist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Unpack the sdist."""
+    folder = tmp_path_factory.mktemp("unpacked")
+    with tarfile.open(sdist) as archive:
+        archive.extractall(folder, filter="data")
+    (top,) = folder.iterdir()
+    return top
+
+
+@pytest.fixture(scope="module")
+def wheel(unpacked: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the wheel from the unpacked sdist, as installers do."""
+    folder = tmp_path_factory.mktemp("wheel")
+    run("-m", "hatchling", "build", "-t", "wheel", "-d", folder, cwd=unpacked)
+    (built,) = folder.glob("*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Install the wheel on its own; its dependencies are those of the running Python."""
+    folder = tmp_path_factory.mktemp("installed")
+    run(
+        *("-m", "pip", "--disable-pip-version-check", "install", "--quiet"),
+        *("--no-deps", "--no-index", "--target", folder, wheel),
+        cwd=folder,
+    )
+    return folder
+
+
+def test_sdist_has_everything_to_work_on(unpacked: Path) -> None:
+    packed = {path.relative_to(unpacked).as_posix() for path in unpacked.rglob("*") if path.is_file()}
+    expected = {"LICENSE", "README.md", "pyproject.toml", "Makefile", ".ci/run"}
+    for folder in ("foon_asp", "encodings", "data", "tests", "benchmarks", "docs"):
+        expected |= files_in(folder)
+    assert sorted(expected - packed) == []
+    assert sorted(path for path in packed if path.endswith(".pyc") or path.startswith(".venv")) == []
+
+
+def test_wheel_has_encodings_data_and_grammar(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+        contents = {name: archive.read(name) for name in names}
+    assert len(names) == len(set(names))
+    assert {name.split("/")[0].partition("-")[0] for name in names} == {"foon_asp"}
+    beside = files_in("encodings") | files_in("data")
+    assert any(name.endswith(".lp") for name in beside)
+    assert any(name.endswith("README.md") for name in beside)
+    for name in beside:
+        assert contents[f"foon_asp/{name}"] == (ROOT / name).read_bytes()
+    for name in files_in("foon_asp"):
+        assert contents[name] == (ROOT / name).read_bytes()
+    assert {"foon_asp/text/foon.lark", "foon_asp/py.typed"} <= set(names)
+    packed = {name for name in names if not name.split("/")[0].endswith(".dist-info")}
+    assert sorted(packed - {f"foon_asp/{name}" for name in beside} - files_in("foon_asp")) == []
+    (entry_points,) = (name for name in names if name.endswith("entry_points.txt"))
+    assert "foon-asp = foon_asp.cli.main:main" in contents[entry_points].decode()
+
+
+def test_installed_wheel_finds_its_own_files(installed: Path, tmp_path: Path) -> None:
+    program = (
+        "import json, foon_asp, foon_asp.resources as r;"
+        "print(json.dumps([foon_asp.__file__, str(r.encodings_folder()), str(r.bundled_kitchen())]))"
+    )
+    found = json.loads(run("-c", program, cwd=tmp_path, PYTHONPATH=str(installed)))
+    package = installed.resolve() / "foon_asp"
+    assert list(map(Path, found)) == [
+        package / "__init__.py",
+        package / "encodings",
+        package / "data" / "kitchen",
+    ]
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        ["-c", "import sys; from foon_asp.cli.main import main; main(sys.argv[1:])"],
+        ["-m", "foon_asp"],
+        ["{installed}/bin/foon-asp"],
+    ],
+    ids=["main", "module", "script"],
+)
+def test_installed_wheel_solves_in_an_empty_folder(entry: list[str], installed: Path, tmp_path: Path) -> None:
+    if entry[0].startswith("{") and os.name == "nt":
+        pytest.skip("the script is an .exe there")
+    command = [word.format(installed=installed) for word in entry]
+    question = ["solve", "--goal", "ice", "--format", "json"]
+    answer = json.loads(run(*command, *question, cwd=tmp_path, PYTHONPATH=str(installed)))
+    assert answer["status"] == "optimal"
+    assert answer["costs"]["units"] == 2
+    assert str(installed) in json.dumps(answer["units"]), "the units come from the kitchen of the wheel"
+    assert not list(tmp_path.iterdir())
+
+
+def test_installed_wheel_knows_its_constraints(installed: Path, tmp_path: Path) -> None:
+    answer = run(
+        *("-m", "foon_asp", "solve", "--goal", "ice", "--format", "json"),
+        *("--constraint", "forbid_motion", "-c", "forbidden_motion=crush"),
+        cwd=tmp_path,
+        PYTHONPATH=str(installed),
+    )
+    assert json.loads(answer)["costs"]["units"] == 3

@@ -1,0 +1,96 @@
+"""``foon-asp facts`` and bare clingo give the optimum that ``foon-asp solve`` gives."""
+
+import re
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Settings, program_facts
+from foon_asp.asp.facts import write_wanted
+from foon_asp.errors import UserError
+from foon_asp.network import NetworkBuilder, ObjectNode, Source
+from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.resources import encodings_folder
+from tests.conftest import Cli
+
+MINE = ':- use(U), motion(U,"whisk").\n:- #count { U : use(U), motion(U,"pour") } > 3.\n'
+
+
+def bare_clingo(*files: Path) -> tuple[str, list[int], list[int]]:
+    """Run clingo on our encodings and some files; give status, costs and the units used."""
+    folder = encodings_folder()
+    encodings = [str(folder / name) for name in ("task_tree.lp", "objectives.lp", "show.lp")]
+    command = [sys.executable, "-m", "clingo", *encodings, *map(str, files), "--opt-strategy=usc,oll,4"]
+    output = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    costs = re.findall(r"^Optimization: (.*)$", output, re.MULTILINE)
+    answers = re.findall(r"^use\(.*$", output, re.MULTILINE)
+    status = "optimal" if "OPTIMUM FOUND" in output else "infeasible" if "UNSAT" in output else output
+    units = re.findall(r"use\((\d+)\)", answers[-1] if answers else "")
+    return status, [int(cost) for cost in (costs[-1] if costs else "").split()], sorted(map(int, units))
+
+
+@pytest.mark.parametrize("goal", ["whipped cream", "macaroni", "hot cocoa"])
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_bare_clingo_finds_the_same_optimum(cli: Cli, tmp_path: Path, goal: str, rule: str) -> None:
+    mine, facts = tmp_path / "mine.lp", tmp_path / "facts.lp"
+    mine.write_text(MINE)
+    words = ["--goal", goal, "--containers", rule, "--objective", "inputs,units"]
+    for constraint in ([], ["--constraint", str(mine)]):
+        facts.write_text(cli("facts", *words, *constraint).out)
+        solved = cli("solve", *words, *constraint, "--format", "json").json
+        status, costs, units = bare_clingo(facts, *map(Path, constraint[1:]))
+        assert status == solved["status"]
+        if solved["units"] is not None:
+            assert costs == [solved["costs"]["inputs"], solved["costs"]["units"]]
+            assert len(units) == solved["costs"]["units"]
+
+
+def test_the_facts_say_what_the_table_says() -> None:
+    builder = NetworkBuilder()
+    cup = ObjectNode.of("cup", [], [], [("contains", ["salt"])])
+    salt = ObjectNode.of("salt", ["fine"], [("in", "cup")])
+    soup = ObjectNode.of('the "soup"', [], [], [("contains", ["salt", "salt", "water"])])
+    water = ObjectNode.of("water")
+    unit = builder.add("stir\\in", [cup, salt, water], [soup], Source("x", 1))
+    builder.add("unrelated", [water], [ObjectNode.of("tea")], Source("x", 9))
+    network = builder.build()
+    kitchen = frozenset(o for o in range(3))
+    rates = {"stir\\in": Fraction(1), "unrelated": Fraction(1)}
+    problem = Problem(network, kitchen, (3,), rates, frozenset({"cup", "pot"}), ContainerRule.IMPLIED)
+    text = program_facts(problem, (Objective.SUCCESS,), Settings())
+    facts = set(re.findall(r"[a-z]+\((?:\"(?:\\.|[^\"\\])*\"|[^()\"])*\)(?=\.)", text))
+    assert facts == {
+        *(f"unit({unit})", r'motion(0,"stir\\in")', "inputs(0,3)", "ingredients(0,1)"),
+        *("input(0,0)", "input(0,1)", "input(0,2)", "needs(0,1)", "needs(0,2)", "output(0,3)"),
+        *("rate(0,1000000)", "risk(0,0)"),
+        *("object(0)", 'label(0,"cup")', 'ingredient(0,"salt")', "kitchen(0)"),
+        *("object(1)", 'label(1,"salt")', 'state(1,"fine")', 'located(1,"in","cup")', "kitchen(1)"),
+        *("object(2)", 'label(2,"water")', "kitchen(2)"),
+        *("object(3)", r'label(3,"the \"soup\"")', 'ingredient(3,"salt")', 'ingredient(3,"water")'),
+        *('utensil("cup")', "goal(3)", "optimize(success,2)", "optimize(units,1)"),
+    }
+
+
+def test_numbers_too_large_for_clingo_are_refused() -> None:
+    assert write_wanted({0: 2**31 - 1}) == "wanted(0,2147483647).\n"
+    with pytest.raises(UserError, match="32 bits"):
+        write_wanted({0: 2**31})
+
+
+def test_the_same_input_gives_the_same_tree(tmp_path: Path) -> None:
+    outputs = set()
+    for seed in ("0", "1", "2", "random"):
+        command = [sys.executable, "-m", "foon_asp", "solve", "--goal", "macaroni and cheese"]
+        for objective in ("success", "units"):
+            ended = subprocess.run(
+                [*command, "--format", "foon", "--objective", objective],
+                capture_output=True,
+                check=True,
+                env={"PYTHONHASHSEED": seed, "PATH": ""},
+                cwd=tmp_path,
+            )
+            outputs.add(ended.stdout)
+    assert len(outputs) == 2

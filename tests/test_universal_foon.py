@@ -1,0 +1,86 @@
+"""The real universal FOON: what is known of it, and engines that agree on all of it."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Status, solve
+from foon_asp.problem import ContainerRule, Objective, Problem, reach, relevant
+from foon_asp.text import Data, find_data, find_goal, read_data
+from tests.conftest import Cli
+
+# Proved optima: units, inputs, success, each from its own objective.
+KNOWN = {
+    ("greek salad", "strict"): (30, 87, Fraction(407953774917, 7450580596923828125000)),
+    ("greek salad", "implied"): (25, 76, Fraction(3486784401, 19073486328125000000)),
+    ("macaroni", "strict"): (6, 16, Fraction(2187, 100000)),
+    ("macaroni", "implied"): (5, 13, Fraction(2187, 100000)),
+    ("sweet potato", "strict"): (3, 7, Fraction(3, 250)),
+    ("sweet potato", "implied"): (3, 7, Fraction(3, 250)),
+    ("ice", "strict"): (1, 3, Fraction(4, 5)),
+    ("ice", "implied"): (1, 3, Fraction(4, 5)),
+}
+
+
+@pytest.mark.parametrize(("goal", "rule"), KNOWN)
+def test_known_optima(cli: Cli, universal: Path, goal: str, rule: str) -> None:
+    for objective, value in zip(("units", "inputs", "success"), KNOWN[goal, rule], strict=True):
+        words = ["--data", universal, "--goal", goal, "--containers", rule, "--objective", objective]
+        ran = cli("solve", *words, "--format", "json")
+        assert ran.code == 0
+        assert ran.json["status"] == "optimal"
+        found = ran.json["costs"][objective]
+        assert (Fraction(found["exact"]) if objective == "success" else found) == value
+
+
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_whipped_cream_has_no_tree(cli: Cli, universal: Path, rule: str) -> None:
+    words = ["--data", universal, "--goal", "whipped cream", "--containers", rule, "--format", "json"]
+    ran = cli("solve", *words)
+    assert ran.code == 1
+    assert ran.json["status"] == "infeasible"
+    assert ran.json["units"] is None
+
+
+@pytest.fixture(scope="module")
+def data(universal: Path) -> Data:
+    return read_data(find_data(universal))
+
+
+def test_the_dirt_is_met_with_warnings(data: Data) -> None:
+    found: dict[str, int] = {}
+    for warning in data.warnings:
+        found[warning.code] = found.get(warning.code, 0) + 1
+    assert found.pop("repeated-ingredient") > 0
+    assert found == {"outer-space": 2, "no-outputs": 1, "space-for-tab": 5, "kitchen-item": 1}
+    assert data.left_out == 0
+
+
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_the_cut_leaves_little(data: Data, rule: ContainerRule) -> None:
+    sizes = []
+    for entry in data.goals:
+        goal = find_goal(entry.pattern.label, data.network, data.goals)
+        problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
+        sizes.append(len(relevant(problem, reach(problem))))
+    assert max(sizes) <= 317
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_every_makeable_object_is_proved(data: Data, rule: ContainerRule) -> None:
+    one = Problem(data.network, data.kitchen, (0,), data.rates, data.utensils, rule)
+    reached = reach(one)
+    goals = [o for o in sorted(reached.makers) if o not in data.kitchen]
+    assert len(goals) > 2500
+    for goal in goals[::8]:
+        problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
+        best = {objective: solve(problem, (objective,)) for objective in Objective}
+        assert all(outcome.status is Status.OPTIMAL for outcome in best.values())
+        for objective in Objective:
+            costs = [outcome.costs for outcome in best.values() if outcome.costs]
+            key = min(c.key((objective,)) for c in costs)
+            own = best[objective].costs
+            assert own is not None
+            assert own.key((objective,)) == key

@@ -1,0 +1,144 @@
+"""Encodings of the user's: constraints, replacements, and what is said of their faults."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from foon_asp.resources import encodings_folder
+from tests.conftest import Cli
+
+
+def encoding(tmp_path: Path, text: str, name: str = "mine.lp") -> Path:
+    file = tmp_path / name
+    file.write_text(text)
+    return file
+
+
+def test_a_constraint_narrows_the_trees(cli: Cli, tmp_path: Path) -> None:
+    free = cli("solve", "--goal", "whipped cream", "--format", "json").json
+    assert "dispense" in {unit["motion"] for unit in free["units"]}  # from the siphon
+    mine = encoding(tmp_path, ':- use(U), motion(U,"dispense").\n')
+    narrowed = cli("solve", "--goal", "whipped cream", "--constraint", mine, "--format", "json").json
+    assert narrowed["status"] == "optimal"
+    assert narrowed["costs"]["units"] > free["costs"]["units"]
+    assert "dispense" not in {unit["motion"] for unit in narrowed["units"]}
+
+
+def test_our_constraints_go_by_name_and_take_constants(cli: Cli) -> None:
+    free = cli("solve", "--goal", "ice", "--format", "json").json
+    motion = free["units"][-1]["motion"]
+    banned = ["--constraint", "forbid_motion", "-c", f"forbidden_motion={motion}"]
+    limited = cli("solve", "--goal", "ice", *banned, "--format", "json").json
+    assert motion not in {unit["motion"] for unit in limited["units"]}
+    units = free["costs"]["units"]
+    few = cli("solve", "--goal", "ice", "--constraint", "at_most_units", "-c", f"max_units={units - 1}")
+    assert few.code == 1
+    assert "without the constraints there is one" in few.out
+    unset = cli("solve", "--goal", "ice", "--constraint", "forbid_motion")
+    assert unset.code == 0
+    assert "the constant forbidden_motion is not set and the constraint has no effect" in unset.err
+
+
+def test_a_constraint_may_ask_for_what_the_goal_does_not_need(cli: Cli) -> None:
+    words = ["solve", "--goal", "ice", "--constraint", "require_motion", "-c", "required_motion=preheat"]
+    ran = cli(*words, "--format", "json")
+    assert ran.code == 0
+    assert ran.json["status"] == "optimal"
+    assert [unit["motion"] for unit in ran.json["units"]].count("preheat") == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "line"),
+    [
+        (':- use(U), motion(U,"a")\n:- use(U).\n', "mine.lp:2:1: error: syntax error", ":- use(U)."),
+        (":- use(U), X < 3.\n", "mine.lp:1:12: error: the variable 'X' is unsafe", ":- use(U), X < 3."),
+        ("#script (python)\n#end.\n", "mine.lp:1:1: error: found #script", "#script (python)"),
+        ("#minimize { 1,U : use(U) }.\n", "mine.lp:1:13: error: found a statement that minimizes", "#min"),
+        (":~ use(U). [1,U]\n", "mine.lp:1:1: error: found a statement that minimizes", ":~ use(U)"),
+        ("#program step.\n:- use(U).\n", "mine.lp:1:1: error: found #program", "#program step."),
+        ("use(9999).\n", "the encodings made use(9999), but the network has no unit", ""),
+        ("use(a).\n", "the encodings made use(a), expected use(U)", ""),
+        ("available(O) :- goal(O).\n", "check the constraints and encodings", ""),
+    ],
+)
+def test_faults_are_reported_in_place(cli: Cli, tmp_path: Path, text: str, message: str, line: str) -> None:
+    ran = cli("solve", "--goal", "ice", "--constraint", encoding(tmp_path, text))
+    assert ran.code == 2
+    assert message in ran.err
+    assert line in ran.err
+    assert ran.out == ""
+
+
+def test_scripts_are_refused_behind_an_include(cli: Cli, tmp_path: Path) -> None:
+    encoding(tmp_path, "#script (python)\n#end.\n", "hidden.lp")
+    ran = cli("solve", "--goal", "ice", "--constraint", encoding(tmp_path, '#include "hidden.lp".\n'))
+    assert ran.code == 2
+    assert "hidden.lp:1:1: error: found #script" in ran.err
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        (':- use(U), motionn(U,"fry").\n', "no rule or fact defines motionn/2"),
+        (':- use(U), motionn(U,"fry").\n', "did you mean motion/2?"),
+        (":- use(U), motion(U).\n", "did you mean motion/2?"),
+        (':- use(U), locate(U,"in","pan").\n', "did you mean located/3?"),
+        (":- zzz.\n", "the predicates are listed in encodings/README.md"),
+    ],
+)
+def test_undefined_atoms_are_warned_of(cli: Cli, tmp_path: Path, text: str, advice: str) -> None:
+    ran = cli("solve", "--goal", "ice", "--constraint", encoding(tmp_path, text))
+    assert ran.code == 0
+    assert "mine.lp:1:" in ran.err
+    assert advice in ran.err
+
+
+def test_defined_atoms_are_not(cli: Cli, tmp_path: Path) -> None:
+    text = """\
+#defined maybe/1.
+risky(U) :- use(U), rate(U,R), R < 100000.
+:- #count { U : risky(U) } > 3.
+:- maybe(X), use(X).
+:- use(U), output(U,O), ingredient(O,"peanut"), located(O,"in","bowl"), utensil("bowl"), not kitchen(O).
+"""
+    ran = cli("solve", "--goal", "ice", "--constraint", encoding(tmp_path, text))
+    assert ran.code == 0
+    assert ran.err == ""
+
+
+@pytest.fixture
+def own_encodings(tmp_path: Path) -> Path:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    for name in ("task_tree.lp", "objectives.lp", "show.lp"):
+        shutil.copy(encodings_folder() / name, folder)
+    return folder
+
+
+def test_replaced_encodings_run(cli: Cli, own_encodings: Path) -> None:
+    same = cli("solve", "--goal", "macaroni", "--encodings", own_encodings, "--format", "json").json
+    assert same["costs"]["units"] == 9
+    with (own_encodings / "task_tree.lp").open("a") as file:
+        file.write(':- use(U), motion(U,"simmer").\n')
+    assert cli("solve", "--goal", "macaroni", "--encodings", own_encodings).code == 1
+
+
+def test_another_measure_is_said_to_be_one(cli: Cli, own_encodings: Path) -> None:
+    text = (own_encodings / "objectives.lp").read_text()
+    (own_encodings / "objectives.lp").write_text(text.replace("{ 1@P,U ", "{ 7@P,U ", 1))
+    ran = cli("solve", "--goal", "macaroni", "--encodings", own_encodings)
+    assert ran.code == 0
+    assert "does not measure what the objectives units measure here" in ran.err
+
+
+def test_a_folder_without_encodings_is_refused(cli: Cli, tmp_path: Path) -> None:
+    ran = cli("solve", "--goal", "ice", "--encodings", tmp_path)
+    assert ran.code == 2
+    assert "task_tree.lp: no such file; a folder of encodings holds" in ran.err
+
+
+def test_clingo_options_reach_clingo(cli: Cli) -> None:
+    ran = cli("solve", "--goal", "macaroni", "--", "--opt-strategy=bb", "--seed=7", "-t2")
+    assert ran.code == 0
+    assert "optimal by units" in ran.out
