@@ -473,7 +473,6 @@ def test_readme_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cli: Cl
     assert optima == [2, 7, 7]
 
 
-@pytest.mark.xfail(strict=True, reason="a constraint file that redefines what is measured is taken as it is")
 @pytest.mark.parametrize(
     ("rule", "objective"),
     [

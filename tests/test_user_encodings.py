@@ -57,9 +57,9 @@ def test_a_constraint_may_ask_for_what_the_goal_does_not_need(cli: Cli) -> None:
         ("#minimize { 1,U : use(U) }.\n", "mine.lp:1:13: error: found a statement that minimizes", "#min"),
         (":~ use(U). [1,U]\n", "mine.lp:1:1: error: found a statement that minimizes", ":~ use(U)"),
         ("#program step.\n:- use(U).\n", "mine.lp:1:1: error: found #program", "#program step."),
-        ("use(9999).\n", "the encodings made use(9999), but the network has no unit", ""),
-        ("use(a).\n", "the encodings made use(a), expected use(U)", ""),
-        ("available(O) :- goal(O).\n", "check the constraints and encodings", ""),
+        ("available(O) :- goal(O).\n", "mine.lp:1:1: error: found a rule for available/1", "available(O)"),
+        ("risk(U,9) :- unit(U).\n", "mine.lp:1:1: error: found a rule for risk/2, which is not", "risk(U,9)"),
+        ("{ use(U) : unit(U) }.\n", "mine.lp:1:3: error: found a rule for use/1", "{ use(U)"),
     ],
 )
 def test_faults_are_reported_in_place(cli: Cli, tmp_path: Path, text: str, message: str, line: str) -> None:
@@ -119,9 +119,29 @@ def own_encodings(tmp_path: Path) -> Path:
 def test_replaced_encodings_run(cli: Cli, own_encodings: Path) -> None:
     same = cli("solve", "--goal", "macaroni", "--encodings", own_encodings, "--format", "json").json
     assert same["costs"]["units"] == 9
+    assert same["encodings"] == str(own_encodings)
     with (own_encodings / "task_tree.lp").open("a") as file:
         file.write(':- use(U), motion(U,"simmer").\n')
     assert cli("solve", "--goal", "macaroni", "--encodings", own_encodings).code == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("use(9999).\n", "the encodings made use(9999), but the network has no unit of that number"),
+        ("use(a).\n", "the encodings made use(a), expected use(U) with the number of a unit"),
+        ("available(O) :- goal(O).\n", "the tree found does not execute"),
+    ],
+)
+def test_a_tree_that_does_not_execute_is_never_printed(
+    cli: Cli, own_encodings: Path, text: str, message: str
+) -> None:
+    with (own_encodings / "task_tree.lp").open("a") as file:
+        file.write(text)
+    ran = cli("solve", "--goal", "ice", "--encodings", own_encodings)
+    assert ran.code == 2
+    assert message in ran.err
+    assert ran.out == ""
 
 
 def test_another_measure_is_said_to_be_one(cli: Cli, own_encodings: Path) -> None:

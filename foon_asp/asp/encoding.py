@@ -23,14 +23,14 @@ _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<
 class Encoding:
     """One ``.lp`` file, parsed: what it defines, what it looks at, and its constants.
 
-    ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies with the place of their
-    first use, ``declared`` those under ``#defined``. ``constants`` maps the names of ``#const`` statements
+    ``defined`` holds the signatures of atoms in heads and ``used`` those in bodies, with the place where
+    each is met first, ``declared`` those under ``#defined``. ``constants`` maps the names of ``#const`` statements
     to their values as written. ``minimizes`` are the places of ``#minimize`` and weak constraints,
     ``parts`` those of ``#program`` statements other than ``base``, ``scripts`` those of ``#script``.
     """
 
     path: Path
-    defined: set[Signature] = field(default_factory=set)
+    defined: dict[Signature, Source] = field(default_factory=dict)
     declared: set[Signature] = field(default_factory=set)
     used: dict[Signature, Source] = field(default_factory=dict)
     constants: dict[str, str] = field(default_factory=dict)
@@ -104,7 +104,7 @@ class _Collector(Transformer):
         if symbol.ast_type == ASTType.Function:
             signature = symbol.name, len(symbol.arguments)
             if self._in_head:
-                self.encoding.defined.add(signature)
+                self.encoding.defined.setdefault(signature, _source(symbol.location))
             else:
                 self.encoding.used.setdefault(signature, _source(symbol.location))
         return atom
@@ -123,7 +123,8 @@ def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Dia
     """Look over a user's constraint files; ``base`` are the encodings they are added to.
 
     Returns warnings: atoms that nothing defines, with the nearest predicate that something does. Raises
-    :class:`InputError` for ``#script`` and for statements that minimize, which would change what is best.
+    :class:`InputError` for what would change which trees there are or which are best: ``#script``,
+    statements that minimize, and rules for predicates that are ours or facts.
     """
     refuse_scripts((*added, *base))
     errors = [
@@ -137,6 +138,19 @@ def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Dia
         for encoding in added
         for source in encoding.minimizes
     ]
+    owned = set(FACT_PREDICATES.items()).union(*(encoding.defined for encoding in base))
+    errors += [
+        located(
+            Severity.ERROR,
+            "owned-predicate",
+            f"found a rule for {name}/{arity}, which is not a constraint's to define: give it another name, or "
+            "edit a copy of the encodings and pass its folder with --encodings",
+            source,
+        )
+        for encoding in added
+        for (name, arity), source in encoding.defined.items()
+        if (name, arity) in owned
+    ]
     errors += [
         located(
             Severity.ERROR, "program-part", "found #program, expected rules: parts are not solved", source
@@ -148,7 +162,7 @@ def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Dia
         raise InputError(errors)
     known = set(FACT_PREDICATES.items())
     for encoding in (*added, *base):
-        known |= encoding.defined | encoding.declared
+        known |= encoding.defined.keys() | encoding.declared
     return [
         located(Severity.WARNING, "undefined-atom", _undefined(signature, known), source)
         for encoding in added

@@ -2,6 +2,7 @@
 
 from enum import StrEnum
 from fractions import Fraction
+from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.problem import Costs, Objective, Problem
@@ -27,6 +28,7 @@ class Outcome(NamedTuple):
     where there is no tree. ``bounds`` gives for each objective the best value that any tree can still have
     (for ``success`` the greatest), as far as it is proved, in the order of the list; an objective counts
     only among the trees that are best under those before it. ``seconds`` has the time of every phase.
+    ``encodings`` is the folder whose encodings replaced ours, if one did: what is best is then what they say.
     """
 
     problem: Problem
@@ -36,3 +38,4 @@ class Outcome(NamedTuple):
     costs: Costs | None
     bounds: dict[Objective, int | Fraction]
     seconds: dict[str, float]
+    encodings: Path | None = None

@@ -262,7 +262,16 @@ class _Solver:
     ) -> Outcome:
         """Check the tree by simulation and state the outcome."""
         if units is None:
-            return Outcome(self.problem, self.objectives, status, None, None, bounds, self.seconds)
+            return Outcome(
+                self.problem,
+                self.objectives,
+                status,
+                None,
+                None,
+                bounds,
+                self.seconds,
+                self.settings.encodings,
+            )
         began = time.perf_counter()
         problem, objects = self.problem, self.problem.network.objects
         order = executable_order(problem, units)
@@ -285,7 +294,10 @@ class _Solver:
                 raise BugError(message)
             raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
         self._spent("check", began)
-        return Outcome(problem, self.objectives, status, listed, problem.costs(listed), bounds, self.seconds)
+        costs = problem.costs(listed)
+        return Outcome(
+            problem, self.objectives, status, listed, costs, bounds, self.seconds, self.settings.encodings
+        )
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began

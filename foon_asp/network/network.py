@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from foon_asp.network.functional_unit import FunctionalUnit
@@ -13,6 +14,7 @@ from foon_asp.network.source import Source
 UnitKey = tuple[str, frozenset[int], frozenset[int]]
 
 
+@dataclass(frozen=True, eq=False)
 class Network:
     """An immutable directed hypergraph of object nodes and functional units.
 
@@ -21,23 +23,13 @@ class Network:
     ``u``; ``sources[u]`` lists where each copy of it was read. Build one with :class:`NetworkBuilder`.
     """
 
-    def __init__(
-        self,
-        objects: tuple[ObjectNode, ...],
-        motions: tuple[str, ...],
-        inputs: tuple[tuple[int, ...], ...],
-        outputs: tuple[tuple[int, ...], ...],
-        sources: tuple[tuple[Source, ...], ...],
-        object_ids: dict[ObjectNode, int],
-        unit_ids: dict[UnitKey, int],
-    ) -> None:
-        self.objects = objects
-        self.motions = motions
-        self.inputs = inputs
-        self.outputs = outputs
-        self.sources = sources
-        self._object_ids = object_ids
-        self._unit_ids = unit_ids
+    objects: tuple[ObjectNode, ...]
+    motions: tuple[str, ...]
+    inputs: tuple[tuple[int, ...], ...]
+    outputs: tuple[tuple[int, ...], ...]
+    sources: tuple[tuple[Source, ...], ...]
+    _object_ids: dict[ObjectNode, int] = field(repr=False)
+    _unit_ids: dict[UnitKey, int] = field(repr=False)
 
     def __len__(self) -> int:
         """Count the units."""

@@ -12,7 +12,7 @@ from foon_asp.problem.containers import ContainerRule, needed_inputs
 from foon_asp.problem.costs import Costs
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
     """What is asked, before any cut.
 

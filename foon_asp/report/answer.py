@@ -57,6 +57,7 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
         "goals": goals,
         "containers": str(problem.containers),
         "objective": [str(objective) for objective in outcome.objectives],
+        "encodings": None if outcome.encodings is None else str(outcome.encodings),
         "status": str(outcome.status),
         "costs": costs_json(outcome.costs),
         "lower_bound": {
@@ -104,6 +105,8 @@ def headline(outcome: Outcome) -> str:
         if outcome.status is Status.INFEASIBLE:
             return f"infeasible: proved that no task tree exists ({rule})"
         return f"unknown: stopped at a limit before any task tree was found ({rule})"
+    if outcome.encodings is not None:
+        rule += f", as {outcome.encodings} has it"
     claim = "optimal" if outcome.status is Status.OPTIMAL else "feasible, not proved best"
     return f"{claim} by {best} ({rule}): {costs_text(outcome.costs)}"
 
