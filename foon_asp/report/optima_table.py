@@ -36,7 +36,7 @@ def print_optima(outcomes: Sequence[Outcome], console: Console | None = None) ->
         box=SIMPLE_HEAD,
         pad_edge=False,
         show_edge=False,
-        padding=(0, 1, 0, 0),
+        padding=0,
         title_justify="left",
         caption_justify="left",
         title_style="bold",
@@ -45,7 +45,7 @@ def print_optima(outcomes: Sequence[Outcome], console: Console | None = None) ->
     table.add_column("best by")
     for heading in ("units", "inputs", "success"):
         table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("status", no_wrap=True)
+    table.add_column("  status", no_wrap=True)
     table.add_column("seconds", justify="right", no_wrap=True)
     asked = list(dict.fromkeys(outcome.objectives for outcome in outcomes))
     for goal, rows in _by_goal(outcomes):
@@ -70,7 +70,7 @@ def _cells(row: list[Outcome], every: list[tuple[Objective, ...]]) -> list[Text 
     status, costs = row[0].status, row[0].costs
     seconds = f"{sum(sum(outcome.seconds.values()) for outcome in row):.2f}"
     names = [" then ".join(outcome.objectives) for outcome in row]
-    shown = Text(status, style=_STYLES[status])
+    shown = Text("  ").append(status, style=_STYLES[status])
     if costs is None:
         return ["", "", "", "", shown, seconds]
     asked = {outcome.objectives[0] for outcome in row}
