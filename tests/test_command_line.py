@@ -211,6 +211,7 @@ def test_check_finds_an_order_or_says_what_is_missing(cli: Cli, data: Path, tmp_
         "file": str(tree),
         "line": 1,
         "missing": "bowl; contains {flour}",
+        "cycle": [],
     }
     tree.write_text("//\n".join([pour, mix, ""]))
     ran = cli("check", tree, "--data", data)

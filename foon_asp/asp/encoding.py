@@ -23,10 +23,11 @@ _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<
 class Encoding:
     """One ``.lp`` file, parsed: what it defines, what it looks at, and its constants.
 
-    ``defined`` holds the signatures of atoms in heads and ``used`` those in bodies, with the place where
-    each is met first, ``declared`` those under ``#defined``. ``constants`` maps the names of ``#const`` statements
-    to their values as written. ``minimizes`` are the places of ``#minimize`` and weak constraints,
-    ``parts`` those of ``#program`` statements other than ``base``, ``scripts`` those of ``#script``.
+    ``defined`` holds the signatures of atoms in heads and ``used`` those in bodies, with the place
+    where each is met first, ``declared`` those under ``#defined``. ``constants`` maps the names of
+    ``#const`` statements to their values as written. ``minimizes`` are the places of ``#minimize`` and
+    weak constraints, ``parts`` those of ``#program`` statements other than ``base``, ``scripts`` those
+    of ``#script``.
     """
 
     path: Path
@@ -143,8 +144,8 @@ def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Dia
         located(
             Severity.ERROR,
             "owned-predicate",
-            f"found a rule for {name}/{arity}, which is not a constraint's to define: give it another name, or "
-            "edit a copy of the encodings and pass its folder with --encodings",
+            f"found a rule for {name}/{arity}, which is not a constraint's to define: "
+            "give it another name, or edit a copy of the encodings and pass its folder with --encodings",
             source,
         )
         for encoding in added

@@ -1,5 +1,6 @@
 """Does a tree execute? Simulated forwards, in plain Python, with no solver in sight."""
 
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -19,10 +20,14 @@ class Obstacle(NamedTuple):
     """Why a tree does not execute: the position of a unit in the tree (from 0) and an input it lacks.
 
     ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
+    ``cycle`` lists positions of units each of which waits for an output of the next, and the last for one of
+    the first, where such a circle is what ``unit`` waits for; otherwise it is empty, and somewhere behind
+    ``unit`` an input is missing that no unit of the tree makes.
     """
 
     unit: int | None
     missing: ObjectNode
+    cycle: tuple[int, ...] = ()
 
 
 class Simulation(NamedTuple):
@@ -79,7 +84,8 @@ def simulate(
         waiting = held_back
     if waiting:
         lacking = next(node for node in needs[waiting[0]] if node not in at_hand)
-        return Simulation(Verdict.NEVER, tuple(order), as_listed, Obstacle(waiting[0], lacking))
+        blocked = Obstacle(waiting[0], lacking, _cycle(tree, needs, waiting, at_hand))
+        return Simulation(Verdict.NEVER, tuple(order), as_listed, blocked)
     obstacle = _missing_goal(goals, at_hand)
     verdict = Verdict.REORDERED if obstacle is None else Verdict.NEVER
     return Simulation(verdict, tuple(order), as_listed, obstacle)
@@ -88,3 +94,33 @@ def simulate(
 def _missing_goal(goals: tuple[ObjectNode, ...], at_hand: set[ObjectNode]) -> Obstacle | None:
     missing = next((goal for goal in goals if goal not in at_hand), None)
     return None if missing is None else Obstacle(None, missing)
+
+
+def _cycle(
+    tree: TaskTree, needs: Sequence[tuple[ObjectNode, ...]], waiting: Sequence[int], at_hand: set[ObjectNode]
+) -> tuple[int, ...]:
+    """Find a circle of waiting units behind the first of them, depth first; empty where there is none."""
+    makers: dict[ObjectNode, list[int]] = {}
+    for position in waiting:
+        for node in tree.units[position].outputs:
+            makers.setdefault(node, []).append(position)
+
+    def waits_for(position: int) -> Iterator[int]:
+        for node in needs[position]:
+            if node not in at_hand:
+                yield from makers.get(node, ())
+
+    path = [waiting[0]]
+    branches = [waits_for(waiting[0])]
+    done: set[int] = set()
+    while path:
+        following = next(branches[-1], None)
+        if following is None:
+            done.add(path.pop())
+            branches.pop()
+        elif following in path:
+            return tuple(path[path.index(following) :])
+        elif following not in done:
+            path.append(following)
+            branches.append(waits_for(following))
+    return ()

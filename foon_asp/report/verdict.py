@@ -62,7 +62,11 @@ def _unit_text(listed: Listed, position: int) -> str:
 def _obstacle_text(listed: Listed, obstacle: Obstacle) -> str:
     if obstacle.unit is None:
         return f"every unit runs, but the goal is not made: {obstacle.missing}"
-    return f"unit {obstacle.unit + 1}, {_unit_text(listed, obstacle.unit)}, lacks {obstacle.missing}"
+    text = f"unit {obstacle.unit + 1}, {_unit_text(listed, obstacle.unit)}, lacks {obstacle.missing}"
+    if obstacle.cycle:
+        waits = " → ".join(str(position + 1) for position in (*obstacle.cycle, obstacle.cycle[0]))
+        text += f"; a cycle is to blame, units that wait for each other: {waits}"
+    return text
 
 
 def _obstacle_json(listed: Listed, obstacle: Obstacle | None) -> dict[str, object] | None:
@@ -77,4 +81,5 @@ def _obstacle_json(listed: Listed, obstacle: Obstacle | None) -> dict[str, objec
         "file": source.file,
         "line": source.line,
         "missing": str(obstacle.missing),
+        "cycle": [position + 1 for position in obstacle.cycle],
     }

@@ -1,0 +1,141 @@
+"""One goal: what each search returned, whether it executes, and how far it is from the optimum."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.errors import BugError
+from foon_asp.problem import Objective, Problem
+from foon_asp.proof import Verdict, simulate
+from foon_asp.search import SEARCHES, Ending, SearchSettings
+
+# The objectives whose optima a tree is held against.
+MEASURED = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
+
+
+class Optimum(NamedTuple):
+    """The optimum of one objective: ``value`` is proved where ``status`` is ``optimal``."""
+
+    status: str
+    value: Fraction | None
+
+
+class Judgement(NamedTuple):
+    """What one search returned for one goal.
+
+    ``ending`` is one of :class:`~foon_asp.search.Ending`; ``stuck_at`` the object in the way, if one was.
+    ``executes`` is one of :class:`~foon_asp.proof.Verdict`, or ``None`` without a tree. ``obstacle`` says
+    what stops every order: the motion of the first unit that cannot run (empty where it is the goal that is
+    missing), what is missing, and whether a cycle is to blame. ``order`` is an order that executes, in
+    positions of ``units`` from 0.
+    """
+
+    search: str
+    ending: str
+    units: tuple[int, ...] | None = None
+    measures: dict[Objective, Fraction] = {}  # noqa: RUF012 (never changed)
+    executes: str | None = None
+    order: tuple[int, ...] = ()
+    obstacle: tuple[str, str, bool] | None = None
+    stuck_at: str | None = None
+
+
+class Comparison(NamedTuple):
+    """The searches and the optimum for one goal (in one-line notation) under one container rule."""
+
+    goal: str
+    containers: str
+    optima: dict[Objective, Optimum]
+    judgements: tuple[Judgement, ...]
+
+    def ratio(self, judgement: Judgement, objective: Objective) -> Fraction | None:
+        """Give the measure of a tree over the proved optimum; ``None`` where either is not known or 0."""
+        optimum = self.optima.get(objective)
+        measure = judgement.measures.get(objective)
+        if optimum is None or not optimum.value or measure is None or optimum.status != Status.OPTIMAL:
+            return None
+        return measure / optimum.value
+
+    def beats_the_optimum(self, judgement: Judgement) -> bool:
+        """Whether a tree has fewer units than the optimum, as only one that does not execute can."""
+        ratio = self.ratio(judgement, Objective.UNITS)
+        return ratio is not None and ratio < 1
+
+
+def compare(
+    problem: Problem, searches: Sequence[str], settings: SearchSettings, time_limit: float | None = None
+) -> Comparison:
+    """Run searches by name on a problem, simulate their trees and prove the optima beside them.
+
+    ``time_limit`` is in seconds for each optimum. Optima of ``success`` are left out where no rates are
+    known.
+    """
+    objects = problem.network.objects
+    optima: dict[Objective, Optimum] = {}
+    for objective in MEASURED:
+        if objective is Objective.SUCCESS and problem.rates is None:
+            continue
+        outcome = solve(problem, (objective,), Settings(time_limit=time_limit))
+        value = None if outcome.costs is None else Fraction(outcome.costs.measure(objective))
+        optima[objective] = Optimum(str(outcome.status), value)
+    comparison = Comparison(
+        " + ".join(str(objects[goal]) for goal in problem.goals),
+        str(problem.containers),
+        optima,
+        tuple(judge(problem, name, settings) for name in searches),
+    )
+    _require_consistent(comparison)
+    return comparison
+
+
+def _require_consistent(comparison: Comparison) -> None:
+    """No tree that executes is better than a proved optimum; if one were, the proof would be a bug of ours."""
+    for judgement in comparison.judgements:
+        if judgement.executes not in {Verdict.AS_LISTED, Verdict.REORDERED}:
+            continue
+        for objective, optimum in comparison.optima.items():
+            ratio = comparison.ratio(judgement, objective)
+            better = ratio is not None and (ratio > 1 if objective is Objective.SUCCESS else ratio < 1)
+            if better or optimum.status == Status.INFEASIBLE:
+                raise BugError(
+                    f"{judgement.search} has a tree for {comparison.goal} that executes and is better by "
+                    f"{objective} than what was proved ({optimum.status})"
+                )
+
+
+def judge(problem: Problem, name: str, settings: SearchSettings) -> Judgement:
+    """Run one search and simulate the tree it returns."""
+    objects = problem.network.objects
+    retrieval = SEARCHES[name].run(problem, settings)
+    if retrieval.ending is not Ending.TREE:
+        stuck_at = None if retrieval.stuck_at is None else str(objects[retrieval.stuck_at])
+        return Judgement(name, str(retrieval.ending), stuck_at=stuck_at)
+    tree = problem.tree(retrieval.units)
+    simulation = simulate(
+        tree,
+        frozenset(objects[o] for o in problem.kitchen),
+        tuple(objects[goal] for goal in problem.goals),
+        problem.containers,
+        problem.utensils,
+    )
+    obstacle = None
+    if simulation.obstacle is not None:
+        place, missing, cycle = simulation.obstacle
+        motion = "" if place is None else tree.units[place].motion
+        obstacle = (motion, str(missing), bool(cycle))
+    costs = problem.costs(retrieval.units)
+    measures = {
+        objective: Fraction(costs.measure(objective))
+        for objective in MEASURED
+        if objective is not Objective.SUCCESS or costs.success is not None
+    }
+    return Judgement(
+        name,
+        str(retrieval.ending),
+        retrieval.units,
+        measures,
+        str(simulation.verdict),
+        simulation.order,
+        obstacle,
+    )

@@ -1,0 +1,164 @@
+"""Comparisons as tables: for a terminal, as Markdown and as CSV."""
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from foon_asp.asp import Status
+from foon_asp.compare import MEASURED, Comparison, Judgement, Optimum, Summary
+from foon_asp.problem import Objective
+from foon_asp.proof import Verdict
+
+_HEADINGS = ("goal", "search", "units", "inputs", "success", "executes")
+_EXECUTES = {Verdict.AS_LISTED: "as listed", Verdict.REORDERED: "when reordered", Verdict.NEVER: "never"}
+_STYLES = {"as listed": "green", "when reordered": "yellow", "never": "red"}
+
+SMALLER = "† smaller than the optimum, which only a tree that does not execute can be"
+CYCLE = "(cycle): its units wait for each other"
+RATIOS = "× how many times the proved optimum of that objective; for success its share of the optimum"
+
+
+def print_comparisons(comparisons: Sequence[Comparison], console: Console | None = None) -> None:
+    """Print one block of rows for each goal, the proved optimum first."""
+    table = Table(
+        title=f"Searches and the optimum ({comparisons[0].containers} containers)",
+        caption="\n".join(_notes(comparisons)),
+        box=SIMPLE_HEAD,
+        pad_edge=False,
+        show_edge=False,
+        padding=(0, 1, 0, 0),
+        title_justify="left",
+        caption_justify="left",
+        title_style="bold",
+    )
+    for heading in _HEADINGS:
+        right = heading in {"units", "inputs", "success"}
+        table.add_column(heading, justify="right" if right else "left", no_wrap=heading != "goal")
+    for comparison in comparisons:
+        for row in _rows(comparison):
+            style = _STYLES.get(row[5].removesuffix(" (cycle)"), "")
+            table.add_row(*row[:5], Text(row[5], style=style), style="bold" if row[0] else "")
+    (console or Console()).print(table)
+
+
+def comparisons_markdown(comparisons: Sequence[Comparison]) -> str:
+    """Give the same table as Markdown."""
+    rows = [row for comparison in comparisons for row in _rows(comparison)]
+    lines = [_markdown_row(_HEADINGS), "|---|---|--:|--:|--:|---|", *map(_markdown_row, rows)]
+    return "\n".join([*lines, "", *(f"{note}  " for note in _notes(comparisons))]) + "\n"
+
+
+def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
+    """Give one line for each goal and search; fractions exact, ratios as decimals too."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(
+        ["goal", "containers", "search", "ending", "executes", "cycle", "missing"]
+        + [f"{objective}{what}" for objective in MEASURED for what in ("", "_optimum", "_status", "_ratio")]
+    )
+    for comparison in comparisons:
+        for judgement in comparison.judgements:
+            _, missing, cycle = judgement.obstacle or ("", "", False)
+            row = [comparison.goal, comparison.containers, judgement.search, judgement.ending]
+            row += [judgement.executes or "", "yes" if cycle else "no", missing or judgement.stuck_at or ""]
+            for objective in MEASURED:
+                optimum = comparison.optima.get(objective, Optimum("", None))
+                ratio = comparison.ratio(judgement, objective)
+                measure = judgement.measures.get(objective)
+                row += ["" if measure is None else str(measure)]
+                row += ["" if optimum.value is None else str(optimum.value), optimum.status]
+                row += ["" if ratio is None else f"{float(ratio):.6g}"]
+            writer.writerow(row)
+    return file.getvalue()
+
+
+def summary_lines(summaries: Sequence[Summary], proved: bool) -> Iterator[str]:
+    """Say in words what a paper could print of many goals."""
+    goals = max((summary.goals for summary in summaries), default=0)
+    yield f"{goals} goals; " + ("every optimum is proved" if proved else "NOT every optimum is proved")
+    for summary in summaries:
+        trees = summary.as_listed + summary.reordered + summary.never
+        yield ""
+        yield f"{summary.search}: {trees} trees" + (f", {summary.without} without" if summary.without else "")
+        yield (
+            f"  execute as listed {_share(summary.as_listed, trees)}, when reordered "
+            f"{_share(summary.reordered, trees)}, never {_share(summary.never, trees)}"
+            + (f" (a cycle is to blame for {summary.cycles})" if summary.cycles else "")
+        )
+        if summary.smaller:
+            yield f"  {summary.smaller} are smaller than the optimum; none of these executes"
+        for objective, distance in summary.distances.items():
+            yield (
+                f"  {objective}, times worse than the optimum where it executes: median "
+                f"{_times(distance.median)}, 90th percentile {_times(distance.percentile_90)}, "
+                f"worst {_times(distance.worst)}; optimal in {float(distance.share):.1%}"
+            )
+            if distance.worst > 1:
+                yield f"    worst: {distance.worst_goal}"
+
+
+def _share(number: int, total: int) -> str:
+    return f"{number} ({number / total:.1%})" if total else str(number)
+
+
+def _times(value: Fraction) -> str:
+    return f"{float(value):.3g}" if value < 1000 else f"{float(value):.1e}"
+
+
+def _rows(comparison: Comparison) -> Iterator[list[str]]:
+    optima = [comparison.optima.get(objective) for objective in MEASURED]
+    status = " ".join(dict.fromkeys(o.status for o in optima if o))
+    values = [
+        "" if o is None or o.value is None else _figure(objective, o.value)
+        for objective, o in zip(MEASURED, optima, strict=True)
+    ]
+    yield [comparison.goal, "optimum", *values, status]
+    for judgement in comparison.judgements:
+        cells = [_cell(comparison, judgement, objective) for objective in MEASURED]
+        yield ["", judgement.search, *cells, _executes(judgement)]
+
+
+def _cell(comparison: Comparison, judgement: Judgement, objective: Objective) -> str:
+    measure = judgement.measures.get(objective)
+    if measure is None:
+        return ""
+    text = _figure(objective, measure)
+    if objective is Objective.UNITS and comparison.beats_the_optimum(judgement):
+        text = "†" + text
+    ratio = comparison.ratio(judgement, objective)
+    return text if ratio is None else f"{text} {float(ratio):>5.2f}×"
+
+
+def _figure(objective: Objective, value: Fraction) -> str:
+    if objective is not Objective.SUCCESS:
+        return str(value)
+    return f"{float(value):.4f}" if value >= Fraction(1, 1000) else f"{float(value):.2e}"
+
+
+def _executes(judgement: Judgement) -> str:
+    if judgement.executes is None:
+        return f"no tree: {judgement.ending}" + (f" at {judgement.stuck_at}" if judgement.stuck_at else "")
+    text = _EXECUTES[Verdict(judgement.executes)]
+    return text + " (cycle)" if judgement.obstacle and judgement.obstacle[2] else text
+
+
+def _notes(comparisons: Sequence[Comparison]) -> list[str]:
+    judged = [(comparison, judgement) for comparison in comparisons for judgement in comparison.judgements]
+    notes = [RATIOS]
+    if any(comparison.beats_the_optimum(judgement) for comparison, judgement in judged):
+        notes.append(SMALLER)
+    if any(judgement.obstacle and judgement.obstacle[2] for _, judgement in judged):
+        notes.append(CYCLE)
+    if any(o.status == Status.FEASIBLE for comparison in comparisons for o in comparison.optima.values()):
+        notes.append("feasible: stopped at the time limit, so that optimum is not proved and has no ratios")
+    return notes
+
+
+def _markdown_row(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"

@@ -1,0 +1,122 @@
+"""Iterative deepening: depth-limited depth-first search with backtracking, deeper and deeper."""
+
+import time
+
+from foon_asp.problem import Problem
+from foon_asp.search.retrieval import Ending, Retrieval
+
+
+def iterative_deepening(
+    problem: Problem, depth_limit: int | None = None, time_limit: float | None = None
+) -> Retrieval:
+    """Find a tree that executes, of least depth, or show that there is none.
+
+    A kitchen item has depth 0, a unit one more than the deepest input it needs, an object the depth of
+    the unit that makes it; the depth of a tree is that of its deepest goal. For each limit in turn, every
+    unit that makes an object is tried, in file order, until one has all its inputs within the limit less
+    one. What failed at which limit, and what was found, is remembered, so a limit costs at most one pass
+    over the units that can matter. When no object gets within reach by one more level, none ever will.
+
+    Reaching ``depth_limit`` (levels) or ``time_limit`` (seconds) ends in ``unknown``.
+    """
+    search = _DepthLimited(problem, None if time_limit is None else time.monotonic() + time_limit)
+    limit = 0
+    while True:
+        try:
+            if all(search.within(goal, limit) for goal in problem.goals):
+                return Retrieval(Ending.TREE, search.tree())
+            if limit and not search.grows(limit):
+                return Retrieval(Ending.NONE)
+        except TimeoutError:
+            return Retrieval(Ending.UNKNOWN)
+        if limit == depth_limit:
+            return Retrieval(Ending.UNKNOWN)
+        limit += 1
+
+
+class _DepthLimited:
+    """The depth-limited search, and what it remembers between limits.
+
+    ``failed[o]`` is the greatest limit within which object ``o`` was shown not to be made. ``found[o]`` is
+    the least limit within which it was, with the unit that makes it: the inputs of that unit were found
+    within smaller limits, so following the units never runs in a circle.
+    """
+
+    def __init__(self, problem: Problem, end: float | None) -> None:
+        self.problem = problem
+        self.end = end
+        self.failed: dict[int, int] = {}
+        self.found: dict[int, tuple[int, int]] = {}
+        self.objects = self._relevant()
+
+    def within(self, goal: int, limit: int) -> bool:
+        """Whether an object can be made within a limit; a stack of its own, so depth is no matter."""
+        answer = self._known(goal, limit)
+        if answer is not None:
+            return answer
+        producers, needs = self.problem.network.producers, self.problem.needs
+        # a frame: object, limit, number of the unit being tried, number of the input being looked at
+        stack = [[goal, limit, 0, 0]]
+        while stack:
+            if self.end is not None and time.monotonic() >= self.end:
+                raise TimeoutError
+            frame = stack[-1]
+            o, bound, tried, looked = frame
+            if tried == len(producers[o]):
+                self.failed[o] = max(bound, self.failed.get(o, -1))
+                stack.pop()
+                continue
+            unit = producers[o][tried]
+            if looked == len(needs[unit]):
+                self.found[o] = (bound, unit)
+                stack.pop()
+                continue
+            answer = self._known(needs[unit][looked], bound - 1)
+            if answer is None:
+                stack.append([needs[unit][looked], bound - 1, 0, 0])
+            elif answer:
+                frame[3] += 1
+            else:
+                frame[2:] = [tried + 1, 0]
+        return goal in self.found and self.found[goal][0] <= limit
+
+    def grows(self, limit: int) -> bool:
+        """Whether some object that can matter is made within this limit and not within one less."""
+        before = {o for o in self.objects if o in self.found and self.found[o][0] < limit}
+        return any(o not in before and self.within(o, limit) for o in self.objects)
+
+    def tree(self) -> tuple[int, ...]:
+        """Follow the units found from the goals, and list them in an order that executes."""
+        levels: dict[int, int] = {}
+        waiting = list(self.problem.goals)
+        while waiting:
+            o = waiting.pop()
+            if o in self.problem.kitchen:
+                continue
+            limit, unit = self.found[o]
+            if unit not in levels or levels[unit] > limit:
+                levels[unit] = limit
+                waiting.extend(self.problem.needs[unit])
+        return tuple(sorted(levels, key=lambda unit: (levels[unit], unit)))
+
+    def _known(self, o: int, limit: int) -> bool | None:
+        if o in self.problem.kitchen:
+            return True
+        if limit <= 0 or self.failed.get(o, -1) >= limit:
+            return False
+        if o in self.found and self.found[o][0] <= limit:
+            return True
+        return None
+
+    def _relevant(self) -> list[int]:
+        """List the objects that a goal can need, without the kitchen."""
+        kitchen, needs = self.problem.kitchen, self.problem.needs
+        seen = {goal for goal in self.problem.goals if goal not in kitchen}
+        waiting = list(seen)
+        while waiting:
+            for unit in self.problem.network.producers[waiting.pop()]:
+                for o in needs[unit]:
+                    if o not in seen and o not in kitchen:
+                        seen.add(o)
+                        waiting.append(o)
+        return sorted(seen)
