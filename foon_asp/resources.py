@@ -19,6 +19,11 @@ def encodings_folder() -> Path:
     return _folder("encodings", "task_tree.lp")
 
 
+def published_table() -> Path:
+    """Give the file with the published figures of the literature."""
+    return _folder("data", "published/table1.json") / "published" / "table1.json"
+
+
 def bundled_kitchen() -> Path:
     """Give the folder of the bundled universal FOON and its kitchen."""
     return _folder("data", "kitchen/FOON.txt") / "kitchen"

@@ -13,7 +13,7 @@ from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import Data, find_data, find_goal, read_data, summarize
 
-_Command = TypeVar("_Command", bound=Callable[..., object])
+Command = TypeVar("Command", bound=Callable[..., object])
 _PATH = click.Path(path_type=Path)
 
 _DATA_OPTIONS = (
@@ -80,19 +80,19 @@ debug_option = click.option(
 )
 
 
-def format_option(*formats: str) -> Callable[[_Command], _Command]:
+def format_option(*formats: str) -> Callable[[Command], Command]:
     """Make ``--format`` with the formats of a verb, the first by default."""
     return click.option(
         "--format", "format_", type=click.Choice(formats), default=formats[0], show_default=True
     )
 
 
-def data_options(command: _Command) -> _Command:
+def data_options(command: Command) -> Command:
     """Add the options that name the data."""
     return functools.reduce(lambda f, option: option(f), reversed((*_DATA_OPTIONS, debug_option)), command)
 
 
-def constraint_options(command: _Command) -> _Command:
+def constraint_options(command: Command) -> Command:
     """Add the options that add or replace encodings."""
     return functools.reduce(lambda f, option: option(f), reversed(_CONSTRAINT_OPTIONS), command)
 

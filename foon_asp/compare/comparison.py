@@ -57,10 +57,10 @@ class Comparison(NamedTuple):
             return None
         return measure / optimum.value
 
-    def beats_the_optimum(self, judgement: Judgement) -> bool:
-        """Whether a tree has fewer units than the optimum, as only one that does not execute can."""
-        ratio = self.ratio(judgement, Objective.UNITS)
-        return ratio is not None and ratio < 1
+    def beats_the_optimum(self, judgement: Judgement, objective: Objective) -> bool:
+        """Whether a tree is better than the proved optimum, as only one that does not execute can be."""
+        ratio = self.ratio(judgement, objective)
+        return ratio is not None and (ratio > 1 if objective is Objective.SUCCESS else ratio < 1)
 
 
 def compare(
@@ -90,13 +90,12 @@ def compare(
 
 
 def _require_consistent(comparison: Comparison) -> None:
-    """No tree that executes is better than a proved optimum; if one were, the proof would be a bug of ours."""
+    """Hold that no tree that executes is better than a proved optimum: if one were, that is our bug."""
     for judgement in comparison.judgements:
         if judgement.executes not in {Verdict.AS_LISTED, Verdict.REORDERED}:
             continue
         for objective, optimum in comparison.optima.items():
-            ratio = comparison.ratio(judgement, objective)
-            better = ratio is not None and (ratio > 1 if objective is Objective.SUCCESS else ratio < 1)
+            better = comparison.beats_the_optimum(judgement, objective)
             if better or optimum.status == Status.INFEASIBLE:
                 raise BugError(
                     f"{judgement.search} has a tree for {comparison.goal} that executes and is better by "

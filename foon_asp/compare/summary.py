@@ -72,7 +72,7 @@ def _summary(name: str, rows: list[Comparison]) -> Summary:
         verdicts.count(Verdict.NEVER),
         sum(judgement.obstacle is not None and judgement.obstacle[2] for _, judgement in found),
         sum(judgement.ending != Ending.TREE for _, judgement in found),
-        sum(row.beats_the_optimum(judgement) for row, judgement in found),
+        sum(row.beats_the_optimum(judgement, Objective.UNITS) for row, judgement in found),
         distances,
     )
 

@@ -19,32 +19,39 @@ _HEADINGS = ("goal", "search", "units", "inputs", "success", "executes")
 _EXECUTES = {Verdict.AS_LISTED: "as listed", Verdict.REORDERED: "when reordered", Verdict.NEVER: "never"}
 _STYLES = {"as listed": "green", "when reordered": "yellow", "never": "red"}
 
-SMALLER = "† smaller than the optimum, which only a tree that does not execute can be"
-CYCLE = "(cycle): its units wait for each other"
-RATIOS = "× how many times the proved optimum of that objective; for success its share of the optimum"
+BETTER = "† better than the proved optimum, which only a tree that does not execute can be"
+CYCLE = "(cycle) units of the tree wait for each other"
+RATIOS = "× how many times the proved optimum of that objective"
+
+# Widths of the columns after the goal, so that the blocks of all goals stand under one heading.
+_WIDTHS = {"search": 15, "units": 12, "inputs": 12, "success": 19, "executes": 18}
 
 
 def print_comparisons(comparisons: Sequence[Comparison], console: Console | None = None) -> None:
     """Print one block of rows for each goal, the proved optimum first."""
-    table = Table(
-        title=f"Searches and the optimum ({comparisons[0].containers} containers)",
-        caption="\n".join(_notes(comparisons)),
-        box=SIMPLE_HEAD,
-        pad_edge=False,
-        show_edge=False,
-        padding=(0, 1, 0, 0),
-        title_justify="left",
-        caption_justify="left",
-        title_style="bold",
-    )
-    for heading in _HEADINGS:
-        right = heading in {"units", "inputs", "success"}
-        table.add_column(heading, justify="right" if right else "left", no_wrap=heading != "goal")
-    for comparison in comparisons:
-        for row in _rows(comparison):
-            style = _STYLES.get(row[5].removesuffix(" (cycle)"), "")
-            table.add_row(*row[:5], Text(row[5], style=style), style="bold" if row[0] else "")
-    (console or Console()).print(table)
+    console = console or Console()
+    console.print(f"Searches and the optimum ({comparisons[0].containers} containers)", style="bold")
+    for place, comparison in enumerate(comparisons):
+        table = Table(
+            box=SIMPLE_HEAD if place == 0 else None,
+            show_header=place == 0,
+            pad_edge=False,
+            show_edge=False,
+            padding=0,
+        )
+        for heading, width in _WIDTHS.items():
+            right = heading in {"units", "inputs", "success"}
+            table.add_column(heading, justify="right" if right else "left", no_wrap=True, width=width)
+        goal, *rows = _rows(comparison)
+        for row in (goal, *rows):
+            verdict = Text("  " + row[5], style=_STYLES.get(row[5].removesuffix(" (cycle)"), ""))
+            table.add_row(*row[1:5], verdict, style="bold" if row is goal else "")
+        console.print()
+        console.print(Text(comparison.goal, style="bold cyan"))
+        console.print(table)
+    console.print()
+    for note in _notes(comparisons):
+        console.print(Text(note, style="dim"))
 
 
 def comparisons_markdown(comparisons: Sequence[Comparison]) -> str:
@@ -129,10 +136,12 @@ def _cell(comparison: Comparison, judgement: Judgement, objective: Objective) ->
     if measure is None:
         return ""
     text = _figure(objective, measure)
-    if objective is Objective.UNITS and comparison.beats_the_optimum(judgement):
+    if comparison.beats_the_optimum(judgement, objective):
         text = "†" + text
     ratio = comparison.ratio(judgement, objective)
-    return text if ratio is None else f"{text} {float(ratio):>5.2f}×"
+    if ratio is None:
+        return text
+    return f"{text} {float(ratio):>5.2f}×" if ratio >= Fraction(1, 100) else f"{text} {float(ratio):.0e}×"
 
 
 def _figure(objective: Objective, value: Fraction) -> str:
@@ -151,8 +160,8 @@ def _executes(judgement: Judgement) -> str:
 def _notes(comparisons: Sequence[Comparison]) -> list[str]:
     judged = [(comparison, judgement) for comparison in comparisons for judgement in comparison.judgements]
     notes = [RATIOS]
-    if any(comparison.beats_the_optimum(judgement) for comparison, judgement in judged):
-        notes.append(SMALLER)
+    if any(c.beats_the_optimum(judgement, objective) for c, judgement in judged for objective in MEASURED):
+        notes.append(BETTER)
     if any(judgement.obstacle and judgement.obstacle[2] for _, judgement in judged):
         notes.append(CYCLE)
     if any(o.status == Status.FEASIBLE for comparison in comparisons for o in comparison.optima.values()):

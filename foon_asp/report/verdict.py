@@ -40,8 +40,8 @@ def verdict_json(problem: Problem, listed: Listed, simulation: Simulation) -> st
         "goals": [str(problem.network.objects[o]) for o in problem.goals],
         "containers": str(problem.containers),
         "verdict": str(simulation.verdict),
-        "as_listed": _obstacle_json(listed, simulation.as_listed),
-        "in_any_order": _obstacle_json(listed, simulation.obstacle),
+        "as_listed": obstacle_json(listed, simulation.as_listed),
+        "in_any_order": obstacle_json(listed, simulation.obstacle),
         "order": [position + 1 for position in simulation.order],
         "not_in_network": [position + 1 for position, unit in enumerate(ids) if unit is None],
         "costs": costs_json(problem.costs(_ids(problem, listed))) if known else None,
@@ -69,7 +69,8 @@ def _obstacle_text(listed: Listed, obstacle: Obstacle) -> str:
     return text
 
 
-def _obstacle_json(listed: Listed, obstacle: Obstacle | None) -> dict[str, object] | None:
+def obstacle_json(listed: Listed, obstacle: Obstacle | None) -> dict[str, object] | None:
+    """Give an obstacle; units count from 1, ``None`` stays ``None``."""
     if obstacle is None:
         return None
     if obstacle.unit is None:

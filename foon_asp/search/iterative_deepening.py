@@ -62,6 +62,9 @@ class _DepthLimited:
                 raise TimeoutError
             frame = stack[-1]
             o, bound, tried, looked = frame
+            if o in self.found and self.found[o][0] <= bound:  # meanwhile, within a smaller limit
+                stack.pop()
+                continue
             if tried == len(producers[o]):
                 self.failed[o] = max(bound, self.failed.get(o, -1))
                 stack.pop()
