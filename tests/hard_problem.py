@@ -12,7 +12,8 @@ def hard_problem(width: int = 20, depth: int = 12, producers: int = 4, inputs: i
     rng = random.Random(0)
     builder = NetworkBuilder()
     kitchen = [ObjectNode.of(f"item {i}") for i in range(width)]
-    layer, rates = kitchen, {}
+    layer = kitchen
+    rates: dict[str, Fraction] = {}
     for level in range(depth):
         made = [ObjectNode.of(f"part {level} {i}") for i in range(width)]
         for node in made:
