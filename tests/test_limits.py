@@ -14,7 +14,7 @@ import pytest
 
 from foon_asp.asp import Reporter, Settings, Status, solve
 from foon_asp.problem import Costs, Objective
-from foon_asp.proof import Verdict, simulate
+from foon_asp.proof import Verdict, simulate_for
 from foon_asp.text import write_units
 from tests.hard_problem import hard_problem
 
@@ -41,14 +41,7 @@ def test_time_limit(objective: Objective, seconds: float) -> None:
     assert outcome.status is Status.FEASIBLE
     assert outcome.units is not None
     assert outcome.costs == recorder.trees[-1]
-    objects = problem.network.objects
-    simulation = simulate(
-        problem.tree(outcome.units),
-        frozenset(objects[o] for o in problem.kitchen),
-        tuple(objects[o] for o in problem.goals),
-        problem.containers,
-        problem.utensils,
-    )
+    simulation = simulate_for(problem, problem.tree(outcome.units))
     assert simulation.verdict is Verdict.AS_LISTED
     keys = [costs.key((objective, Objective.UNITS)) for costs in recorder.trees]
     assert keys == sorted(keys, reverse=True)

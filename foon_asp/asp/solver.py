@@ -11,7 +11,7 @@ from foon_asp.asp.program import Program, Settings, assemble
 from foon_asp.asp.search import Deadline, Run, run
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach, relevant
-from foon_asp.proof import Verdict, simulate
+from foon_asp.proof import Verdict, simulate_for
 
 Units = frozenset[int]
 
@@ -273,16 +273,10 @@ class _Solver:
                 self.settings.encodings,
             )
         began = time.perf_counter()
-        problem, objects = self.problem, self.problem.network.objects
+        problem = self.problem
         order = executable_order(problem, units)
         listed = tuple(sorted(units)) if order is None else order
-        simulation = simulate(
-            problem.tree(listed),
-            frozenset(objects[o] for o in problem.kitchen),
-            tuple(objects[o] for o in problem.goals),
-            problem.containers,
-            problem.utensils,
-        )
+        simulation = simulate_for(problem, problem.tree(listed))
         if simulation.verdict is not Verdict.AS_LISTED:
             message = f"the tree found {simulation.verdict}"
             if simulation.obstacle and simulation.obstacle.unit is not None:

@@ -7,7 +7,7 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.network import TaskTree
-from foon_asp.proof import Verdict, simulate
+from foon_asp.proof import Verdict, simulate_for
 from foon_asp.report.verdict import verdict_json, verdict_text
 from foon_asp.text import FoonReader, summarize
 
@@ -40,15 +40,8 @@ def command(
     listed = reader.read_tree(tree_file)
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
-    objects = problem.network.objects
     tree = TaskTree(tuple(unit for unit, _ in listed))
-    simulation = simulate(
-        tree,
-        frozenset(objects[o] for o in problem.kitchen),
-        tuple(objects[o] for o in problem.goals),
-        problem.containers,
-        problem.utensils,
-    )
+    simulation = simulate_for(problem, tree)
     render = {"text": verdict_text, "json": verdict_json}[format_]
     click.echo(render(problem, listed, simulation), nl=False)
     foreign = any(problem.network.unit_id(unit) is None for unit in tree)

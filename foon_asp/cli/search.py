@@ -5,7 +5,7 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.search_options import search_options
-from foon_asp.proof import Verdict, simulate
+from foon_asp.proof import Verdict, simulate_for
 from foon_asp.report.retrieval import retrieval_foon, retrieval_json, retrieval_text
 from foon_asp.search import SEARCHES, Count, Ending, SearchSettings, Ties
 
@@ -48,16 +48,9 @@ def command(
     settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit)
     search = SEARCHES[name]
     retrieval = search.run(problem, settings)
-    objects = problem.network.objects
     simulation = None
     if retrieval.ending is Ending.TREE:
-        simulation = simulate(
-            problem.tree(retrieval.units),
-            frozenset(objects[o] for o in problem.kitchen),
-            tuple(objects[goal] for goal in problem.goals),
-            problem.containers,
-            problem.utensils,
-        )
+        simulation = simulate_for(problem, problem.tree(retrieval.units))
     render = {"text": retrieval_text, "json": retrieval_json, "foon": retrieval_foon}[format_]
     click.echo(render(problem, search, retrieval, simulation), nl=False)
     if retrieval.ending is Ending.UNKNOWN:

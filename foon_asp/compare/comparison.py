@@ -7,7 +7,7 @@ from typing import NamedTuple
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof import Verdict, simulate
+from foon_asp.proof import Verdict, simulate_for
 from foon_asp.search import SEARCHES, Ending, SearchSettings
 
 # The objectives whose optima a tree is held against.
@@ -111,13 +111,7 @@ def judge(problem: Problem, name: str, settings: SearchSettings) -> Judgement:
         stuck_at = None if retrieval.stuck_at is None else str(objects[retrieval.stuck_at])
         return Judgement(name, str(retrieval.ending), stuck_at=stuck_at)
     tree = problem.tree(retrieval.units)
-    simulation = simulate(
-        tree,
-        frozenset(objects[o] for o in problem.kitchen),
-        tuple(objects[goal] for goal in problem.goals),
-        problem.containers,
-        problem.utensils,
-    )
+    simulation = simulate_for(problem, tree)
     obstacle = None
     if simulation.obstacle is not None:
         place, missing, cycle = simulation.obstacle

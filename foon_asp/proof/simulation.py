@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from foon_asp.network import ObjectNode, TaskTree
-from foon_asp.problem import ContainerRule, needed_inputs
+from foon_asp.problem import ContainerRule, Problem, needed_inputs
 
 
 class Verdict(StrEnum):
@@ -41,6 +41,14 @@ class Simulation(NamedTuple):
     order: tuple[int, ...]
     as_listed: Obstacle | None
     obstacle: Obstacle | None
+
+
+def simulate_for(problem: Problem, tree: TaskTree) -> Simulation:
+    """Execute a tree from the kitchen of a problem, for its goals and under its container rule."""
+    objects = problem.network.objects
+    kitchen = frozenset(objects[o] for o in problem.kitchen)
+    goals = tuple(objects[goal] for goal in problem.goals)
+    return simulate(tree, kitchen, goals, problem.containers, problem.utensils)
 
 
 def simulate(
