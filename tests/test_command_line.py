@@ -274,7 +274,7 @@ def test_bad_usage_exits_with_2(cli: Cli, data: Path, words: list[str], message:
         ("FOON.txt", "[pan]", "[pan", "FOON.txt:27:5: error: found '\\t[pan', expected [object]"),
         ("motion.txt", "flip\t0.5", "flip\t1.5", "motion.txt:4:6: error: found the success rate 1.5"),
         ("motion.txt", "flip\t0.5", "flip\thigh", "motion.txt:4:6: error: found 'high', expected a success"),
-        ("motion.txt", "flip\t0.5\n", "", "FOON.txt:29: error: the motion 'flip' has no success rate"),
+        ("motion.txt", "flip\t0.5\n", "", "FOON.txt:29:1: error: the motion 'flip' has no success rate"),
         ("kitchen.json", '"label": "tray"', '"lable": "tray"', "kitchen.json:6:3: error: found the key"),
         ("kitchen.json", "]\n", "", "kitchen.json"),
         ("goal_nodes.json", '"done"', '"eaten"', "goal_nodes.json:1:2: error: the goal 'pancake; eaten"),

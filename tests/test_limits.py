@@ -49,6 +49,13 @@ def test_time_limit(objective: Objective, seconds: float) -> None:
     assert bound >= value if objective is Objective.SUCCESS else bound <= value
 
 
+def test_a_limit_before_any_tree_is_unknown() -> None:
+    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=200",), time_limit=0)
+    outcome = solve(hard_problem(), (Objective.UNITS,), settings)
+    assert outcome.status is Status.UNKNOWN
+    assert outcome.units is None
+
+
 def test_trees_improve_and_bounds_close_in_on_the_optimum() -> None:
     recorder = Recorder()
     outcome = solve(hard_problem(12, 8, 3, 3), (Objective.UNITS,), None, recorder)

@@ -82,7 +82,7 @@ def require_rates(network: Network, rates: Mapping[str, Fraction]) -> None:
             missing.setdefault(motion, unit)
     if missing:
         lines = [
-            f"{network.sources[unit][0]}: error: the motion {motion!r} has no success rate"
+            f"{network.sources[unit][0]}:1: error: the motion {motion!r} has no success rate"
             for motion, unit in list(missing.items())[:10]
         ]
         if len(missing) > 10:

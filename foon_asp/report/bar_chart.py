@@ -19,7 +19,7 @@ _SUFFIXES = (".svg", ".png")
 
 # Okabe and Ito's colors, which people with any of the common color deficiencies can tell apart, ordered so
 # that neighbours differ in lightness too. Their eighth is black, which is the optimum's.
-_COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442")
+_COLORS = ("#0072B2", "#E69F00", "#009E73", "#56B4E9", "#D55E00", "#CC79A7", "#F0E442")
 _OPTIMUM_COLOR = "#000000"
 _INK = "#333333"
 _WAY_COLOR = "#777777"  # of the legend that is about no series
@@ -43,6 +43,7 @@ _EDGES = 0.5  # the height of the legends' and the figure's padding
 # In slots.
 _BAR = 0.8  # the width of a bar
 _GAP = 1.5  # between two groups, at least
+_LEAST_PITCH = 6.0  # from one group to the next, for the words of their names
 _APART = 0.3  # between the searches and the optimum
 
 # In points, of which an inch has 72.
@@ -153,9 +154,10 @@ def _draw(chart: BarChart, figure: "Figure") -> None:
     colors = _series_colors(chart)
     offsets = _offsets(tuple(colors), chart.optimum)
     extent = max(offsets.values()) + 1  # of a group, in slots
-    rows = ceil(len(chart.groups) / max(1, int(_ROW_WIDTH / _SLOT / (extent + _GAP))))
+    pitch = max(extent + _GAP, _LEAST_PITCH)  # from one group to the next, in slots
+    rows = ceil(len(chart.groups) / int(_ROW_WIDTH / _SLOT / pitch))
     columns = ceil(len(chart.groups) / rows)
-    pitch = max(extent + _GAP, _LEAST_ROW_WIDTH / _SLOT / columns)  # from group to group, in slots
+    pitch = max(pitch, _LEAST_ROW_WIDTH / _SLOT / columns)
     names = [fill(group.goal, int(pitch * _SLOT * 72 / _LETTER) - 1) for group in chart.groups]
 
     width = columns * pitch * _SLOT + _MARGIN
@@ -209,7 +211,7 @@ def _add_legend(
     while lines < len(names) and _legend_width(names, lines) > width:
         lines += 1
     title = fill(title, int(width * 72 / _LETTER / 1.4))  # larger than other text, and bold
-    figure.legend(
+    legend = figure.legend(
         swatches,
         names,
         loc=place,
@@ -217,6 +219,7 @@ def _add_legend(
         title=title or None,
         title_fontproperties={"weight": "bold", "size": _TEXT * 1.2},
     )
+    legend.get_title().set_multialignment("center")
     return lines + (title.count("\n") + 2 if title else 0)
 
 
@@ -240,9 +243,12 @@ def _swatch(color: str, way: str) -> "Artist":
 
 def _filling(color: str, way: str) -> tuple[str, str | None]:
     """Give the ground and the hatching of a bar: the emptier it looks, the less its tree is worth."""
-    return {"as listed": (color, None), "reordered": (_lighter(color), "/////"), "never": ("white", None)}[
-        way
-    ]
+    fillings = {
+        "as listed": (color, None),
+        "reordered": (_lighter(color), "/////"),
+        "never": ("white", None),
+    }
+    return fillings[way]
 
 
 def _lighter(color: str) -> str:
