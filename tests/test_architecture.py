@@ -50,8 +50,8 @@ LIBRARIES = {
     "matplotlib": {"report"},
 }
 
-# The only module outside cli/ that prints: a rich table has to know the width of its console.
-PRINTS = {"foon_asp/report/optima_table.py"}
+# The only modules outside cli/ that print: a rich table has to know the width of its console.
+PRINTS = {"foon_asp/report/optima_table.py", "foon_asp/report/comparison_table.py"}
 
 MEANINGLESS = {"common", "helper", "helpers", "misc", "tools", "util", "utils"}
 
