@@ -100,7 +100,7 @@ def parse_node(notation: str) -> ObjectNode:
 def normalize_state(state: str) -> str | Relation:
     """Tell a bare state from a relation written as one, ``under [cooking pan]`` (JSON files have both)."""
     match = "[" in state and re.fullmatch(r"([^\[\]{}]+?) *\[([^\[\]{}]+)\]", state)
-    return Relation(match[1], match[2].strip()) if match else state
+    return Relation(match[1], match[2].strip(" ")) if match else state
 
 
 class _LineBuilder(Transformer[Token, object]):
@@ -143,20 +143,20 @@ class _LineBuilder(Transformer[Token, object]):
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
         label, *notes = (part for part in parts if not isinstance(part, Token) or part.type == "NAME")
         return ObjectNode(
-            str(label).strip(),
+            str(label).strip(" "),
             frozenset(note for note in notes if isinstance(note, str)),
             frozenset(note for note in notes if isinstance(note, Relation)),
             tuple(sorted(note for note in notes if isinstance(note, Contents))),
         )
 
     def note_plain(self, tokens: list[Token]) -> str:
-        return tokens[0].strip()
+        return tokens[0].strip(" ")
 
     def note_related(self, tokens: list[Token]) -> str | Relation | Contents:
-        return _related(tokens[0].strip(), tokens[1], [])
+        return _related(tokens[0].strip(" "), tokens[1], [])
 
     def note_holding(self, tokens: list[Token]) -> Contents:
-        return Contents(tokens[0].strip(), _items(tokens[1], []))
+        return Contents(tokens[0].strip(" "), _items(tokens[1], []))
 
 
 def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
@@ -190,7 +190,7 @@ def _related(name: str, bracket: Token, remarks: list[Remark]) -> str | Relation
         braces = "{" + ",".join(items) + "}"
         remarks.append(_remark(bracket, "contents-bracket", f"{bracket} read as contents {braces}"))
         return Contents(name, items)
-    related = bracket[1:-1].strip()
+    related = bracket[1:-1].strip(" ")
     if not related:
         remarks.append(
             _remark(bracket, "empty-relation", f"nothing in {bracket}; read as the state {name!r}")
@@ -204,17 +204,19 @@ def _related(name: str, bracket: Token, remarks: list[Remark]) -> str | Relation
 def _items(bracket: Token, remarks: list[Remark]) -> tuple[str, ...]:
     """Split ``{a,b}`` at its commas; what is dropped or doubtful is remarked on."""
     items: list[str] = []
+    seen: set[str] = set()
     column = (bracket.column or 1) + 1
     for raw in bracket[1:-1].split(","):
-        item = raw.strip()
+        item = raw.strip(" ")
         if not item:
             remarks.append(Remark(column, "empty-ingredient", "empty ingredient left out"))
         else:
             if item != raw:
                 remarks.append(Remark(column, "outer-space", f"spaces around {item!r} left out"))
-            if item in items:
+            if item in seen:
                 remarks.append(Remark(column, "repeated-ingredient", f"ingredient {item!r} is listed twice"))
             items.append(item)
+            seen.add(item)
         column += len(raw) + 1
     return tuple(sorted(items))
 

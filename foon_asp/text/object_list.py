@@ -52,6 +52,8 @@ def read_object_list(file: Path) -> list[ListedObject]:
                 errors.append(error(offset, str(problem)))
     except json.JSONDecodeError as problem:
         errors.append(error(problem.pos, f"not JSON: {problem.msg}"))
+    except RecursionError:
+        errors.append(error(0, "found lists within lists without end, expected a list of objects"))
     if errors:
         raise InputError(errors)
     return entries
