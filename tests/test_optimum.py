@@ -53,6 +53,15 @@ def test_lexicographic_lists(rule: ContainerRule) -> None:
         assert_agrees(problem, [str(objective) for objective in objectives], found)
 
 
+@pytest.mark.parametrize("rule", RULES)
+def test_trees_by_need_have_the_same_optima(rule: ContainerRule) -> None:
+    for seed in range(4000, 4200):
+        problem = random_problem(seed, rule)
+        found = list(oracle.trees(problem))
+        for objective in Objective:
+            assert_agrees(problem, [str(objective)], found, Settings(encodings=Path("by_need")))
+
+
 def constraint(seed: int, problem: Problem) -> tuple[str, list[str], oracle.Allowed]:
     """Draw one of the ready-made constraints, its constants, and the same as a predicate on trees."""
     rng = random.Random(seed)

@@ -155,7 +155,7 @@ def test_another_measure_is_said_to_be_one(cli: Cli, own_encodings: Path) -> Non
 def test_a_folder_without_encodings_is_refused(cli: Cli, tmp_path: Path) -> None:
     ran = cli("solve", "--goal", "ice", "--encodings", tmp_path)
     assert ran.code == 2
-    assert "task_tree.lp: no such file; a folder of encodings holds" in ran.err
+    assert "expected a folder with encodings to use instead of ours: task_tree.lp" in ran.err
 
 
 def test_clingo_options_reach_clingo(cli: Cli) -> None:

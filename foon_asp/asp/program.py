@@ -34,7 +34,7 @@ _RESERVED = (
 class Settings(NamedTuple):
     """How to solve, and under which constraints.
 
-    ``constraints`` are files added to the encodings; ``encodings`` is a folder that replaces ours;
+    ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
     interrupted.
@@ -67,11 +67,8 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     no encoding has and for clingo options that would change what an answer means.
     """
     ours = encodings_folder()
-    folder = settings.encodings or ours
-    base = tuple(folder / name for name in ENCODING_FILES)
-    for file in base:
-        if not file.is_file():
-            raise UserError(f"{file}: no such file; a folder of encodings holds {', '.join(ENCODING_FILES)}")
+    folder = _find_encodings(settings.encodings, ours)
+    base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
     added = tuple(dict.fromkeys(find_constraint(path) for path in settings.constraints))
     constants: list[str] = []
     if added or settings.encodings or settings.constants:
@@ -91,6 +88,17 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         (*constants, *_clingo_options(settings.clingo_options)),
         own=not added and settings.encodings is None,
     )
+
+
+def _find_encodings(path: Path | None, ours: Path) -> Path:
+    """Give a folder of encodings: the path itself, or one of ours by name (``by_need``)."""
+    if path is None:
+        return ours
+    folder = ours / path.name if not path.is_dir() and path.name == str(path) else path
+    if any((folder / name).is_file() for name in ENCODING_FILES):
+        return folder
+    names = ", ".join(ENCODING_FILES)
+    raise UserError(f"{path}: expected a folder with encodings to use instead of ours: {names}")
 
 
 def find_constraint(path: Path) -> Path:

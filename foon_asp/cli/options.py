@@ -35,7 +35,9 @@ _CONSTRAINT_OPTIONS = (
         metavar="FILE.lp",
         help="Add an encoding of yours, or one of ours by name; repeatable.",
     ),
-    click.option("--encodings", type=_PATH, metavar="DIR", help="Use the encodings of a folder, not ours."),
+    click.option(
+        "--encodings", type=_PATH, metavar="DIR", help="Use the encodings of a folder instead of ours."
+    ),
 )
 
 goal_option = click.option(
