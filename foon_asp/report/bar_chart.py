@@ -1,6 +1,5 @@
 """The bar chart of task tree sizes: the searches beside the proved optimum, goal by goal."""
 
-import os
 from collections.abc import Sequence
 from io import BytesIO
 from math import ceil
@@ -9,6 +8,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.report.whole_file import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -119,16 +119,7 @@ def write_chart(chart: BarChart, file: Path) -> None:
         raise UserError(f"{file}: a chart is written as {' or '.join(_SUFFIXES)}; name such a file")
     if not chart.groups:
         raise UserError(f"{file}: no goal to draw a chart of")
-    picture = _picture(chart, suffix.removeprefix("."))
-    partial = file.with_name(f".{file.name}.{os.getpid()}")
-    try:
-        try:
-            partial.write_bytes(picture)
-            partial.replace(file)
-        finally:
-            partial.unlink(missing_ok=True)
-    except OSError as error:
-        raise UserError(f"{file}: cannot be written: {error.strerror or error}") from None
+    write_whole(file, _picture(chart, suffix.removeprefix(".")))
 
 
 def _picture(chart: BarChart, form: str) -> bytes:
