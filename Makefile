@@ -1,4 +1,4 @@
-# make demo   solve every goal of the bundled kitchen and print one table
+# make demo   solve every goal of the bundled kitchen, compare the searches with the optimum, draw a tree
 # make test   the tests, in less than three minutes; make test-slow for the long ones
 # make lint   style and types
 # make bench  the benchmarks
@@ -11,7 +11,12 @@ BIN := .venv/bin
 .PHONY: demo test test-slow lint bench clean
 
 demo: .venv/installed
+	@mkdir -p demo
+	@$(BIN)/foon-asp compare --chart demo/searches.svg --chart demo/searches.png
+	@echo
 	@$(BIN)/foon-asp optima
+	@echo
+	@$(BIN)/foon-asp draw --goal macaroni -o demo/macaroni.svg
 
 test: .venv/installed-dev
 	$(BIN)/python -m pytest
@@ -35,9 +40,9 @@ clean:
 	$(PYTHON) -m venv .venv
 
 .venv/installed: pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[pictures]'
 	@touch $@
 
 .venv/installed-dev: pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,pictures]'
 	@touch .venv/installed $@

