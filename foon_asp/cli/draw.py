@@ -128,8 +128,7 @@ def _render(drawing: Drawing, format_: str) -> bytes:
         return dot.encode()
     if drawing.units > _LARGEST:
         raise UserError(
-            f"a picture of {drawing.units} units would take minutes to lay out and could not be followed: draw "
-            "a task tree (--goal) or units (--unit), or write DOT (--format dot), which programs for large "
-            "graphs read"
+            f"a picture of {drawing.units} units would take minutes to lay out, and nobody could follow it: "
+            "draw a task tree (--goal) or units (--unit), or write DOT (--format dot) for another program"
         )
     return render_svg(dot) if format_ == "svg" else render_png(dot)
