@@ -39,6 +39,8 @@ from foon_asp.text import find_goal, listed_nodes
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+_CHARTED = 60  # goals that a chart has room for
+
 
 @click.command("compare")
 @click.option(
@@ -117,6 +119,8 @@ def command(
         goals = [node for entry in listed for node in listed_nodes(entry, network)]
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
+    if charts and len(goals) > _CHARTED:
+        raise UserError(f"a chart of {len(goals)} goals could not be read; name up to {_CHARTED} with --goal")
     settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit)
     problem = question.problem((goals[0],), containers)
     rows = _run(problem, goals, searches, settings, jobs, results)
