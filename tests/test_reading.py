@@ -178,7 +178,7 @@ def test_errors_name_place_found_and_expected(
     text: str, place: tuple[int, int], message: str, left_out: int
 ) -> None:
     if "before the motion" in message:
-        text, place, left_out = "M\tmix\nO\tb\n//\n", (1, 1), 2
+        text, place, left_out = "M\tmix\nO\tb\n//\n", (3, 1), 2
     _, reader = units(text + GOOD)
     with pytest.raises(InputError) as caught:
         reader.raise_errors()
@@ -287,11 +287,11 @@ def test_no_text_crashes_the_reader_and_nothing_is_lost_silently(lines: list[str
     text = end.join(lines)
     read, reader = units(text)
     for diagnostic in reader.diagnostics:
-        line = text.replace("\r\n", "\n").split("\n")[diagnostic.source.line - 1]
+        line = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")[diagnostic.source.line - 1]
         assert 1 <= diagnostic.source.column <= len(line) + 1
         assert str(diagnostic)
     if not reader.diagnostics:
-        meaningful = [x for x in text.replace("\r\n", "\n").split("\n") if x[:1] == "M"]
+        meaningful = [x for x in text.replace("\r\n", "\n").replace("\r", "\n").split("\n") if x[:1] == "M"]
         assert len(read) == len(meaningful)
     lenient_units, lenient = units(text, lenient=True)
     lenient.raise_errors()

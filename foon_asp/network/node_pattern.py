@@ -28,10 +28,9 @@ class NodePattern(NamedTuple):
             or not self.relations <= node.relations
         ):
             return False
-        others = node.relations - self.relations
         if self.container is None:
-            return not others
-        return any(relation.object == self.container for relation in others)
+            return node.relations == self.relations
+        return node.is_in(self.container)
 
     def __str__(self) -> str:
         parts = [self.label, *sorted(self.states), *map(str, sorted(self.relations))]

@@ -38,7 +38,9 @@ def find_goal(name: str, network: Network, listed: Sequence[ListedObject] = ()) 
         raise UserError(
             f"no object node is exactly {str(node)!r}; with that label there are\n" + _list(network, labelled)
         )
-    near = difflib.get_close_matches(node.label, network.by_label, n=3, cutoff=0.6)
+    lower = {label.lower(): label for label in network.by_label}
+    found = difflib.get_close_matches(node.label.lower(), lower, n=3, cutoff=0.6)
+    near = [lower[name] for name in found]
     message = f"no object node has the label {node.label!r}"
     if near:
         candidates = [o for label in near for o in network.by_label[label]]

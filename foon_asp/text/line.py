@@ -59,6 +59,7 @@ _TERMINALS = {
     "OBJECT": "an object line (O, tab, label)",
     "STATE": "a state line (S, tab, state)",
     "MOTION": "a motion line (M, tab, motion)",
+    "SEPARATOR": "a separator (//)",
     "TEXT": "a name",
     "NAME": "a name",
     "FIELD": "a tab and a flag or time",
@@ -94,7 +95,7 @@ def parse_node(notation: str) -> ObjectNode:
 
     Raises :class:`LineError` when the grammar does not accept it.
     """
-    return cast(ObjectNode, _parse("node", notation))
+    return cast(ObjectNode, _parse("node", re.sub(r"(?<=[\]}]) +(?=;|$)", "", notation).rstrip(" ")))
 
 
 def normalize_state(state: str) -> str | Relation:
@@ -115,6 +116,11 @@ class _LineBuilder(Transformer[Token, object]):
         if len(tokens) > 2 and tokens[2] not in _FLAGS:
             flag = tokens[2][1:]
             remarks.append(_remark(tokens[2], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
+        remarks += [
+            _remark(token, "unknown-field", f"{token[1:]!r} left out", 1)
+            for token in tokens[3:]
+            if not token[1:].isdigit()
+        ]
         return ObjectLine(label, tuple(remarks))
 
     def motion(self, tokens: list[Token]) -> MotionLine:
@@ -253,5 +259,7 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
     found = "the end of the line"
     if rest:
         found = repr(rest if len(rest) <= 24 else rest[:24] + "...")
+    if in_file and {"OBJECT", "STATE", "MOTION"} <= names:
+        names.add("SEPARATOR")
     expected = tuple(dict.fromkeys(phrase for name, phrase in _TERMINALS.items() if name in names))
     return LineError(column, found, expected)

@@ -108,10 +108,10 @@ def _pattern(value: object) -> NodePattern:
         else:
             states.add(attribute)
     return NodePattern(
-        label.strip(),
+        label.strip(" "),
         frozenset(states),
         tuple(sorted(_names(value, "ingredients"))),
-        container.strip() if container else None,
+        (container or "").strip(" ") or None,
         frozenset(relations),
     )
 
@@ -120,4 +120,4 @@ def _names(value: dict[str, object], key: str) -> list[str]:
     names = value.get(key) or []
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise ValueError(f'found {json.dumps(names)[:40]} as "{key}", expected a list of names')
-    return [name.strip() for name in names]
+    return [name.strip(" ") for name in names]

@@ -10,6 +10,8 @@ from foon_asp.text.plain_file import read_plain_text
 
 _DECIMAL = re.compile(r"\d+(\.\d*)?|\.\d+", re.ASCII)
 
+_LONGEST = 1000  # letters of a rate: no table means more
+
 
 def read_rates(file: Path) -> dict[str, Fraction]:
     """Read ``motion⇥rate`` lines; rates are decimals in (0, 1], kept exactly.
@@ -33,6 +35,10 @@ def read_rates(file: Path) -> dict[str, Fraction]:
         column = len(motion) + 2
         if not tab:
             reject(len(line) + 1, "found the end of the line, expected a tab and a success rate")
+        elif not motion.strip():
+            reject(1, "found a success rate, expected the motion before it")
+        elif len(value) > _LONGEST:
+            reject(column, f"found a number of {len(value)} letters, expected at most {_LONGEST}")
         elif not _DECIMAL.fullmatch(value):
             reject(column, f"found {value!r}, expected a success rate as a decimal such as 0.85")
         elif not 0 < Fraction(value) <= 1:

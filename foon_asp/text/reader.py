@@ -48,24 +48,26 @@ class FoonReader:
     def read_network(self, files: Iterable[Path]) -> Network:
         """Read and merge files; raises :class:`InputError` with all errors of all files."""
         builder = NetworkBuilder()
+        earlier = len(self.diagnostics)
         for file in files:
             for unit in self.units(read_plain_text(file), str(file)):
                 builder.add(*unit)
-        self.raise_errors()
+        self.raise_errors(earlier)
         return builder.build()
 
     def read_tree(self, file: Path) -> list[tuple[FunctionalUnit, Source]]:
         """Read one file as units in listed order, copies kept; raises :class:`InputError`."""
+        earlier = len(self.diagnostics)
         units = [
             (FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs), unit.source)
             for unit in self.units(read_plain_text(file), str(file))
         ]
-        self.raise_errors()
+        self.raise_errors(earlier)
         return units
 
-    def raise_errors(self) -> None:
-        """Raise :class:`InputError` if anything read so far was an error."""
-        errors = [d for d in self.diagnostics if d.severity is Severity.ERROR]
+    def raise_errors(self, earlier: int = 0) -> None:
+        """Raise :class:`InputError` if anything but the ``earlier`` diagnostics was an error."""
+        errors = [d for d in self.diagnostics[earlier:] if d.severity is Severity.ERROR]
         if errors:
             raise InputError(errors)
 
@@ -99,8 +101,9 @@ class _FileReading:
     def __init__(self, reader: FoonReader, text: str, file: str) -> None:
         self.reader = reader
         self.file = file
-        self.lines = text.replace("\r\n", "\n").split("\n")
+        self.lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         self.videos: tuple[str, ...] = ()
+        self.rejected = 0  # how often something was, so far
         reader.parse_new(self.lines)
 
     def units(self) -> Iterator[ReadUnit]:
@@ -112,7 +115,7 @@ class _FileReading:
             if first == "#":
                 if line.startswith(_VIDEO):
                     video = line[len(_VIDEO) :].strip()
-                    self.videos = (*self.videos, video) if header_open else (video,)
+                    self.videos = (*(self.videos if header_open else ()), *([video] if video else []))
                     header_open = True
             elif first == "/" and line.rstrip(" \t") == "//":
                 unit = self._unit(start, index)
@@ -135,6 +138,7 @@ class _FileReading:
         side = inputs
         block: list[str] = []  # the open object block, which began on line block_start
         block_start = first_line = -1
+        rejected_before = self.rejected, self.reader.left_out
         for index in range(start, end):
             line = lines[index]
             letter = line[:1]
@@ -159,19 +163,26 @@ class _FileReading:
             self._close(block, block_start, side)
         if first_line < 0:
             return None
-        if motion is None:
-            at_end = end == len(lines)
-            found = "the file ends" if at_end else "found //"
-            message = f"{found}, expected a motion line: the unit of line {first_line + 1} has no motion"
-            self._reject("no-motion", message, end - 1 if at_end else end, count=end - first_line)
-            return None
-        if not inputs:
-            message = f"expected an object line before the motion {motion!r}: the unit has no input objects"
-            self._reject("no-inputs", message, first_line, count=end - first_line)
+        if motion is None or not inputs:
+            message = "has no motion" if motion is None else "has no input objects"
+            self._drop(first_line, end, message, rejected_before)
             return None
         if not outputs:
             self._warn("no-outputs", f"the unit {motion!r} has no output objects", first_line)
         return ReadUnit(motion, inputs, outputs, Source(self.file, first_line + 1, 1, self.videos))
+
+    def _drop(self, first_line: int, end: int, lacks: str, before: tuple[int, int]) -> None:
+        """Reject the lines of a unit that is none; where a line of it was, that already says why."""
+        meaningful = [i for i in range(first_line, end) if self.lines[i].strip() and self.lines[i][0] != "#"]
+        rejected, left_out = before
+        if self.rejected == rejected or self.reader.lenient:
+            at_end = end == len(self.lines)
+            found = "the file ends" if at_end else "found //"
+            expected = "a motion line" if lacks == "has no motion" else "an object line before the motion"
+            message = f"{found}, expected {expected}: the unit of line {first_line + 1} {lacks}"
+            code = "no-motion" if lacks == "has no motion" else "no-inputs"
+            count = len(meaningful) - (self.reader.left_out - left_out)
+            self._reject(code, message, meaningful[-1] if at_end else end, count=count)
 
     def _motion(self, index: int) -> str | None:
         parsed = self.reader.parse(self.lines[index])
@@ -259,6 +270,7 @@ class _FileReading:
     def _reject(self, code: str, message: str, index: int, column: int = 1, count: int = 1) -> None:
         """Note an error, or under ``lenient`` a warning that ``count`` lines were left out."""
         reader = self.reader
+        self.rejected += 1
         severity = Severity.ERROR
         if reader.lenient:
             severity = Severity.WARNING

@@ -23,4 +23,8 @@ def write_unit(unit: FunctionalUnit) -> str:
 
 def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -> str:
     """Give a whole FOON text: comment lines, ``//``, and the units in order."""
-    return "".join(f"# {comment}\n" for comment in comments) + "//\n" + "".join(map(write_unit, units))
+    return (
+        "".join(f"# {line}\n" for comment in comments for line in comment.split("\n"))
+        + "//\n"
+        + "".join(map(write_unit, units))
+    )
