@@ -333,6 +333,8 @@ def test_kitchen_entries_know_their_place_and_form(tmp_path: Path) -> None:
         ('[{"label": "a"}] []', "1:18"),
         ('[{"label": "a"', "1:15"),
         ("[" * 100_000, "1:1"),
+        ("[" + "9" * 5000 + "]", "1:1"),
+        ('[{"label": "a", "states": ""}]', "1:2"),
     ],
 )
 def test_broken_json_is_located(tmp_path: Path, text: str, place: str) -> None:

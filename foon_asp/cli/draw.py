@@ -1,41 +1,65 @@
 """``foon-asp draw``: pictures of units, task trees and networks."""
 
 import sys
+from collections.abc import Iterable
+from enum import StrEnum
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
-from foon_asp.asp import Settings, solve
+from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
-from foon_asp.network import Network
-from foon_asp.problem import parse_objectives
+from foon_asp.network import FunctionalUnit, TaskTree
+from foon_asp.problem import ContainerRule, parse_objectives
+from foon_asp.proof import Verdict, simulate
 from foon_asp.report.answer import headline
-from foon_asp.report.dot import write_dot
-from foon_asp.report.drawing import Drawing, draw_units
-from foon_asp.report.mermaid import write_mermaid
-from foon_asp.report.picture import render_png, render_svg
+from foon_asp.report.dot import dot_text
+from foon_asp.report.drawing import Drawing, draw_network, draw_tree
+from foon_asp.report.mermaid import mermaid_markdown, mermaid_text
+from foon_asp.report.picture import png_picture, svg_picture
 from foon_asp.report.whole_file import write_whole
-from foon_asp.text import FoonReader, find_goal, summarize
+from foon_asp.text import Data, FoonReader, summarize
 
-_SUFFIXES = {".dot": "dot", ".svg": "svg", ".png": "png", ".mmd": "mermaid"}
-_LARGEST = 300  # units in a picture: laying out more takes minutes, and nobody could follow it
+
+class _Format(StrEnum):
+    DOT = "dot"
+    SVG = "svg"
+    PNG = "png"
+    MERMAID = "mermaid"
+
+
+_SUFFIXES = {
+    ".dot": _Format.DOT,
+    ".svg": _Format.SVG,
+    ".png": _Format.PNG,
+    ".mmd": _Format.MERMAID,
+    ".md": _Format.MERMAID,
+}
 
 
 @click.command("draw")
 @options.goal_option
-@click.option("--tree", type=click.Path(path_type=Path), metavar="TREE.txt", help="A task tree in FOON text.")
-@click.option("--unit", "units", type=int, multiple=True, metavar="ID", help="A unit by id; repeatable.")
 @click.option(
-    "--output", "-o", type=click.Path(path_type=Path), metavar="FILE", help="Where to; stdout by default."
+    "--tree", "tree_file", type=click.Path(path_type=Path), metavar="TREE.txt", help="A task tree to draw."
+)
+@click.option("--unit", "units", multiple=True, type=int, metavar="ID", help="A unit to draw; repeatable.")
+@click.option(
+    "-o",
+    "--output",
+    "file",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help=f"Where to write; {' '.join(_SUFFIXES)} say in which format.",
 )
 @click.option(
     "--format",
     "format_",
-    type=click.Choice(["dot", "svg", "png", "mermaid"]),
-    help="By default what the suffix of FILE says, or dot.",
+    type=click.Choice([str(form) for form in _Format]),
+    help="In which format, whatever the file is called; without a file DOT, to stdout.",
 )
 @options.objective_option
 @options.containers_option
@@ -43,9 +67,9 @@ _LARGEST = 300  # units in a picture: laying out more takes minutes, and nobody 
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
-    tree: Path | None,
+    tree_file: Path | None,
     units: tuple[int, ...],
-    output: Path | None,
+    file: Path | None,
     format_: str | None,
     objectives: tuple[str, ...],
     containers: str,
@@ -53,82 +77,141 @@ def command(
     lenient: bool,
     **data: object,
 ) -> ExitCode:
-    r"""Draw a task tree, units of the network, or the network as a whole.
+    """Draw an optimal task tree, a given one, some functional units, or a whole network.
 
     \b
-    foon-asp draw --goal macaroni -o tree.svg        the optimal task tree
-    foon-asp draw --tree tree.txt -o tree.png        a task tree in FOON text
-    foon-asp draw --unit 12 --unit 13 -o units.svg   units, by id
-    foon-asp draw --network recipe.txt -o whole.dot  everything
+    foon-asp draw --goal macaroni -o tree.svg                the optimal task tree for a goal
+    foon-asp draw --tree tree.txt --goal macaroni -o t.png   a task tree read from FOON text
+    foon-asp draw --unit 12 -o unit.svg                      one functional unit, by id
+    foon-asp draw --network FILE -o whole.dot                a whole network
 
-    Objects are green, those at hand pale green, goals framed in gold; motions are red. A dashed arrow gives
-    back an input; in a task tree, what a step gives back is left out.
+    With --tree and --unit, --goal says which nodes are shown as goals, and nothing is solved. Exits with 0
+    when there is a picture; for the tree of a goal as `solve` does.
     """
+    form = _format(file, format_)
+    if tree_file is not None and units:
+        raise UserError("--tree and --unit are two different drawings: give one of them")
+    to_solve = bool(goals_named) and tree_file is None and not units
+    source = click.get_current_context().get_parameter_source("objectives")
+    if not to_solve and source is not ParameterSource.DEFAULT:
+        raise UserError("--objective chooses among the task trees for a --goal: here is nothing to choose")
     chosen = parse_objectives(objectives)
-    format_ = _format(format_, output)
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
-    network, kitchen = question.data.network, question.data.kitchen
-    goals = [find_goal(name, network, question.data.goals) for name in goals_named]
+    goals = question.goals(goals_named) if goals_named else ()
     code = ExitCode.DONE
-    if tree is not None:
-        drawing = draw_units(network, _tree_units(network, tree, lenient), kitchen, goals, numbered=True)
-    elif units:
-        unknown = [unit for unit in units if not 0 <= unit < len(network)]
-        if unknown:
-            raise UserError(f"the network has no unit {unknown[0]}; its units are 0 to {len(network) - 1}")
-        drawing = draw_units(network, units, kitchen, goals)
-    elif goals:
+    if to_solve:
         with Progress() as progress:
-            problem = question.problem(tuple(goals), containers)
-            outcome = solve(problem, chosen, Settings(time_limit=time_limit), progress)
-        click.echo(headline(outcome), err=True)
+            outcome = solve(
+                question.problem(goals, containers), chosen, Settings(time_limit=time_limit), progress
+            )
         code = of_status(outcome.status)
+        if outcome.status is not Status.OPTIMAL:
+            click.echo(headline(outcome), err=True)
         if outcome.units is None:
             return code
-        drawing = draw_units(network, outcome.units, kitchen, goals, numbered=True)
+        drawing = _solved_tree(outcome, outcome.units)
+    elif tree_file is not None:
+        drawing = _given_tree(question.data, goals, tree_file, ContainerRule(containers), lenient)
     else:
-        drawing = draw_units(network, range(len(network)), kitchen, goals)
-    picture = _render(drawing, format_)
-    if output is None:
-        sys.stdout.buffer.write(picture)
-    else:
-        write_whole(output, picture)
-        click.echo(f"wrote {output}", err=True)
+        drawing = _subgraph(question.data, goals, units)
+    _write(drawing, form, file)
     return code
 
 
-def _format(format_: str | None, output: Path | None) -> str:
-    if format_ is None and output is not None:
-        format_ = _SUFFIXES.get(output.suffix.lower())
-        if format_ is None:
-            raise UserError(f"{output}: expected a name that ends in {', '.join(_SUFFIXES)}, or --format")
-    if format_ == "png" and output is None and sys.stdout.isatty():
-        raise UserError("a PNG does not go to a terminal; name a file with --output")
-    return format_ or "dot"
+def _format(file: Path | None, named: str | None) -> _Format:
+    """Choose the format, before anything is read or solved."""
+    if named is not None:
+        form = _Format(named)
+    elif file is None:
+        form = _Format.DOT
+    else:
+        found = _SUFFIXES.get(file.suffix.lower())
+        if found is None:
+            raise UserError(
+                f"{file}: the name says no format: end it in {' '.join(_SUFFIXES)}, or give --format"
+            )
+        form = found
+    if form is _Format.PNG and file is None and sys.stdout.isatty():
+        raise UserError("a terminal cannot show PNG: name a file with -o")
+    return form
 
 
-def _tree_units(network: Network, file: Path, lenient: bool) -> list[int]:
+def _solved_tree(outcome: Outcome, units: tuple[int, ...]) -> Drawing:
+    problem = outcome.problem
+    objects = problem.network.objects
+    goals = [objects[o] for o in problem.goals]
+    caption = (f"Task tree for {_joined(goals)}", headline(outcome))
+    tree = problem.tree(units)
+    return draw_tree(tree.units, {objects[o] for o in problem.kitchen}, goals, caption)
+
+
+def _given_tree(
+    data: Data, goal_ids: tuple[int, ...], file: Path, containers: ContainerRule, lenient: bool
+) -> Drawing:
+    """Number the units in an order that executes, if one does, and say whether."""
     reader = FoonReader(lenient)
-    units = []
-    for unit, source in reader.read_tree(file):
-        unit_id = network.unit_id(unit)
-        if unit_id is None:
-            raise UserError(f"{source}:1: error: the unit {unit.motion!r} is not one of the network")
-        units.append(unit_id)
+    tree = TaskTree(tuple(dict.fromkeys(unit for unit, _ in reader.read_tree(file))))
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
-    return units
+    if not tree.units:
+        raise UserError(f"{file}: no functional unit to draw")
+    objects = data.network.objects
+    kitchen = frozenset(objects[o] for o in data.kitchen)
+    goals = tuple(objects[o] for o in goal_ids)
+    simulation = simulate(tree, kitchen, goals, containers, data.utensils)
+    units = tree.units
+    if simulation.verdict is Verdict.REORDERED:
+        units = tuple(units[position] for position in simulation.order)
+    title = f"Task tree {file.name}" + (f" for {_joined(goals)}" if goals else "")
+    verdict = {
+        Verdict.AS_LISTED: "executes as listed",
+        Verdict.REORDERED: "executes in the order of the numbers, not as listed",
+        Verdict.NEVER: "does not execute; numbered as listed",
+    }[simulation.verdict]
+    return draw_tree(units, kitchen, goals, (title, f"{verdict} ({containers} containers), {_count(units)}"))
 
 
-def _render(drawing: Drawing, format_: str) -> bytes:
-    if format_ == "mermaid":
-        return write_mermaid(drawing).encode()
-    dot = write_dot(drawing)
-    if format_ == "dot":
-        return dot.encode()
-    if drawing.units > _LARGEST:
-        raise UserError(
-            f"a picture of {drawing.units} units would take minutes to lay out, and nobody could follow it: "
-            "draw a task tree (--goal) or units (--unit), or write DOT (--format dot) for another program"
-        )
-    return render_svg(dot) if format_ == "svg" else render_png(dot)
+def _subgraph(data: Data, goal_ids: tuple[int, ...], unit_ids: tuple[int, ...]) -> Drawing:
+    """Draw the units that are named, or else all."""
+    network = data.network
+    for unit in unit_ids:
+        if not 0 <= unit < len(network):
+            raise UserError(f"there is no unit {unit}: the network has units 0 to {len(network) - 1}")
+    shown = tuple(dict.fromkeys(unit_ids)) or tuple(range(len(network)))
+    if not unit_ids:
+        caption = [f"A network of {_count(shown)}"]
+    elif len(shown) == 1:
+        file, line, *_ = network.sources[shown[0]][0]
+        caption = [f"Functional unit {shown[0]} ({Path(file).name}, line {line})"]
+    else:
+        caption = [f"Functional units {', '.join(map(str, shown))}"]
+    units = [(unit, network.unit(unit)) for unit in shown]
+    objects = network.objects
+    return draw_network(units, {objects[o] for o in data.kitchen}, {objects[o] for o in goal_ids}, caption)
+
+
+def _joined(nodes: Iterable[object]) -> str:
+    return " + ".join(map(str, nodes))
+
+
+def _count(units: tuple[FunctionalUnit, ...] | tuple[int, ...]) -> str:
+    return "1 unit" if len(units) == 1 else f"{len(units)} units"
+
+
+def _write(drawing: Drawing, form: _Format, file: Path | None) -> None:
+    """Write the picture to the file, or to stdout."""
+    if form is _Format.SVG:
+        content = svg_picture(drawing)
+    elif form is _Format.PNG:
+        content = png_picture(drawing)
+    elif form is _Format.DOT:
+        content = dot_text(drawing).encode()
+    elif file is not None and file.suffix.lower() == ".md":
+        content = mermaid_markdown(drawing).encode()
+    else:
+        content = mermaid_text(drawing).encode()
+    if file is None:
+        click.echo(content, nl=False)
+    else:
+        write_whole(file, content)
+        click.echo(f"wrote {file}", err=True)

@@ -1,96 +1,148 @@
-"""What a picture shows: shapes for object nodes and motions, arrows between them, whatever the format."""
+"""What a picture shows: boxes with a role and text, and arrows between them, whatever the format."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Collection, Iterable, Sequence
 from enum import StrEnum
 from textwrap import wrap
 from typing import NamedTuple
 
-from foon_asp.network import Network, ObjectNode
+from foon_asp.network import FunctionalUnit, ObjectNode
 
-_WIDTH = 22  # of a line of text in a shape, in letters
+_LINE = 22  # letters in a line of a box
+_HEAD_LINE = 20  # letters in a line of bold text, which is wider
+
+# What XML, and with it SVG, cannot hold.
+_UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Role(StrEnum):
-    """What a shape stands for; each has its color."""
+    """What a box stands for, in the words of a legend."""
 
-    OBJECT = "object"
-    KITCHEN = "kitchen"
-    GOAL = "goal"
     MOTION = "motion"
+    KITCHEN = "kitchen item"
+    OBJECT = "object"
+    BY_PRODUCT = "by-product"
+    GOAL = "goal"
 
 
-class Shape(NamedTuple):
-    """A box: ``title`` and ``notes`` are lines of text, wrapped; ``name`` is unique in the drawing."""
+class Box(NamedTuple):
+    """A node of the picture: ``head`` are the lines of its name, ``details`` those below it."""
 
     name: str
     role: Role
-    title: tuple[str, ...]
-    notes: tuple[str, ...] = ()
-
-
-class Arrow(NamedTuple):
-    """From shape to shape, by name; ``again`` where a unit gives back one of its inputs."""
-
-    tail: str
-    head: str
-    again: bool = False
+    head: tuple[str, ...]
+    details: tuple[str, ...] = ()
 
 
 class Drawing(NamedTuple):
-    """Shapes and arrows, in an order that does not depend on anything but the question."""
+    """Boxes, and arrows between boxes by their names, under a caption of a line or more."""
 
-    shapes: tuple[Shape, ...]
-    arrows: tuple[Arrow, ...]
+    caption: tuple[str, ...]
+    boxes: tuple[Box, ...]
+    arrows: tuple[tuple[str, str], ...]
 
     @property
     def units(self) -> int:
-        """Count the functional units drawn."""
-        return sum(shape.role is Role.MOTION for shape in self.shapes)
+        """Count the functional units, each of which is one motion."""
+        return sum(box.role is Role.MOTION for box in self.boxes)
 
 
-def draw_units(
-    network: Network,
-    units: Sequence[int],
-    kitchen: frozenset[int] = frozenset(),
-    goals: Sequence[int] = (),
-    numbered: bool = False,
+def draw_tree(
+    units: Sequence[FunctionalUnit],
+    kitchen: Collection[ObjectNode],
+    goals: Collection[ObjectNode],
+    caption: Iterable[str],
 ) -> Drawing:
-    """Draw units of a network, by id.
+    """Draw the units of a task tree, numbered in the order given, so that arrows lead from step to step.
 
-    A task tree is ``numbered``: its motions carry the number of their step. Kitchen items are drawn anew for
-    every step that takes them, as leaves, and what a step gives back or makes once more is left out: both
-    keep the branches of a large tree apart. Otherwise every object has one shape, and all arrows are there.
+    What comes from the kitchen is a box of its own at every use, and so is every by-product: an output
+    that is no goal, that no unit takes, that the kitchen has or that an earlier step has made. One shared
+    box for the knife, or for the tap that runs all the time, would tie everything to everything.
     """
-    shapes: dict[str, Shape] = {}
-    arrows: list[Arrow] = []
-    made: set[int] = set()
+    canvas = _Canvas(kitchen, goals)
+    taken = {node for unit in units for node in unit.inputs if node not in kitchen}
+    made: set[ObjectNode] = set()
+    for step, unit in enumerate(units, 1):
+        motion = canvas.motion(f"{step}. {unit.motion}")
+        for node in unit.inputs:
+            at_hand = node in kitchen
+            canvas.arrow(canvas.copy(node, Role.KITCHEN) if at_hand else canvas.shared(node), motion)
+        for node in unit.outputs:
+            first = node not in made and node not in kitchen and (node in taken or node in goals)
+            canvas.arrow(motion, canvas.shared(node) if first else canvas.copy(node, Role.BY_PRODUCT))
+        made.update(unit.outputs)
+    for goal in goals:
+        canvas.shared(goal)  # one that the kitchen holds needs no unit, and is part of the picture
+    return canvas.drawing(caption)
 
-    def shape(o: int, step: int) -> str:
-        leaf = numbered and o in kitchen
-        name = f"o{o}_{step}" if leaf else f"o{o}"
-        role = Role.GOAL if o in goals else Role.KITCHEN if o in kitchen else Role.OBJECT
-        shapes.setdefault(name, Shape(name, role, *_texts(network.objects[o])))
+
+def draw_network(
+    units: Iterable[tuple[int, FunctionalUnit]],
+    kitchen: Collection[ObjectNode],
+    goals: Collection[ObjectNode],
+    caption: Iterable[str],
+) -> Drawing:
+    """Draw units with their ids as the graph they are: every object node is one box."""
+    canvas = _Canvas(kitchen, goals)
+    for unit_id, unit in units:
+        motion = canvas.motion(unit.motion, f"unit {unit_id}")
+        for node in unit.inputs:
+            canvas.arrow(canvas.shared(node), motion)
+        for node in unit.outputs:
+            canvas.arrow(motion, canvas.shared(node))
+    return canvas.drawing(caption)
+
+
+class _Canvas:
+    """Collects boxes and arrows, and names the boxes in the order in which they come."""
+
+    def __init__(self, kitchen: Collection[ObjectNode], goals: Collection[ObjectNode]) -> None:
+        self._kitchen = kitchen
+        self._goals = goals
+        self._boxes: list[Box] = []
+        self._arrows: list[tuple[str, str]] = []
+        self._names: dict[ObjectNode, str] = {}
+
+    def motion(self, *text: str) -> str:
+        """Add a motion and give the name of its box."""
+        return self._box("m", Role.MOTION, *text)
+
+    def shared(self, node: ObjectNode) -> str:
+        """Give the name of the one box of a node."""
+        if node not in self._names:
+            role = Role.OBJECT
+            if node in self._goals:
+                role = Role.GOAL
+            elif node in self._kitchen:
+                role = Role.KITCHEN
+            self._names[node] = self.copy(node, role)
+        return self._names[node]
+
+    def copy(self, node: ObjectNode, role: Role) -> str:
+        """Add a box for a node, also where it has one, and give the new one's name."""
+        states = [", ".join(sorted(node.states))] if node.states else []
+        contents = (f"{word} {{{', '.join(items)}}}" for word, items in node.contents)
+        return self._box("o", role, node.label, *states, *map(str, sorted(node.relations)), *contents)
+
+    def arrow(self, tail: str, head: str) -> None:
+        """Add an arrow between two boxes."""
+        self._arrows.append((tail, head))
+
+    def drawing(self, caption: Iterable[str]) -> Drawing:
+        """Give what was collected."""
+        return Drawing(tuple(map(_printable, caption)), tuple(self._boxes), tuple(self._arrows))
+
+    def _box(self, kind: str, role: Role, head: str, *details: str) -> str:
+        name = f"{kind}{len(self._boxes)}"
+        lines = tuple(line for text in details for line in _lines(text, _LINE))
+        self._boxes.append(Box(name, role, _lines(head, _HEAD_LINE), lines))
         return name
 
-    for step, unit in enumerate(units, 1):
-        motion = f"u{unit}"
-        title = f"{step}. {network.motions[unit]}" if numbered else network.motions[unit]
-        inputs = [shape(o, step) for o in network.inputs[unit]]
-        shapes[motion] = Shape(motion, Role.MOTION, tuple(wrap(title, _WIDTH) or [""]))
-        arrows += [Arrow(name, motion) for name in inputs]
-        for o in network.outputs[unit]:
-            if numbered and (o in made or o in kitchen):
-                continue
-            made.add(o)
-            arrows.append(Arrow(motion, shape(o, step), o in network.inputs[unit]))
-    return Drawing(tuple(shapes.values()), tuple(arrows))
+
+def _lines(text: str, width: int) -> tuple[str, ...]:
+    """Wrap a text; one without a letter is an empty line."""
+    return tuple(wrap(_printable(text), width)) or ("",)
 
 
-def _texts(node: ObjectNode) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Give the wrapped label, and the wrapped lines of what else is known of a node."""
-    notes = [*sorted(node.states), *map(str, sorted(node.relations))]
-    notes += [f"{word} {{{', '.join(items)}}}" for word, items in node.contents]
-    return (
-        tuple(wrap(node.label, _WIDTH) or [""]),
-        tuple(line for note in notes for line in wrap(note, _WIDTH)),
-    )
+def _printable(text: str) -> str:
+    return _UNPRINTABLE.sub("\ufffd", text)

@@ -1,33 +1,53 @@
-"""A drawing in Mermaid, which many Markdown viewers show as a picture."""
+"""A drawing as a Mermaid flowchart, which many viewers of Markdown show as a picture."""
 
-from foon_asp.report.drawing import Drawing, Role, Shape
+import json
+import re
+from collections.abc import Iterator
 
-_CLASSES = {
-    Role.OBJECT: "fill:#8fce8f,stroke:#2e7d32,color:#000",
-    Role.KITCHEN: "fill:#e3f4e3,stroke:#7cb37c,color:#000",
-    Role.GOAL: "fill:#8fce8f,stroke:#c99700,stroke-width:4px,color:#000",
-    Role.MOTION: "fill:#e57373,stroke:#b71c1c,color:#000",
+from foon_asp.report.drawing import Box, Drawing, Role
+
+# By role: what opens and closes a box, and its look. A border cannot be double: a goal's is thick.
+_BOXES = {
+    Role.MOTION: ("[", "]", "fill:#c62828,stroke:#8e0000,color:#ffffff"),
+    Role.KITCHEN: ("(", ")", "fill:#e3f4e1,stroke:#7cb97c,color:#000000"),
+    Role.OBJECT: ("(", ")", "fill:#93d293,stroke:#2e7d32,color:#000000"),
+    Role.BY_PRODUCT: ("(", ")", "fill:#ffffff,stroke:#7cb97c,color:#000000,stroke-dasharray:4"),
+    Role.GOAL: ("([", "])", "fill:#ffd54f,stroke:#a67c00,color:#000000,stroke-width:4px"),
 }
 
-_ARROWS = {False: "-->", True: "-.->"}
+# What could mean something to Mermaid, Markdown or HTML. Brackets, braces and commas mean nothing in quotes.
+_SPECIAL = re.compile(r"[!-'*+\-./:;<-@\\^_`|~]")
 
 
-def write_mermaid(drawing: Drawing) -> str:
-    """Give the drawing as a Mermaid flowchart."""
-    lines = ["flowchart TB"]
-    for shape in drawing.shapes:
-        opening, closing = ("([", "])") if shape.role is Role.MOTION else ("[", "]")
-        lines.append(f'  {shape.name}{opening}"{_label(shape)}"{closing}:::{shape.role}')
-    lines += [f"  {arrow.tail} {_ARROWS[arrow.again]} {arrow.head}" for arrow in drawing.arrows]
-    lines += [f"  classDef {role} {style}" for role, style in _CLASSES.items()]
-    return "\n".join(lines) + "\n"
+def mermaid_text(drawing: Drawing) -> str:
+    """Give a drawing as a Mermaid flowchart, from top to bottom."""
+    return "\n".join(_lines(drawing)) + "\n"
 
 
-def _label(shape: Shape) -> str:
-    title = "<br/>".join(_text(line) for line in shape.title)
-    return "<br/>".join([f"<b>{title}</b>", *map(_text, shape.notes)])
+def mermaid_markdown(drawing: Drawing) -> str:
+    """Give the same as a block of a Markdown page."""
+    return f"```mermaid\n{mermaid_text(drawing)}```\n"
 
 
-def _text(line: str) -> str:
-    """Write all but letters, digits, spaces and commas as entities, which cannot be Mermaid's own syntax."""
-    return "".join(c if c.isalnum() or c in " ," else f"#{ord(c)};" for c in line)
+def _lines(drawing: Drawing) -> Iterator[str]:
+    # The header is YAML, in which a text can be written as in JSON.
+    yield f"---\ntitle: {json.dumps(' | '.join(drawing.caption), ensure_ascii=False)}\n---"
+    yield "flowchart TD"
+    yield from (f"  {_node(box)}" for box in drawing.boxes)
+    yield from (f"  {tail} --> {head}" for tail, head in drawing.arrows)
+    yield from (f"  classDef {_css(role)} {look}" for role, (_, _, look) in _BOXES.items())
+
+
+def _node(box: Box) -> str:
+    opening, closing, _ = _BOXES[box.role]
+    head = "<br/>".join(map(_escaped, box.head))
+    label = "<br/>".join((f"<b>{head}</b>", *map(_escaped, box.details)))
+    return f'{box.name}{opening}"{label}"{closing}:::{_css(box.role)}'
+
+
+def _css(role: Role) -> str:
+    return role.replace(" ", "_").replace("-", "_")
+
+
+def _escaped(text: str) -> str:
+    return _SPECIAL.sub(lambda found: f"#{ord(found[0])};", text)

@@ -52,6 +52,8 @@ def read_object_list(file: Path) -> list[ListedObject]:
                 errors.append(error(offset, str(problem)))
     except json.JSONDecodeError as problem:
         errors.append(error(problem.pos, f"not JSON: {problem.msg}"))
+    except ValueError as problem:  # a number of more digits than Python converts
+        errors.append(error(0, f"found a value that cannot be read: {problem}"))
     except RecursionError:
         errors.append(error(0, "found lists within lists without end, expected a list of objects"))
     if errors:
@@ -117,7 +119,9 @@ def _pattern(value: object) -> NodePattern:
 
 
 def _names(value: dict[str, object], key: str) -> list[str]:
-    names = value.get(key) or []
+    names = value.get(key)
+    if names is None:
+        return []
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise ValueError(f'found {json.dumps(names)[:40]} as "{key}", expected a list of names')
     return [name.strip(" ") for name in names]
