@@ -1,0 +1,1 @@
+"""The tests of foon_asp.text: FOON text and the tables beside it."""

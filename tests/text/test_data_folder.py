@@ -1,0 +1,307 @@
+"""A folder of data: which files are what, what is given on its own, and what reading them together gives."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from foon_asp.errors import UserError
+from foon_asp.network import Source
+from foon_asp.text import (
+    Data,
+    DataFiles,
+    InputError,
+    Severity,
+    find_data,
+    read_data,
+    read_labels,
+    read_object_list,
+)
+
+CORPUS = Path(__file__).resolve().parents[3] / "shared" / "corpus"
+
+MIX = "O\ta\nM\tmix\nO\tb\n//\n"
+CUT = "O\ta\nM\tcut\nO\ta\nS\tcut\nS\tin\t[bowl]\n//\n"
+KITCHEN = '[{"label": "a"}]'
+GOALS = '[{"label": "b"},\n {"label": "nothing"}]'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Give a folder with every piece in it."""
+    folder = tmp_path / "data"
+    folder.mkdir()
+    (folder / "FOON.txt").write_text(MIX + CUT)
+    (folder / "kitchen.json").write_text(KITCHEN)
+    (folder / "motion.txt").write_text("mix\t0.9\ncut\t1\n")
+    (folder / "utensils.txt").write_text("bowl\nknife\n")
+    (folder / "goal_nodes.json").write_text(GOALS)
+    return folder
+
+
+# --- finding
+
+
+def test_a_folder_has_five_pieces(folder: Path) -> None:
+    assert find_data(folder) == DataFiles(
+        (folder / "FOON.txt",),
+        folder / "kitchen.json",
+        folder / "motion.txt",
+        folder / "utensils.txt",
+        folder / "goal_nodes.json",
+    )
+
+
+def test_a_folder_may_have_a_network_and_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "FOON.txt").write_text(MIX)
+    assert find_data(tmp_path) == DataFiles((tmp_path / "FOON.txt",))
+
+
+def test_foon_txt_is_the_network_alone(folder: Path) -> None:
+    (folder / "another.txt").write_text("not a network\n")
+    assert find_data(folder).network == (folder / "FOON.txt",)
+
+
+def test_without_it_all_texts_are_networks_but_the_tables(folder: Path) -> None:
+    (folder / "FOON.txt").rename(folder / "z.txt")
+    (folder / "b.txt").write_text(CUT)
+    (folder / "notes.md").write_text("not a network\n")
+    assert find_data(folder).network == (folder / "b.txt", folder / "z.txt")
+
+
+@pytest.mark.parametrize("given", ["rates", "utensils"])
+@pytest.mark.xfail(strict=True, reason="a table of another name in the folder is read as a network")
+def test_a_table_given_by_name_is_no_network(tmp_path: Path, given: str) -> None:
+    (tmp_path / "a.txt").write_text(MIX)
+    (tmp_path / "table.txt").write_text("mix\t0.9\n")
+    table = tmp_path / "table.txt"
+    files = find_data(
+        tmp_path,
+        rates=table if given == "rates" else None,
+        utensils=table if given == "utensils" else None,
+    )
+    assert files.network == (tmp_path / "a.txt",)
+
+
+def test_pieces_given_on_their_own_replace_those_of_the_folder(folder: Path, tmp_path: Path) -> None:
+    paths = [tmp_path / name for name in ("n.txt", "k.json", "r.txt", "u.txt", "g.json")]
+    for path in paths:
+        path.touch()
+    network, kitchen, rates, utensils, goals = paths
+    whole = find_data(folder)
+    assert find_data(folder, [network]) == whole._replace(network=(network,))
+    assert find_data(folder, kitchen=kitchen) == whole._replace(kitchen=kitchen)
+    assert find_data(folder, rates=rates) == whole._replace(rates=rates)
+    assert find_data(folder, utensils=utensils) == whole._replace(utensils=utensils)
+    assert find_data(folder, goals=goals) == whole._replace(goals=goals)
+    assert find_data(None, [network], goals=goals) == DataFiles((network,), goals=goals)
+
+
+def test_networks_are_files_and_folders_in_the_order_given(folder: Path, tmp_path: Path) -> None:
+    more = tmp_path / "more"
+    more.mkdir()
+    for name in ("2.txt", "1.txt", "motion.txt"):
+        (more / name).write_text(MIX)
+    alone = tmp_path / "alone.foon"
+    alone.write_text(MIX)
+    assert find_data(None, [alone, more, folder]).network == (
+        alone,
+        more / "1.txt",
+        more / "2.txt",
+        folder / "FOON.txt",
+    )
+
+
+def test_a_folder_of_tables_needs_no_network_where_one_is_given(folder: Path, tmp_path: Path) -> None:
+    (folder / "FOON.txt").rename(tmp_path / "n.txt")
+    files = find_data(folder, [tmp_path / "n.txt"])
+    assert files.network == (tmp_path / "n.txt",)
+    assert files.kitchen == folder / "kitchen.json"
+
+
+@pytest.mark.parametrize("given", ["folder", "kitchen", "rates", "utensils", "goals", "network"])
+def test_what_is_named_and_not_there_is_an_error(folder: Path, given: str) -> None:
+    missing = folder / "nothing.txt"
+
+    def named(piece: str) -> Path | None:
+        return missing if piece == given else None
+
+    with pytest.raises(UserError) as caught:
+        find_data(
+            named("folder") or folder,
+            [missing] if given == "network" else [],
+            named("kitchen"),
+            named("rates"),
+            named("utensils"),
+            named("goals"),
+        )
+    assert str(caught.value) == f"{missing}: no such file or folder"
+
+
+def test_a_file_is_no_folder(folder: Path) -> None:
+    with pytest.raises(UserError, match=r"FOON\.txt: expected a folder; .* --network"):
+        find_data(folder / "FOON.txt")
+
+
+def test_a_folder_without_networks_is_an_error(folder: Path) -> None:
+    (folder / "FOON.txt").unlink()
+    with pytest.raises(UserError, match="found none") as caught:
+        find_data(folder)
+    assert str(folder) in str(caught.value)
+    assert "FOON.txt" in str(caught.value)
+
+
+def test_no_network_at_all_is_an_error(folder: Path) -> None:
+    with pytest.raises(UserError, match="no network is given"):
+        find_data(None, kitchen=folder / "kitchen.json")
+
+
+# --- reading
+
+
+def test_all_pieces_are_read(folder: Path) -> None:
+    data = read_data(find_data(folder))
+    assert data.network.motions == ("mix", "cut")
+    assert [str(node) for node in data.network.objects] == ["a", "b", "a; cut; in [bowl]"]
+    assert data.kitchen == {0}
+    assert [entry.pattern.label for entry in data.goals] == [
+        "b",
+        "nothing",
+    ]  # goals are matched when asked for
+    assert data.goals[1].source == Source(str(folder / "goal_nodes.json"), 2, 2)
+    assert data.rates == {"mix": Fraction(9, 10), "cut": Fraction(1)}
+    assert data.utensils == {"bowl", "knife"}
+    assert data.warnings == ()
+    assert data.left_out == 0
+
+
+def test_what_is_not_there_is_empty_and_rates_are_none(tmp_path: Path) -> None:
+    (tmp_path / "n.txt").write_text(MIX)
+    data = read_data(find_data(None, [tmp_path / "n.txt"]))
+    assert len(data.network) == 1
+    assert data == Data(data.network, frozenset(), (), None, frozenset(), (), 0)
+    (tmp_path / "motion.txt").touch()
+    assert read_data(find_data(tmp_path)).rates == {}
+
+
+def test_networks_are_merged_in_order(tmp_path: Path) -> None:
+    (tmp_path / "2.txt").write_text(MIX + CUT)
+    (tmp_path / "1.txt").write_text(CUT)
+    network = read_data(find_data(tmp_path)).network
+    assert network.motions == ("cut", "mix")
+    assert [[Path(s.file).name for s in copies] for copies in network.sources] == [
+        ["1.txt", "2.txt"],
+        ["2.txt"],
+    ]
+
+
+def test_a_kitchen_item_may_stand_for_several_nodes(folder: Path) -> None:
+    (folder / "FOON.txt").write_text("O\ta\nS\tin\t[p]\nO\ta\nS\ton\t[p]\nO\ta\nM\tmix\nO\tb\n//\n")
+    (folder / "kitchen.json").write_text(
+        '[{"label": "a", "container": "p"}, {"label": "a", "container": "p"}]'
+    )
+    data = read_data(find_data(folder))
+    assert data.kitchen == {0, 1}
+    assert data.warnings == ()
+
+
+def test_a_kitchen_item_that_matches_nothing_is_a_warning_and_nothing_else(folder: Path) -> None:
+    (folder / "kitchen.json").write_text(
+        '[{"label": "b"},\n {"label": "a", "container": "jar"}, {"label": "a"},\n'
+        '  {"label": "b", "states": ["raw"], "ingredients": ["x"]}]'
+    )
+    data = read_data(find_data(folder))
+    assert data.kitchen == {0, 1}
+    assert data.left_out == 0
+    file = str(folder / "kitchen.json")
+    assert [(w.severity, w.code, w.source) for w in data.warnings] == [
+        (Severity.WARNING, "kitchen-item", Source(file, 2, 2)),
+        (Severity.WARNING, "kitchen-item", Source(file, 3, 3)),
+    ]
+    assert "'a; container [jar]' matches no object node" in data.warnings[0].message
+    assert "'b; raw; contains {x}' matches no object node" in data.warnings[1].message
+
+
+def test_warnings_of_the_network_come_first_and_are_counted(folder: Path) -> None:
+    (folder / "FOON.txt").write_text("O\ta\t7\nM\tmix\nO\tb\nx\ny\n//\n")
+    (folder / "kitchen.json").write_text('[{"label": "c"}]')
+    data = read_data(find_data(folder), lenient=True)
+    assert [(w.code, w.source.line) for w in data.warnings] == [
+        ("motion-flag", 1),
+        ("syntax", 4),
+        ("syntax", 5),
+        ("kitchen-item", 1),
+    ]
+    assert {w.severity for w in data.warnings} == {Severity.WARNING}
+    assert data.left_out == 2
+    assert len(data.network) == 1
+    with pytest.raises(InputError) as caught:
+        read_data(find_data(folder))
+    assert [d.source.line for d in caught.value.diagnostics] == [4, 5]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "place"),
+    [
+        ("FOON.txt", MIX + "x\n", "5:1"),
+        ("kitchen.json", '[{"label": "a"},\n7]', "2:1"),
+        ("goal_nodes.json", "{}", "1:1"),
+        ("motion.txt", "mix\t0.5\nmix 0.5\n", "2:8"),
+    ],
+)
+def test_an_error_in_any_piece_is_located(folder: Path, name: str, text: str, place: str) -> None:
+    (folder / name).write_text(text)
+    with pytest.raises(InputError) as caught:
+        read_data(find_data(folder))
+    assert f"{folder / name}:{place}: error: " in str(caught.value)
+
+
+# --- lists of labels
+
+
+def test_labels_stand_one_on_each_line(tmp_path: Path) -> None:
+    file = tmp_path / "utensils.txt"
+    file.write_text(
+        "\N{BYTE ORDER MARK}bowl\r\n# tools\n\n  cutting board \n\t\nbowl\nwok 中", "utf-8", newline=""
+    )
+    assert read_labels(file) == {"bowl", "cutting board", "wok 中"}
+    file.write_text("")
+    assert read_labels(file) == frozenset()
+
+
+@pytest.mark.xfail(strict=True, reason="FOON text ends lines at a lone carriage return, this list does not")
+def test_labels_have_the_line_ends_of_foon_text(tmp_path: Path) -> None:
+    file = tmp_path / "utensils.txt"
+    file.write_text("bowl\rknife\r", newline="")
+    assert read_labels(file) == {"bowl", "knife"}
+
+
+def test_labels_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="cannot be read"):
+        read_labels(tmp_path / "nothing.txt")
+    (tmp_path / "utensils.txt").write_bytes(b"bowl\np\xeale\n")
+    with pytest.raises(InputError, match=r"utensils\.txt:2:2: error: found the byte 0xea"):
+        read_labels(tmp_path / "utensils.txt")
+
+
+# --- the real corpus
+
+
+@pytest.mark.skipif(not CORPUS.is_dir(), reason=f"the real corpus is not at {CORPUS}")
+def test_the_real_universal_foon_has_the_known_counts() -> None:
+    files = find_data(CORPUS / "universal")
+    data = read_data(files)
+    assert len(data.network) == 2376
+    assert len(data.network.objects) == 4305
+    assert files.kitchen is not None
+    items = read_object_list(files.kitchen)
+    assert len(items) == 1174
+    assert sum(bool(data.network.find(item.pattern)) for item in items) == 1173
+    unmatched = [warning for warning in data.warnings if warning.code == "kitchen-item"]
+    assert len(unmatched) == 1
+    assert unmatched[0].source.line > 1
+    assert data.rates is not None
+    assert len(data.rates) == 129
+    assert len(data.goals) == 5
+    assert all(data.network.find(entry.pattern) for entry in data.goals)
+    assert data.left_out == 0

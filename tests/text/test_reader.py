@@ -1,0 +1,743 @@
+"""Reading FOON text: units, provenance, merging, and a located word about everything that is wrong."""
+
+from pathlib import Path
+from random import Random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.text import Diagnostic, FoonReader, InputError, Severity, write_units
+from foon_asp.text.reader import ReadUnit
+from tests.text.foon_strategies import steady, texts, units
+
+CORPUS = Path(__file__).resolve().parents[3] / "shared" / "corpus"
+
+TEA = """\
+O\tpot
+S\tempty
+O\ttea
+S\tin\t[tin]
+O\ttin
+S\tcontains\t{tea}
+M\tpour
+O\tpot
+S\tcontains\t{tea}
+//
+"""
+TEA_WITH_IDS = """\
+O278\tpot\t1
+S41\tempty
+O12\ttea\t1\t8
+S65\tin\t[tin]
+O3\ttin\t0
+S23\tcontains\t{tea}
+M54\tpour\t1:10\tAssumed
+O278\tpot\t0
+S23\tcontains\t{tea}
+//
+"""
+TEA_UNIT = FunctionalUnit.of(
+    "pour",
+    [
+        ObjectNode.of("pot", ["empty"]),
+        ObjectNode.of("tea", [], [("in", "tin")]),
+        ObjectNode.of("tin", [], [], [("contains", ["tea"])]),
+    ],
+    [ObjectNode.of("pot", [], [], [("contains", ["tea"])])],
+)
+MIX = "O\ta\nM\tmix\nO\tb\n//\n"
+MIX_UNIT = FunctionalUnit.of("mix", [ObjectNode.of("a")], [ObjectNode.of("b")])
+
+
+def read(text: str, lenient: bool = False) -> tuple[list[ReadUnit], FoonReader]:
+    """Read a text under the name ``f.txt``; the reader comes along with what it remarked on."""
+    reader = FoonReader(lenient)
+    return list(reader.units(text, "f.txt")), reader
+
+
+def refusals(file: Path, lenient: bool) -> tuple[Diagnostic, ...]:
+    """Give what is wrong with a file, if anything is; any other exception comes out."""
+    try:
+        FoonReader(lenient).read_network([file])
+    except InputError as error:
+        return error.diagnostics
+    return ()
+
+
+def units_of(found: list[ReadUnit]) -> list[FunctionalUnit]:
+    return [FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs) for unit in found]
+
+
+def places(reader: FoonReader) -> list[tuple[str, int, int]]:
+    return [(d.code, d.source.line, d.source.column) for d in reader.diagnostics]
+
+
+def only_input(text: str) -> ObjectNode:
+    (unit,), _ = read(text)
+    (node,) = unit.inputs
+    return node
+
+
+def node_of(*lines: str) -> ObjectNode:
+    return only_input("\n".join([*lines, "M\tmix", "O\tb", "//"]))
+
+
+# --- one grammar for what differs between files
+
+
+@pytest.mark.parametrize("text", [TEA, TEA_WITH_IDS])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("opening", ["", "//\n", "# made by hand\n//\n", "//\n//\n\n//\n"])
+def test_dialects_line_ends_and_openings_give_the_same_unit(text: str, end: str, opening: str) -> None:
+    found, reader = read((opening + text).replace("\n", end))
+    assert units_of(found) == [TEA_UNIT]
+    assert [*found[0].inputs, *found[0].outputs] == [*TEA_UNIT.inputs, *TEA_UNIT.outputs]
+    assert reader.diagnostics == []
+    assert found[0].source == Source("f.txt", opening.count("\n") + 1)
+
+
+@pytest.mark.parametrize("start", ["", "\N{BYTE ORDER MARK}"])
+@pytest.mark.parametrize("end", ["", "\n", "\n\n  \n"])
+def test_a_byte_order_mark_and_the_last_line_end_do_not_matter(tmp_path: Path, start: str, end: str) -> None:
+    file = tmp_path / "f.txt"
+    file.write_text(start + TEA.rstrip("\n") + end, "utf-8")
+    reader = FoonReader()
+    assert reader.read_tree(file) == [(TEA_UNIT, Source(str(file), 1))]
+    assert reader.diagnostics == []
+
+
+def test_comments_and_blank_lines_may_stand_anywhere() -> None:
+    spread = "".join(f"# aside\n\n{line}\n \t \n" for line in TEA.splitlines())
+    found, reader = read(spread)
+    assert units_of(found) == [TEA_UNIT]
+    assert reader.diagnostics == []
+    assert found[0].source.line == 3
+
+
+def test_spaces_and_tabs_behind_a_separator_do_not_matter() -> None:
+    found, reader = read(MIX.replace("//", "// \t") + MIX)
+    assert units_of(found) == [MIX_UNIT, MIX_UNIT]
+    assert reader.diagnostics == []
+
+
+@pytest.mark.parametrize("text", ["", "\n", "//\n", "# only words\n", "//\n\n//\n# x\n//"])
+def test_a_text_without_units_is_no_error(text: str) -> None:
+    found, reader = read(text)
+    assert found == []
+    assert reader.diagnostics == []
+
+
+@pytest.mark.parametrize("character", "\x0b\x0c\x1c\x1d\x1e\x85\xa0\u2028\u2029\u3000\ufeff\x00漢🍠")
+def test_no_other_character_ends_a_line_or_a_name(character: str) -> None:
+    found, reader = read(f"O\ta{character}b\nS\tc{character}d\nM\te{character}f\nO\tg\n//\n")
+    assert units_of(found) == [
+        FunctionalUnit.of(
+            f"e{character}f", [ObjectNode.of(f"a{character}b", [f"c{character}d"])], [ObjectNode.of("g")]
+        )
+    ]
+    assert reader.diagnostics == []
+
+
+def test_a_remark_behind_such_a_character_is_on_its_line_and_column() -> None:
+    _, reader = read("O\ta\u2028\x85\x0c\t7\nM\tmix\nO\t🍠b\t8\n//\n")
+    assert places(reader) == [("motion-flag", 1, 8), ("motion-flag", 3, 6)]
+
+
+def test_old_line_ends_are_line_ends_too() -> None:
+    text = "# Source: v\n//\n" + TEA_WITH_IDS + "# aside\n" + MIX
+    found, reader = read(text.replace("\n", "\r"))
+    assert found == read(text)[0]
+    assert reader.diagnostics == []
+
+
+# --- what makes a node and a unit
+
+
+def test_the_order_of_states_does_not_matter() -> None:
+    one = node_of("O\ta", "S\thot", "S\tpeeled", "S\tin\t[pan]", "S\tcontains\t{x,y}")
+    other = node_of("O\ta", "S\tcontains\t{y,x}", "S\tin\t[pan]", "S\tpeeled", "S\thot", "S\thot")
+    assert one == other == ObjectNode.of("a", ["hot", "peeled"], [("in", "pan")], [("contains", ["x", "y"])])
+
+
+def test_how_often_an_ingredient_is_there_matters() -> None:
+    once, twice = node_of("O\ta", "S\tcontains\t{x}"), node_of("O\ta", "S\tcontains\t{x,x}")
+    assert once != twice
+    assert twice.ingredients == ("x", "x")
+
+
+def test_what_a_node_is_in_or_on_or_holds_matters() -> None:
+    different = [
+        node_of("O\ta"),
+        node_of("O\tb"),
+        node_of("O\ta", "S\tin"),
+        node_of("O\ta", "S\tin\t[p]"),
+        node_of("O\ta", "S\ton\t[p]"),
+        node_of("O\ta", "S\tin\t[q]"),
+        node_of("O\ta", "S\tin\t{p}"),
+        node_of("O\ta", "S\ton\t[p]", "S\tin\t[p]"),
+        node_of("O\ta", "S\tcoated\t{p}"),
+        node_of("O\ta", "S\tcoated\t{p}", "S\tin\t{p}"),
+    ]
+    assert len(set(different)) == len(different)
+
+
+def test_two_lists_and_two_relations_under_one_object_are_all_kept() -> None:
+    node = node_of("O\ta", "S\tcontains\t{x}", "S\tin\t[p]", "S\tcontains\t{y,x}", "S\ton\t[q]")
+    assert node == ObjectNode.of(
+        "a", [], [("in", "p"), ("on", "q")], [("contains", ["x"]), ("contains", ["x", "y"])]
+    )
+    assert node.ingredients == ("x", "x", "y")
+    turned = ["S\tcontains\t{x,y}", "S\ton\t[q]", "S\tin\t[p]", "S\tcontains\t{x}"]
+    assert node_of("O\ta", *turned) == node
+    _, reader = read("O\ta\nS\tcontains\t{x}\nS\tcontains\t{y}\nM\tmix\nO\tb\n//\n")
+    assert reader.diagnostics == []
+
+
+def test_ids_flags_and_times_are_no_part_of_a_node_or_unit() -> None:
+    one, _ = read("O1\ta\t0\nM2\tmix\t0:01\t0:02\nO3\tb\t1\n//\n")
+    other, _ = read("O9\ta\t1\t4\nM8\tmix\nO7\tb\n//\n")
+    assert units_of(one) == units_of(other) == [MIX_UNIT]
+
+
+def test_a_node_listed_twice_in_a_unit_counts_once(tmp_path: Path) -> None:
+    file = tmp_path / "f.txt"
+    file.write_text("O\ta\nO\tc\nO\ta\nM\tmix\nO\tb\nO\tb\n//\nO\tc\nO\ta\nM\tmix\nO\tb\n//\n")
+    network = FoonReader().read_network([file])
+    assert network.inputs == ((0, 1),)
+    assert network.outputs == ((2,),)
+    assert [source.line for source in network.sources[0]] == [1, 8]
+
+
+# --- where units come from
+
+
+def test_every_unit_knows_its_first_line() -> None:
+    found, _ = read("//\n\n# one\n" + MIX + "\n" + TEA_WITH_IDS + MIX)
+    assert [(unit.motion, unit.source.line, unit.source.column) for unit in found] == [
+        ("mix", 4, 1),
+        ("pour", 9, 1),
+        ("mix", 19, 1),
+    ]
+
+
+def test_the_addresses_above_a_unit_are_its_videos() -> None:
+    text = (
+        MIX  # before any address
+        + "# Source:\thttps://example.org/1\n# cut at 3:10\n# Source: https://example.org/2 \n//\n"
+        + MIX
+        + MIX
+        + "# Source:\thttps://example.org/3\n//\n"
+        + MIX
+        + "# Source:\t4\n//\n//\n# Source:\t5\n"
+        + MIX
+    )
+    found, reader = read(text)
+    assert [unit.source.videos for unit in found] == [
+        (),
+        ("https://example.org/1", "https://example.org/2"),
+        ("https://example.org/1", "https://example.org/2"),
+        ("https://example.org/3",),
+        ("4", "5"),
+    ]
+    assert reader.diagnostics == []
+
+
+def test_the_videos_of_one_file_are_not_those_of_the_next(tmp_path: Path) -> None:
+    (tmp_path / "1.txt").write_text("# Source:\tv\n" + MIX)
+    (tmp_path / "2.txt").write_text(MIX)
+    network = FoonReader().read_network([tmp_path / "1.txt", tmp_path / "2.txt"])
+    assert [source.videos for source in network.sources[0]] == [("v",), ()]
+
+
+def test_an_address_that_is_missing_is_no_video() -> None:
+    (unit,), _ = read("# Source:\n# Source: \t\n" + MIX)
+    assert unit.source.videos == ()
+
+
+# --- merging
+
+
+def test_copies_are_merged_and_the_place_of_each_is_kept(tmp_path: Path) -> None:
+    one, two = tmp_path / "1.txt", tmp_path / "2.txt"
+    one.write_text(MIX + TEA + "O\ta\nM\tstir\nO\tb\n//\n")
+    two.write_text("# Source:\tv\n//\nO\tz\nM\tmix\nO\ta\n//\n" + TEA_WITH_IDS + MIX, newline="\r\n")
+    network = FoonReader().read_network([one, two])
+    assert network.motions == ("mix", "pour", "stir", "mix")
+    assert network.sources == (
+        (Source(str(one), 1), Source(str(two), 17, 1, ("v",))),
+        (Source(str(one), 5), Source(str(two), 7, 1, ("v",))),
+        (Source(str(one), 15),),
+        (Source(str(two), 3, 1, ("v",)),),
+    )
+    assert [node.label for node in network.objects] == ["a", "b", "pot", "tea", "tin", "pot", "z"]
+    assert network.unit(0) == MIX_UNIT
+    assert network.unit(1) == TEA_UNIT
+    assert network.unit_id(TEA_UNIT) == 1
+
+
+def test_copies_with_their_nodes_in_another_order_are_merged(tmp_path: Path) -> None:
+    file = tmp_path / "f.txt"
+    file.write_text(
+        "O\ta\nO\tb\nS\tx\nS\ty\nM\tmix\nO\tc\nO\td\n//\n"
+        + "O\tb\nS\ty\nS\tx\nO\ta\nM\tmix\nO\td\nO\tc\n//\n"
+    )
+    network = FoonReader().read_network([file])
+    assert len(network) == 1
+    assert [source.line for source in network.sources[0]] == [1, 9]
+    assert [network.objects[o].label for o in network.inputs[0]] == ["a", "b"]
+
+
+def test_units_that_differ_in_motion_input_or_output_are_not_merged(tmp_path: Path) -> None:
+    file = tmp_path / "f.txt"
+    file.write_text(
+        "O\ta\nM\tmix\nO\tb\n//\nO\ta\nM\tMix\nO\tb\n//\nO\ta\nS\thot\nM\tmix\nO\tb\n//\nO\tb\nM\tmix\nO\ta\n//\n"
+    )
+    assert len(FoonReader().read_network([file])) == 4
+
+
+def test_a_tree_keeps_its_copies_in_their_order(tmp_path: Path) -> None:
+    file = tmp_path / "f.txt"
+    file.write_text(MIX + TEA + MIX)
+    tree = FoonReader().read_tree(file)
+    assert [(unit, source.line) for unit, source in tree] == [(MIX_UNIT, 1), (TEA_UNIT, 5), (MIX_UNIT, 15)]
+
+
+# --- warnings: read all the same
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("O\ta\nM\tmix\nO\tb\n", [("missing-separator", 3, 4)]),
+        ("O\ta\nM\tmix\nO\tb", [("missing-separator", 3, 4)]),
+        ("O\ta\nM\tmix\nO\tb\n\n \n", [("missing-separator", 3, 4)]),
+        ("\n# x\nO\ta\nM\tmix\n//\n", [("no-outputs", 3, 1)]),
+        ("O\ta\nM\tmix", [("no-outputs", 1, 1), ("missing-separator", 2, 6)]),
+        (
+            "O\ta\t00\nS\tunder [pan]\nM\tmix\tx\nO\tb\n//\n",
+            [("motion-flag", 1, 5), ("space-for-tab", 2, 8), ("time", 3, 7)],
+        ),
+    ],
+)
+def test_dirt_is_a_warning_and_the_unit_is_kept(text: str, found: list[tuple[str, int, int]]) -> None:
+    read_units, reader = read(text)
+    assert len(read_units) == 1
+    assert places(reader) == found
+    assert {d.severity for d in reader.diagnostics} == {Severity.WARNING}
+    reader.raise_errors()
+    assert reader.left_out == 0
+
+
+def test_a_warning_quotes_its_line() -> None:
+    _, reader = read("\r\nO\ta\r\nS\tunder [pan]\r\nM\tmix\r\nO\tb\r\n//\r\n")
+    assert reader.diagnostics == [
+        Diagnostic(
+            Severity.WARNING,
+            "space-for-tab",
+            "no tab before [pan]; read as if there were one",
+            Source("f.txt", 3, 8),
+            "S\tunder [pan]",
+        )
+    ]
+
+
+def test_dirt_is_remarked_on_wherever_it_stands() -> None:
+    dirty = "O\ta\n# aside\nS\tcontains\t{x,}\n\nS\tcontains\t{x,}\nM\tmix\nO\tb\n//\n"
+    found, reader = read(dirty * 2)
+    assert [d.source.line for d in reader.diagnostics] == [3, 5, 11, 13]
+    assert found[0].inputs == found[1].inputs == [ObjectNode.of("a", [], [], [("contains", ["x"])] * 2)]
+
+
+# --- errors: located, all of them, and nothing else
+
+# text, the place, a part of the message; the good unit MIX follows each
+STRUCTURAL = [
+    ("O\ta\nM\tmix\nx\nO\tb\n//\n", ("syntax", 3, 1), "found 'x', expected an object line"),
+    ("O\ta\nS\tin\t[p\nM\tmix\nO\tb\n//\n", ("syntax", 2, 5), r"found '\t[p', expected [object]"),
+    ("O\ta\nM\tmix\nO\tb\nO c\n//\n", ("syntax", 4, 1), "found 'O c', expected an object line"),
+    ("S\tx\nO\ta\nM\tmix\nO\tb\n//\n", ("state-without-object", 1, 1), "expected an object line before it"),
+    ("O\ta\nM\tmix\nS\tx\nO\tb\n//\n", ("state-without-object", 3, 1), "expected an object line before it"),
+    ("O\ta\nM\tmix\nO\tb\nM\tcut\nO\tc\n//\n", ("second-motion", 4, 1), "found a second motion in one unit"),
+    ("O\ta\nM\tmix\nM\tmix\nO\tb\n//\n", ("second-motion", 3, 1), "found a second motion in one unit"),
+    ("\nO\ta\nS\tx\n//\n", ("no-motion", 4, 1), "found //, expected a motion line: the unit of line 2"),
+    (
+        "M\tmix\nO\tb\n//\n",
+        ("no-inputs", 3, 1),
+        "expected an object line before the motion: the unit of line 1",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "place", "message"), STRUCTURAL)
+def test_an_error_is_located_and_named(text: str, place: tuple[str, int, int], message: str) -> None:
+    found, reader = read(text + MIX)
+    assert places(reader) == [place]
+    (error,) = reader.diagnostics
+    assert error.severity is Severity.ERROR
+    assert error.source.file == "f.txt"
+    assert message in error.message
+    assert error.excerpt == text.split("\n")[place[1] - 1]
+    with pytest.raises(InputError) as caught:
+        reader.raise_errors()
+    assert caught.value.diagnostics == (error,)
+    assert units_of(found)[-1] == MIX_UNIT
+
+
+@pytest.mark.parametrize(("text", "place", "message"), STRUCTURAL)
+def test_lenient_makes_it_a_warning_at_the_same_place(
+    text: str, place: tuple[str, int, int], message: str
+) -> None:
+    found, reader = read(text + MIX, lenient=True)
+    reader.raise_errors()
+    assert places(reader) == [place]
+    (warning,) = reader.diagnostics
+    assert warning.severity is Severity.WARNING
+    assert message in warning.message
+    assert warning.message.endswith("; left out")
+    assert units_of(found)[-1] == MIX_UNIT
+
+
+@pytest.mark.parametrize(
+    ("text", "left_out", "kept"),
+    [
+        ("O\ta\nM\tmix\nx\nO\tb\n//\n", 1, "O\ta\nM\tmix\nO\tb\n//\n"),
+        ("O\ta\nS\tin\t[p\nS\thot\nM\tmix\nO\tb\n//\n", 1, "O\ta\nS\thot\nM\tmix\nO\tb\n//\n"),
+        # the states of an object that cannot be read go with it
+        ("O\ta\nO\nS\tx\nS\ty\nM\tmix\nO\tb\n//\n", 3, "O\ta\nM\tmix\nO\tb\n//\n"),
+        ("O\ta\nM\tmix\nO\tb\nO c\n# x\nS\ty\n//\n", 2, "O\ta\nM\tmix\nO\tb\n//\n"),
+        ("S\tx\nS\ty\nO\ta\nM\tmix\nO\tb\n//\n", 2, "O\ta\nM\tmix\nO\tb\n//\n"),
+        ("O\ta\nM\tmix\nM\t]\nO\tb\n//\n", 1, "O\ta\nM\tmix\nO\tb\n//\n"),
+        ("O\ta\nM\t]\nM\tmix\nO\tb\n//\n", 1, "O\ta\nM\tmix\nO\tb\n//\n"),
+        ("O\ta\nS\tx\nO\tb\n//\n", 3, ""),
+        ("M\tmix\nO\tb\nS\tx\n//\n", 3, ""),
+    ],
+)
+def test_lenient_leaves_out_the_line_and_keeps_the_rest(text: str, left_out: int, kept: str) -> None:
+    found, reader = read(text + TEA, lenient=True)
+    assert units_of(found) == units_of(read(kept + TEA)[0])
+    assert reader.left_out == left_out
+    assert reader.diagnostics
+
+
+@pytest.mark.parametrize(
+    ("text", "left_out"),
+    [
+        ("O\ta\n\n# x\nO\tb\n//\n", 2),
+        ("O\ta\nx\n//\n", 2),
+        ("x\n//\n", 1),
+        ("O\ta\nM\t]\nO\tb\n//\n", 3),
+        ("O a\nM\tmix\nO\tb\n//\n", 3),
+        ("O\ta\n", 1),
+        ("O\ta\n\n\n", 1),
+    ],
+)
+def test_a_unit_left_out_counts_every_line_of_it_once(text: str, left_out: int) -> None:
+    found, reader = read(text, lenient=True)
+    assert found == []
+    assert reader.left_out == left_out
+
+
+def test_a_unit_that_is_not_finished_when_the_file_ends() -> None:
+    found, reader = read(MIX + "O\ta\nS\tx")
+    assert units_of(found) == [MIX_UNIT]
+    assert places(reader) == [("no-motion", 6, 1)]
+    assert reader.diagnostics[0].message == (
+        "the file ends, expected a motion line: the unit of line 5 has no motion"
+    )
+
+
+def test_a_file_ends_on_its_last_line() -> None:
+    _, reader = read("O\ta\nS\tx\n")
+    assert [(d.code, d.source.line) for d in reader.diagnostics] == [("no-motion", 2)]
+    assert reader.diagnostics[0].excerpt == "S\tx"
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("O\ta\nM\t\nO\tb\n//\n", ("syntax", 2, 3)),
+        ("O\ta\nM mix\nO\tb\n//\n", ("syntax", 2, 1)),
+        ("O a\nM\tmix\nO\tb\n//\n", ("syntax", 1, 1)),
+    ],
+)
+def test_one_fault_is_one_error(text: str, place: tuple[str, int, int]) -> None:
+    assert places(read(text)[1]) == [place]
+
+
+@pytest.mark.xfail(
+    strict=True, reason="any fault in a unit hides what the unit lacks, even one that cannot be why"
+)
+@pytest.mark.parametrize(
+    ("text", "places_of_both"),
+    [
+        ("O\ta\nS\t\n//\n", [("syntax", 2, 3), ("no-motion", 3, 1)]),
+        ("M\tmix\nO\tb\nS\t\n//\n", [("syntax", 3, 3), ("no-inputs", 4, 1)]),
+    ],
+)
+def test_a_broken_state_is_not_why_a_motion_or_an_input_is_missing(
+    text: str, places_of_both: list[tuple[str, int, int]]
+) -> None:
+    assert places(read(text)[1]) == places_of_both
+
+
+@pytest.mark.parametrize("line", ["///", " //", "// next", "--"])
+def test_a_separator_that_is_not_quite_one_is_told_what_it_should_be(line: str) -> None:
+    _, reader = read(f"O\ta\nM\tmix\nO\tb\n{line}\n" + MIX)
+    assert places(reader)[0] == ("syntax", 4, 1)
+    assert "//" in reader.diagnostics[0].message.partition(", expected ")[2]
+
+
+def test_all_errors_of_all_files_are_collected(tmp_path: Path) -> None:
+    one, two, three = (tmp_path / f"{n}.txt" for n in "123")
+    one.write_text("O\ta\nS\t\nM\tmix\nO\tb\n//\nx\n" + MIX)
+    two.write_text(MIX)
+    three.write_text("O\ta\t7\nM\tmix\nO\t[\n//\n")
+    reader = FoonReader()
+    with pytest.raises(InputError) as caught:
+        reader.read_network([one, two, three])
+    assert [(d.source.file, d.source.line, d.source.column) for d in caught.value.diagnostics] == [
+        (str(one), 2, 3),
+        (str(one), 6, 1),
+        (str(three), 3, 3),
+    ]
+    assert "motion-flag" in {d.code for d in reader.diagnostics}  # a warning is no part of the error
+    assert f"{one}:2:3: error: found the end of the line, expected a name" in str(caught.value)
+    assert f"{three}:3:3: error: found '[', expected a name" in str(caught.value)
+
+
+def test_a_tree_with_errors_is_refused_and_lenient_reads_the_rest(tmp_path: Path) -> None:
+    file = tmp_path / "f.txt"
+    file.write_text(MIX + "?\n" + MIX)
+    with pytest.raises(InputError, match=r"f\.txt:5:1: error: found '\?'"):
+        FoonReader().read_tree(file)
+    reader = FoonReader(lenient=True)
+    assert [unit for unit, _ in reader.read_tree(file)] == [MIX_UNIT, MIX_UNIT]
+    assert len(reader.read_network([file])) == 1
+    assert reader.left_out == 2
+
+
+# --- files that are not text
+
+
+@pytest.mark.parametrize("lenient", [False, True])
+@pytest.mark.parametrize(
+    ("data", "line", "column", "byte"),
+    [
+        (b"O\tcr\xe8me\n", 1, 5, "e8"),
+        ("O\tcrème\n".encode() + b"S\t\xff", 2, 3, "ff"),
+        ("O\tcrème brûl".encode() + b"\xe9e", 1, 13, "e9"),
+        ("O\ta\r\n".encode("utf-16"), 1, 1, "ff"),
+        (b"O\ta\nM\tmix\xc3", 2, 6, "c3"),
+    ],
+)
+def test_a_file_that_is_not_utf_8_is_refused_in_place(
+    tmp_path: Path, lenient: bool, data: bytes, line: int, column: int, byte: str
+) -> None:
+    file = tmp_path / "f.txt"
+    file.write_bytes(data)
+    with pytest.raises(InputError) as caught:
+        FoonReader(lenient).read_network([file])
+    (error,) = caught.value.diagnostics
+    assert error.source == Source(str(file), line, column)
+    assert f"found the byte 0x{byte}, expected UTF-8" in error.message
+
+
+@pytest.mark.parametrize(
+    ("data", "column", "byte"),
+    [(b"O\tcr\xe8me\n", 5, "e8"), ("O\té".encode() + b"ab\xff", 6, "ff"), (b"\xff", 1, "ff")],
+)
+def test_a_wrong_byte_behind_a_byte_order_mark_is_located(
+    tmp_path: Path, data: bytes, column: int, byte: str
+) -> None:
+    file = tmp_path / "f.txt"
+    file.write_bytes("\N{BYTE ORDER MARK}".encode() + data)
+    with pytest.raises(InputError) as caught:
+        FoonReader().read_network([file])
+    (error,) = caught.value.diagnostics
+    assert error.source == Source(str(file), 1, column)
+    assert f"0x{byte}" in error.message
+
+
+@pytest.mark.xfail(
+    strict=True, reason="a file that is not UTF-8 ends the reading: errors of other files are not told"
+)
+def test_a_file_that_is_not_utf_8_does_not_hide_the_errors_of_others(tmp_path: Path) -> None:
+    one, two, three = (tmp_path / f"{n}.txt" for n in "123")
+    one.write_text("x\n")
+    two.write_bytes(b"\xff")
+    three.write_text("y\n")
+    with pytest.raises(InputError) as caught:
+        FoonReader().read_network([one, two, three])
+    files = [d.source.file for d in caught.value.diagnostics]
+    assert list(dict.fromkeys(files)) == [str(one), str(two), str(three)]
+
+
+def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
+    for path in (tmp_path / "nothing.txt", tmp_path):
+        for read_it in (lambda p: FoonReader().read_network([p]), FoonReader(lenient=True).read_tree):
+            with pytest.raises(UserError, match="cannot be read") as caught:
+                read_it(path)
+            assert str(path) in str(caught.value)
+
+
+# --- one reader, many texts
+
+
+def test_a_reader_remembers_nothing_that_matters() -> None:
+    reader = FoonReader()
+    dirty = "O\ta\nS\tx [b]\nS\t\nM\tmix\nO\tb\n//\n"
+    first = list(reader.units(dirty, "f.txt"))
+    remarks = list(reader.diagnostics)
+    assert list(reader.units(dirty, "f.txt")) == first
+    assert reader.diagnostics == remarks * 2
+
+
+def test_a_reader_that_met_an_error_reads_the_next_file(tmp_path: Path) -> None:
+    bad, good = tmp_path / "bad.txt", tmp_path / "good.txt"
+    bad.write_text("x\n")
+    good.write_text(MIX)
+    reader = FoonReader()
+    with pytest.raises(InputError):
+        reader.read_tree(bad)
+    assert [unit for unit, _ in reader.read_tree(good)] == [MIX_UNIT]
+    with pytest.raises(InputError):
+        reader.read_network([good, bad])
+    assert len(reader.read_network([good])) == 1
+
+
+@steady
+@given(one=texts(), two=texts(), lenient=st.booleans())
+def test_a_used_reader_reads_as_a_fresh_one(one: str, two: str, lenient: bool) -> None:
+    fresh_units, fresh = read(two, lenient)
+    used_units, used = read(one, lenient)
+    before, left_out = len(used.diagnostics), used.left_out
+    for _ in range(2):
+        assert list(used.units(two, "f.txt")) == fresh_units
+        assert used.diagnostics[before:] == fresh.diagnostics
+        assert used.left_out - left_out == fresh.left_out
+        before, left_out = len(used.diagnostics), used.left_out
+    assert used_units == read(one, lenient)[0]
+
+
+# --- any text
+
+
+@steady
+@given(texts())
+def test_any_text_is_read_or_refused_in_place(text: str) -> None:
+    found, reader = read(text)
+    lines = text.replace("\r\n", "\n").split("\n")
+    for diagnostic in reader.diagnostics:
+        line = lines[diagnostic.source.line - 1]
+        assert diagnostic.excerpt == line
+        assert 1 <= diagnostic.source.column <= len(line) + 1
+        assert diagnostic.message in str(diagnostic)
+    errors = [d for d in reader.diagnostics if d.severity is Severity.ERROR]
+    assert errors == sorted(errors, key=lambda d: d.source.line)
+    assert reader.left_out == 0
+    for unit in found:
+        assert unit.inputs
+        assert lines[unit.source.line - 1].strip()
+
+
+@steady
+@given(texts())
+def test_a_text_without_a_diagnostic_has_lost_nothing(text: str) -> None:
+    found, reader = read(text)
+    lines = text.split("\n")
+    if not reader.diagnostics:
+        assert len(found) == sum(line.startswith("M") for line in lines)
+        nodes = sum(len(unit.inputs) + len(unit.outputs) for unit in found)
+        assert nodes == sum(line.startswith("O") for line in lines)
+        assert all(line.strip()[:1] in {"O", "S", "M", "#", "/", ""} for line in lines)
+
+
+@steady
+@given(texts())
+def test_lenient_reads_any_text(text: str) -> None:
+    _, reader = read(text, lenient=True)
+    reader.raise_errors()
+    errors = [d for d in read(text)[1].diagnostics if d.severity is Severity.ERROR]
+    assert (reader.left_out > 0) == bool(errors)
+
+
+@steady
+@given(
+    st.binary(max_size=40)
+    | texts().map(str.encode)
+    | st.builds(bytes.__add__, st.just("\ufeffO\té".encode()), st.binary(max_size=6))
+    | st.builds(lambda text, tail: text.encode() + tail, texts(), st.binary(min_size=1, max_size=3))
+)
+def test_any_file_is_read_or_refused_as_the_users(
+    tmp_path_factory: pytest.TempPathFactory, data: bytes
+) -> None:
+    file = tmp_path_factory.getbasetemp() / "any.txt"
+    file.write_bytes(data)
+    try:
+        data.decode()
+        decodable = True
+    except UnicodeDecodeError:
+        decodable = False
+    assert refusals(file, lenient=False) or decodable
+    assert bool(refusals(file, lenient=True)) == (not decodable)
+
+
+# --- any network
+
+
+@steady
+@given(units())
+def test_ids_flags_times_comments_and_line_ends_change_nothing(written: list[FunctionalUnit]) -> None:
+    plain = write_units(written)
+    decorated = []
+    for number, line in enumerate(plain.split("\n")):
+        letter, tab, rest = line.partition("\t")
+        ends = {"O": f"\t{number % 2}", "M": f"\t{number}:0{number % 10}\tAssumed"}
+        decorated += [f"{letter}{number}\t{rest}{ends.get(letter, '')}" if tab else line, "# aside", ""]
+    expected, plain_reader = read(plain)
+    found, reader = read("\r\n".join(decorated))
+    assert [unit[:3] for unit in found] == [unit[:3] for unit in expected]
+    assert [d.code for d in reader.diagnostics] == [d.code for d in plain_reader.diagnostics]
+
+
+@steady
+@given(units(), st.randoms(use_true_random=False))
+def test_the_order_of_lines_within_a_side_changes_nothing(
+    written: list[FunctionalUnit], random: Random
+) -> None:
+    shuffled = []
+    for unit in written:
+        sides = [list(unit.inputs), list(unit.outputs)]
+        for side in sides:
+            random.shuffle(side)
+        shuffled.append(FunctionalUnit.of(unit.motion, *sides))
+    assert units_of(read(write_units(shuffled))[0]) == written
+
+
+# --- the real corpus
+
+
+@pytest.mark.skipif(not CORPUS.is_dir(), reason=f"the real corpus is not at {CORPUS}")
+def test_the_real_subgraphs_are_read_all_but_one_and_written_and_read_again() -> None:
+    files = sorted((CORPUS / "subgraphs").glob("*.txt"))
+    assert len(files) == 56
+    refused: list[Diagnostic] = []
+    for file in files:
+        try:
+            tree = FoonReader().read_tree(file)
+        except InputError as error:
+            refused += error.diagnostics
+            reader = FoonReader(lenient=True)
+            tree = reader.read_tree(file)
+            assert reader.left_out > 0
+        assert tree
+        read_units = [unit for unit, _ in tree]
+        again, _ = read(write_units(read_units))
+        assert units_of(again) == read_units
+        assert [tuple(unit.inputs) for unit in again] == [unit.inputs for unit in read_units]
+    assert [d.code for d in refused] == ["no-motion"]
+    assert refused[0].source.line > 1
+    assert "has no motion" in str(refused[0])
