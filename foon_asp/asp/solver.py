@@ -84,7 +84,6 @@ class _Solver:
         first = self.cut()
         if first is None:
             return self._outcome(Status.INFEASIBLE, None, {})
-        incumbent: Units | None = None
         if self.program.own:
             incumbent = Units(first)
         else:  # the user's rules decide what a tree is: let them find the first one
@@ -161,6 +160,7 @@ class _Solver:
         place = self.levels.index(Objective.SUCCESS)
         before, after = self.levels[:place], self.levels[place + 1 :]
         exponents = write_exponents(self.problem, self.units, scale)
+        seen = ""
         fixed = [self.problem.costs(best).measure(objective) for objective in before]
         chosen, rival, number = best, best, 0
         while True:
@@ -168,10 +168,10 @@ class _Solver:
             # than their logarithm (all but those of rate 1).
             inexact = sum(self._rate(unit) != 1 for unit in chosen)
             band = self._weight(chosen) + inexact - 1
-            exponents += write_seen(number, scale.product_exponents(map(self._rate, rival)))
+            seen += write_seen(number, scale.product_exponents(map(self._rate, rival)))
             number += 1
             mode = ",".join(["opt", *map(str, fixed), str(band)])
-            ended = self._run((*before, Objective.SUCCESS), exponents, mode)
+            ended = self._run((*before, Objective.SUCCESS), exponents + seen, mode)
             if not ended.exhausted:
                 return chosen, False
             if ended.units is None:
@@ -182,8 +182,7 @@ class _Solver:
         if not after:
             return chosen, True
         wanted = write_wanted(scale.product_exponents(map(self._rate, chosen)))
-        extra = write_exponents(self.problem, self.units, scale) + wanted
-        ended = self._run((*before, *after), extra)
+        ended = self._run((*before, *after), exponents + wanted)
         if ended.exhausted and ended.units is None:
             raise BugError("the best product of success rates was lost")
         return (ended.units or chosen), ended.exhausted

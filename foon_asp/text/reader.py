@@ -164,23 +164,27 @@ class _FileReading:
         if first_line < 0:
             return None
         if motion is None or not inputs:
-            message = "has no motion" if motion is None else "has no input objects"
-            self._drop(first_line, end, message, rejected_before)
+            self._drop(first_line, end, motion is not None, rejected_before)
             return None
         if not outputs:
             self._warn("no-outputs", f"the unit {motion!r} has no output objects", first_line)
         return ReadUnit(motion, inputs, outputs, Source(self.file, first_line + 1, 1, self.videos))
 
-    def _drop(self, first_line: int, end: int, lacks: str, before: tuple[int, int]) -> None:
+    def _drop(self, first_line: int, end: int, has_motion: bool, before: tuple[int, int]) -> None:
         """Reject the lines of a unit that is none; where a line of it was, that already says why."""
         meaningful = [i for i in range(first_line, end) if self.lines[i].strip() and self.lines[i][0] != "#"]
         rejected, left_out = before
         if self.rejected == rejected or self.reader.lenient:
             at_end = end == len(self.lines)
             found = "the file ends" if at_end else "found //"
-            expected = "a motion line" if lacks == "has no motion" else "an object line before the motion"
+            code, expected, lacks = "no-motion", "a motion line", "has no motion"
+            if has_motion:
+                code, expected, lacks = (
+                    "no-inputs",
+                    "an object line before the motion",
+                    "has no input objects",
+                )
             message = f"{found}, expected {expected}: the unit of line {first_line + 1} {lacks}"
-            code = "no-motion" if lacks == "has no motion" else "no-inputs"
             count = len(meaningful) - (self.reader.left_out - left_out)
             self._reject(code, message, meaningful[-1] if at_end else end, count=count)
 
