@@ -99,9 +99,9 @@ class NetworkBuilder:
         self._sources: list[list[Source]] = []
 
     def add(
-        self, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode], source: Source
+        self, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode], *sources: Source
     ) -> int:
-        """Add one copy of a unit and return the unit's id."""
+        """Add one copy of a unit, or several with their sources, and return the unit's id."""
         ids = self._object_ids
         # dict.fromkeys: a node that one unit lists twice is one input, in the place of its first mention
         ins = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))
@@ -112,9 +112,9 @@ class NetworkBuilder:
             self._motions.append(motion)
             self._inputs.append(ins)
             self._outputs.append(outs)
-            self._sources.append([source])
+            self._sources.append([*sources])
         else:
-            self._sources[unit_id].append(source)
+            self._sources[unit_id] += sources
         return unit_id
 
     def build(self) -> Network:

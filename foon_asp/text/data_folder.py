@@ -101,16 +101,17 @@ def read_data(files: DataFiles, lenient: bool = False) -> Data:
     network = reader.read_network(files.network)
     warnings = reader.diagnostics
     kitchen: set[int] = set()
-    for item in read_object_list(files.kitchen) if files.kitchen else ():
+    for item in read_object_list(files.kitchen, warnings) if files.kitchen else ():
         found = network.find(item.pattern)
         kitchen.update(found)
         if not found:
             message = f"the kitchen item {str(item.pattern)!r} matches no object node of the network"
             warnings.append(Diagnostic(Severity.WARNING, "kitchen-item", message, item.source))
+    goals = tuple(read_object_list(files.goals, warnings)) if files.goals else ()
     return Data(
         network,
         frozenset(kitchen),
-        tuple(read_object_list(files.goals)) if files.goals else (),
+        goals,
         read_rates(files.rates) if files.rates else None,
         read_labels(files.utensils) if files.utensils else frozenset(),
         tuple(warnings),

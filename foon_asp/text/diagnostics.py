@@ -19,7 +19,8 @@ class Diagnostic(NamedTuple):
     """One remark about one place in an input file.
 
     ``code`` names the kind of remark in a few words and is the same for all remarks of that kind;
-    ``excerpt`` is the line of the file that it is about, without its end, or empty.
+    ``excerpt`` is the line of the file that it is about, without its end, or empty; ``fix`` is how that
+    line would be written without what is remarked on, where this changes nothing of what it says.
     """
 
     severity: Severity
@@ -27,6 +28,7 @@ class Diagnostic(NamedTuple):
     message: str
     source: Source
     excerpt: str = ""
+    fix: str | None = None
 
     def __str__(self) -> str:
         """Give ``file:line:column: severity: message`` and, where known, the line with a caret."""
