@@ -1,7 +1,7 @@
 """Object blocks and functional units as they stand in a file, with all that is no part of their identity."""
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from foon_asp.network import Contents, ObjectNode, Relation, Source
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
@@ -17,7 +17,7 @@ class ObjectBlock(NamedTuple):
     @property
     def node(self) -> ObjectNode:
         """The object node that is mentioned; order, ids and fields are no part of it."""
-        return node_of(self.object, self.states)
+        return node_of(self.object.label, (state.attribute for state in self.states))
 
 
 class ListedUnit(NamedTuple):
@@ -34,18 +34,18 @@ class ListedUnit(NamedTuple):
     motion_source: Source
 
 
-def node_of(line: ObjectLine, states: Iterable[StateLine]) -> ObjectNode:
-    """Build the node that an object line and the state lines under it describe."""
-    plain: list[str] = []
+def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:
+    """Build the node of a label and what the state lines under it say."""
+    states: list[str] = []
     relations: list[Relation] = []
     contents: list[Contents] = []
-    for state in states:
-        attribute = state.attribute
-        if isinstance(attribute, str):
-            plain.append(attribute)
-        elif isinstance(attribute, Relation):
-            relations.append(attribute)
+    for attribute in attributes:
+        kind = type(attribute)
+        if kind is Relation:
+            relations.append(cast(Relation, attribute))
+        elif kind is Contents:
+            contents.append(cast(Contents, attribute))
         else:
-            contents.append(attribute)
+            states.append(cast(str, attribute))
     contents.sort()
-    return ObjectNode(line.label, frozenset(plain), frozenset(relations), tuple(contents))
+    return ObjectNode(label, frozenset(states), frozenset(relations), tuple(contents))

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple, cast
 
-from foon_asp.network import FunctionalUnit, Network, NetworkBuilder, ObjectNode, Source
+from foon_asp.network import Contents, FunctionalUnit, Network, NetworkBuilder, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_units import is_json, read_json_units
 from foon_asp.text.line import (
@@ -58,6 +58,7 @@ class FoonReader:
         self.nodes: dict[str, ObjectNode] = {}
         self.motions: dict[str, str] = {}
         self.same_node: dict[ObjectNode, ObjectNode] = {}  # one object for each node: quick to compare
+        self.clean: dict[str, ObjectLine | str | Relation | Contents] = {}  # what state lines say
         self._lines: dict[str, Line | LineError] = {}
 
     def read_network(self, files: Iterable[Path]) -> Network:
@@ -128,7 +129,13 @@ class FoonReader:
             for line in dict.fromkeys(lines)
             if line[:1] in {"O", "S", "M"} and line not in known and len(line) <= _LONGEST
         ]
-        known.update(zip(new, parse_lines(new), strict=True))
+        for line, parsed in zip(new, parse_lines(new), strict=True):
+            known[line] = parsed
+            if isinstance(parsed, StateLine):
+                if not parsed.remarks:
+                    self.clean[line] = parsed.attribute
+            elif isinstance(parsed, ObjectLine) and not parsed.remarks:
+                self.clean[line] = parsed
 
     def parse(self, line: str) -> Line | LineError:
         """Parse a line, or remember what came of it."""
@@ -206,8 +213,8 @@ class _FileReading:
         yield text[self.start :], number, True
 
     def _look_ahead(self, length: int) -> None:
-        """Parse the new lines of the piece at hand, and of those that follow."""
-        if self.start >= self.looked_ahead:
+        """Parse the new lines of the piece at hand, of that length, and of those that follow."""
+        if self.start + length > self.looked_ahead:
             end = self.text.find("\n", self.start + max(length, _AHEAD))
             self.looked_ahead = len(self.text) if end < 0 else end
             self.reader.parse_new(self.text[self.start : self.looked_ahead].split("\n"))
@@ -221,51 +228,41 @@ class _FileReading:
             first += 1
         if chunk[:1] != "O":
             return None
-        nodes, motions = self.reader.nodes, self.reader.motions
         head, _, tail = chunk.partition("\nM")
-        motion, _, tail = tail.partition("\nO")
-        inputs, outputs = head[1:].split("\nO"), tail.split("\nO")
-        try:
-            return ReadUnit(
-                motions[motion],
-                [nodes[block] for block in inputs],
-                [nodes[block] for block in outputs],
-                tuple(sources) or (Source(self.file, first, 1, self.videos),),
-            )
-        except KeyError:
-            self._look_ahead(len(chunk))
-        if self._learn_motion(motion) and all(map(self._learn, inputs)) and all(map(self._learn, outputs)):
-            return ReadUnit(
-                motions[motion],
-                [nodes[block] for block in inputs],
-                [nodes[block] for block in outputs],
-                tuple(sources) or (Source(self.file, first, 1, self.videos),),
-            )
-        return None
+        motion_line, _, tail = tail.partition("\nO")
+        known, learn = self.reader.nodes.get, self._learn
+        motion = self.reader.motions.get(motion_line) or self._learn_motion(motion_line, len(chunk))
+        inputs = [known(block) or learn(block, len(chunk)) for block in head[1:].split("\nO")]
+        outputs = [known(block) or learn(block, len(chunk)) for block in tail.split("\nO")]
+        if not (motion and all(inputs) and all(outputs)):
+            return None
+        nodes = cast(tuple[list[ObjectNode], list[ObjectNode]], (inputs, outputs))
+        return ReadUnit(motion, *nodes, tuple(sources) or (Source(self.file, first, 1, self.videos),))
 
-    def _learn(self, block: str) -> bool:
-        """Remember the node of an object block, if there is nothing to remark on."""
+    def _learn(self, block: str, length: int) -> ObjectNode | None:
+        """Build the node of a block not met before, and remember it; ``None`` if there is anything to say."""
+        self._look_ahead(length)
         reader = self.reader
-        if block in reader.nodes:
-            return True
+        clean = reader.clean
         first, *rest = block.split("\n")
-        line = reader.parse("O" + first)
-        states = [reader.parse(text) for text in rest]
-        if not isinstance(line, ObjectLine) or line.remarks:
-            return False
-        for state in states:
-            if not isinstance(state, StateLine) or state.remarks:
-                return False
-        node = node_of(line, cast(list[StateLine], states))
-        reader.nodes[block] = reader.same_node.setdefault(node, node)
-        return True
+        try:
+            label = clean["O" + first]
+            attributes = [clean[line] for line in rest]
+        except KeyError:
+            return None
+        if type(label) is not ObjectLine or ObjectLine in map(type, attributes):
+            return None
+        node = node_of(label.label, cast(list[str | Relation | Contents], attributes))
+        node = reader.nodes[block] = reader.same_node.setdefault(node, node)
+        return node
 
-    def _learn_motion(self, text: str) -> bool:
+    def _learn_motion(self, text: str, length: int) -> str | None:
+        self._look_ahead(length)
         parsed = self.reader.parse("M" + text)
         if not isinstance(parsed, MotionLine) or parsed.remarks:
-            return False
+            return None
         self.reader.motions[text] = parsed.motion
-        return True
+        return parsed.motion
 
     def _line_by_line(self, chunk: str, number: int, last: bool) -> Iterator[ListedUnit]:
         """Read a piece of the text that may hold anything, separators with blanks behind them included."""
