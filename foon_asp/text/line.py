@@ -160,6 +160,23 @@ class _LineBuilder(Transformer[Token, object]):
     def lines(self, lines: list[Line]) -> list[Line]:
         return lines
 
+    def clean_object(self, tokens: list[Token]) -> ObjectLine:
+        letter, label, *fields = tokens[0][:-1].split("\t")
+        return ObjectLine(label, letter[1:], tuple(fields))
+
+    def clean_plain(self, tokens: list[Token]) -> StateLine:
+        letter, state = tokens[0][:-1].split("\t")
+        return StateLine(state, letter[1:])
+
+    def clean_related(self, tokens: list[Token]) -> StateLine:
+        letter, word, bracket = tokens[0][:-1].split("\t")
+        return StateLine(Relation(word, bracket[1:-1]), letter[1:])
+
+    def clean_holding(self, tokens: list[Token]) -> StateLine:
+        letter, word, bracket = tokens[0][:-1].split("\t")
+        column = len(letter) + len(word) + 3
+        return _bracketed(word, Token("LIST", bracket, column=column), letter[1:], [])
+
     def object(self, tokens: list[Token]) -> ObjectLine:
         remarks: list[Remark] = []
         id_ = _id(tokens[0], remarks)
