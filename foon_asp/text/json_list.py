@@ -22,11 +22,13 @@ class JsonElement(NamedTuple):
 class JsonList:
     """The elements of a list, read one by one; what is wrong is collected in ``errors``.
 
-    The list is the file's only value, or with ``key`` the value of that key of an object.
+    The list is the file's only value, or with ``key`` the value of that key of an object, whose other
+    values are in ``others`` when all has been read.
     """
 
     def __init__(self, text: str, file: Path, key: str | None = None) -> None:
         self.errors: list[Diagnostic] = []
+        self.others: dict[str, object] = {}
         self._text = text
         self._file = str(file)
         self._key = key
@@ -65,7 +67,7 @@ class JsonList:
         self._nothing_after(end)
 
     def _in_object(self, position: int) -> Iterator[tuple[int, object]]:
-        """Give the elements of the list under the key; the values of other keys are passed over."""
+        """Give the elements of the list under the key; the values of other keys are kept aside."""
         found = False
         position = self._skip(position)
         while self._text[position : position + 1] != "}":
@@ -75,7 +77,7 @@ class JsonList:
                 found = True
                 position = yield from self._in_list(position)
             else:
-                _, position = self._value(position)
+                self.others[str(key)], position = self._value(position)
             position = self._skip(position)
             if self._text[position : position + 1] != "}":
                 position = self._expect(",", position)

@@ -1,6 +1,6 @@
 """FOON units in JSON, in the two forms that are about.
 
-The one is ``{"functional_units": [...]}`` with ``object_label``, ``object_states`` and ids; the other a bare
+The one is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states`` and ids; the other a bare
 list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``. Both are read into
 the lines that FOON text would have, so that nothing after the reading knows which it was.
 """
@@ -32,9 +32,11 @@ def read_json_units(
     An object whose ``container`` is named without a word is ``in`` it.
     """
     elements = JsonList(text, Path(file), "functional_units")
-    for element in elements:
+    listed = list(elements)
+    videos = _videos(elements.others.get("source"))
+    for element in listed:
         try:
-            unit = _unit(element)
+            unit = _unit(element, videos)
         except ValueError as problem:
             elements.error(element.source, str(problem))
             continue
@@ -55,7 +57,13 @@ def read_json_units(
         diagnostics += elements.errors
 
 
-def _unit(element: JsonElement) -> ListedUnit:
+def _videos(value: object) -> tuple[str, ...]:
+    """The videos that were annotated: one address, or a list."""
+    found = value if isinstance(value, list) else [value]
+    return tuple(video.strip() for video in found if isinstance(video, str) and video.strip())
+
+
+def _unit(element: JsonElement, videos: tuple[str, ...]) -> ListedUnit:
     value, source = element
     if not isinstance(value, dict) or not value.keys() >= _KEYS:
         raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_KEYS))}")
@@ -63,7 +71,9 @@ def _unit(element: JsonElement) -> ListedUnit:
         raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(_KEYS))}")
     sides = (_side(value, key, source) for key in ("input_nodes", "output_nodes"))
     inputs, outputs = sides
-    return ListedUnit(_motion(value["motion_node"]), inputs, outputs, (source,), source)
+    return ListedUnit(
+        _motion(value["motion_node"]), inputs, outputs, (source._replace(videos=videos),), source
+    )
 
 
 def _side(unit: dict[str, object], key: str, source: Source) -> tuple[ObjectBlock, ...]:

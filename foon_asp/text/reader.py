@@ -22,6 +22,7 @@ from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.writer import write_line
 
 _AHEAD = 65_536  # letters looked ahead for new lines, so that they go to the parser together
+_REMEMBERED = 200_000  # object blocks: what comes again mostly comes soon
 _LONGEST = 1_000_000  # letters of a line: no FOON line means more
 
 
@@ -253,6 +254,8 @@ class _FileReading:
         if type(label) is not ObjectLine or ObjectLine in map(type, attributes):
             return None
         node = node_of(label.label, cast(list[str | Relation | Contents], attributes))
+        if len(reader.nodes) >= _REMEMBERED:
+            reader.nodes.clear()
         node = reader.nodes[block] = reader.same_node.setdefault(node, node)
         return node
 
