@@ -1,8 +1,8 @@
 """FOON units in JSON, in the two forms that are about.
 
-The one is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states`` and ids; the other a bare
-list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``. Both are read into
-the lines that FOON text would have, so that nothing after the reading knows which it was.
+The one is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states`` and ids;
+the other a bare list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``.
+Both are read into the lines that FOON text would have, so that nothing after the reading knows which it was.
 """
 
 from collections.abc import Iterator
