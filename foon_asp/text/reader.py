@@ -260,6 +260,8 @@ class _FileReading:
         return node
 
     def _learn_motion(self, text: str, length: int) -> str | None:
+        if "\n" in text:  # what stands between the motion and the outputs
+            return None
         self._look_ahead(length)
         parsed = self.reader.parse("M" + text)
         if not isinstance(parsed, MotionLine) or parsed.remarks:
