@@ -177,6 +177,7 @@ def _question(problem: Problem, searches: Sequence[str], settings: SearchSetting
     return {
         "data": digest.hexdigest()[:16],
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "searches": list(searches),
         "ties": str(settings.ties),
         "count": str(settings.count),

@@ -21,6 +21,9 @@ class Network:
     Nodes and units are numbered from 0 in the order in which they were first read; the numbers are the
     ids used in facts, answers and messages. ``inputs[u]`` and ``outputs[u]`` are the node ids of unit
     ``u``; ``sources[u]`` lists where each copy of it was read. Build one with :class:`NetworkBuilder`.
+
+    A network below ``level`` 3 has the level-3 network it was made from in ``detailed``, and in
+    ``stands_for[u]`` the ids there of the units that ``u`` stands for.
     """
 
     objects: tuple[ObjectNode, ...]
@@ -30,6 +33,9 @@ class Network:
     sources: tuple[tuple[Source, ...], ...]
     _object_ids: dict[ObjectNode, int] = field(repr=False)
     _unit_ids: dict[UnitKey, int] = field(repr=False)
+    level: int = 3
+    detailed: "Network | None" = field(default=None, repr=False)
+    stands_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
 
     def __len__(self) -> int:
         """Count the units."""

@@ -34,6 +34,12 @@ class Problem:
         if self.rates is not None:
             require_rates(self.network, self.rates)
 
+    @property
+    def conditions(self) -> str:
+        """What every claim about this question holds under, in a few words: ``strict containers``."""
+        level = f", level {self.network.level}" if self.network.level < 3 else ""
+        return f"{self.containers} containers{level}"
+
     @cached_property
     def needs(self) -> tuple[tuple[int, ...], ...]:
         """For each unit, the ids of the inputs that the container rule asks for."""

@@ -29,9 +29,12 @@ def costs_json(costs: Costs | None) -> dict[str, object] | None:
 
 
 def unit_json(network: Network, unit: int) -> dict[str, object]:
-    """Give a unit with its id, motion, nodes in one-line notation and every place it was read from."""
+    """Give a unit with its id, motion, nodes in one-line notation and every place it was read from.
+
+    Below level 3 the level-3 units it stands for are listed in the same way.
+    """
     objects = network.objects
-    return {
+    given: dict[str, object] = {
         "id": unit,
         "motion": network.motions[unit],
         "inputs": [str(objects[o]) for o in network.inputs[unit]],
@@ -41,6 +44,9 @@ def unit_json(network: Network, unit: int) -> dict[str, object]:
             for source in network.sources[unit]
         ],
     }
+    if network.detailed is not None:
+        given["stands_for"] = [unit_json(network.detailed, detail) for detail in network.stands_for[unit]]
+    return given
 
 
 def outcome_json(outcome: Outcome) -> str:
@@ -56,6 +62,7 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
         "goal": " + ".join(goals),
         "goals": goals,
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "objective": [str(objective) for objective in outcome.objectives],
         "encodings": None if outcome.encodings is None else str(outcome.encodings),
         "status": str(outcome.status),
@@ -99,7 +106,7 @@ def outcome_text(outcome: Outcome) -> str:
 
 def headline(outcome: Outcome) -> str:
     """Say in one line what is claimed."""
-    rule = f"{outcome.problem.containers} containers"
+    rule = outcome.problem.conditions
     best = ", then ".join(outcome.objectives)
     if outcome.costs is None:
         if outcome.status is Status.INFEASIBLE:
@@ -155,6 +162,18 @@ def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
         for o in network.outputs[unit]:
             yield f"     → {network.objects[o]}"
             maker.setdefault(o, number)
+        yield from _details(network, unit)
+
+
+def _details(network: Network, unit: int, shown: int = 5) -> Iterator[str]:
+    """Say which level-3 units a step stands for."""
+    if network.detailed is None:
+        return
+    details = network.stands_for[unit]
+    yield f"     stands for {_count(len(details), 'unit')} at level 3:"
+    yield from (f"       {detail}: {network.detailed.unit(detail)}" for detail in details[:shown])
+    if len(details) > shown:
+        yield f"       ... and {len(details) - shown} more; --format json lists all"
 
 
 def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> Iterator[str]:

@@ -32,6 +32,7 @@ def retrieval_json(
     result = {
         "goals": [str(objects[goal]) for goal in problem.goals],
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "search": search.name,
         "ending": str(retrieval.ending),
         "stuck_at": None if retrieval.stuck_at is None else str(objects[retrieval.stuck_at]),
@@ -56,7 +57,7 @@ def retrieval_foon(
     goals = " + ".join(str(problem.network.objects[goal]) for goal in problem.goals)
     comments = [
         f"Task tree for: {goals}",
-        f"{search.name} ({problem.containers} containers): {simulation.verdict}, "
+        f"{search.name} ({problem.conditions}): {simulation.verdict}, "
         f"{costs_text(problem.costs(retrieval.units))}",
     ]
     return write_units(map(problem.network.unit, retrieval.units), comments)
