@@ -70,10 +70,6 @@ def lost_in_states(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) 
 
 def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Loss]:
     missing = Counter(before) - Counter(after)
-    if not missing:
-        if before != after:
-            yield Loss.ORDER
-        return
     for index, field in enumerate(before):
         if not missing[field]:
             continue

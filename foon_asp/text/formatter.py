@@ -1,7 +1,8 @@
 """The canonical form of FOON files: what ``foon-asp fmt`` writes."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from itertools import takewhile
 from typing import NamedTuple
 
 from foon_asp.network import Source
@@ -14,6 +15,7 @@ from foon_asp.text.writer import write_line
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _MARK = "\ufeff"
+_BLANKS = {"outer-space", "space-for-tab"}
 
 Rewrite = Callable[[Line, str], str]
 """What becomes of a line, given what it says and how it is written."""
@@ -41,8 +43,14 @@ class Formatted(NamedTuple):
 
 
 def mend(line: Line, written: str) -> str:
-    """Give the canonical form of a line: itself, unless there is a remark on it."""
-    return write_line(line) if line.remarks else written
+    """Give the canonical form of a line: itself, unless there is a remark on more than blanks in it.
+
+    Blanks within a line stay, as the published universal FOON has them: ``{jelly, peanut butter}``, and a
+    space for the tab before a bracket. Linting remarks on them.
+    """
+    if all(remark.code in _BLANKS for remark in line.remarks):
+        return written.rstrip(" \t")
+    return write_line(line)
 
 
 def format_text(
@@ -50,7 +58,7 @@ def format_text(
 ) -> Formatted:
     """Bring a text into canonical form, line by line; it means the same before and after.
 
-    Blanks that carry nothing go, every line ends in the way that most do, a last unit is closed by ``//``.
+    Blanks at the end of lines go, every line ends in the way that most do, a last unit is closed by ``//``.
     Comments, blank lines and the order of everything stay, whether or not the lines make up units. In JSON
     only the layout changes. Raises :class:`InputError` with every line that cannot be understood; with
     ``lenient`` those stay as they are. ``rewrite`` says what becomes of the others; ``reader`` remembers
@@ -130,18 +138,22 @@ def _format_json(text: str, file: str, lenient: bool) -> Formatted:
     ends = _LINE_END.findall(text)
     end = max(("\n", "\r\n", "\r"), key=ends.count)
     laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
-    before = _LINE_END.sub("\n", text).split("\n")
-    after = laid_out.split("\n")
-    changes = [
-        Change(number, old, new)
-        for number, (old, new) in enumerate(zip(before, after, strict=False), 1)
-        if old != new
-    ]
-    changes += [
-        Change(number, before[number - 1] if number <= len(before) else "", "")
-        for number in range(min(len(before), len(after)) + 1, len(before) + 1)
-    ]
+    before, after = _LINE_END.sub("\n", text).split("\n"), laid_out.split("\n")
     new_text = laid_out.replace("\n", end)
-    if new_text != text and not changes:
-        changes = [Change(1, before[0], before[0])]
+    if new_text == text:
+        return Formatted(text, ())
+    same = _same(zip(before, after, strict=False))
+    most = min(len(before), len(after)) - same
+    same_at_end = min(most, _same(zip(reversed(before), reversed(after), strict=False)))
+    last = max(same + 1, len(before) - same_at_end)
+    changes = [
+        Change(index + 1, old, after[index] if index < len(after) else "")
+        for index, old in enumerate(before)
+        if min(same, len(before) - 1) <= index < last
+    ]
     return Formatted(new_text, tuple(changes))
+
+
+def _same(pairs: Iterable[tuple[str, str]]) -> int:
+    """Count the pairs of equal lines before the first that are not."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))

@@ -2,12 +2,11 @@
 
 import json
 import re
-from pathlib import Path
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
-_STEP = "    "
+STEP = "    "
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
 
 
@@ -23,9 +22,9 @@ def lay_out(text: str, level: int = 0) -> str:
         if token in {"]", "}"}:
             level -= 1
             if before not in {"[", "{"}:
-                parts.append("\n" + _STEP * level)
+                parts.append("\n" + STEP * level)
         elif before in {"[", "{", ","}:
-            parts.append("\n" + _STEP * level)
+            parts.append("\n" + STEP * level)
         parts.append(": " if token == ":" else token)
         level += token in {"[", "{"}
         before = token

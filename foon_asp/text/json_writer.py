@@ -5,20 +5,16 @@ What is written is laid out like the files in these forms, and read by :mod:`foo
 
 import json
 import re
-from collections.abc import Iterable
-from functools import cache
+from collections.abc import Sequence
 
 from foon_asp.network import Contents, Relation
 from foon_asp.text.conversion_times import MotionFields, in_two_fields
-from foon_asp.text.json_layout import lay_out
+from foon_asp.text.json_layout import STEP
 from foon_asp.text.json_list import JsonNumber
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
 
 # What a JSON number may look like; other digits, such as 007, are written as text.
 _NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
-
-Written = tuple[str, ...]
-"""The JSON texts of the nodes of one side of a unit."""
 
 
 def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
@@ -45,15 +41,14 @@ def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
             else:
                 label = f"{said.word} {{{','.join(state.listed)}}}"
         written.append({"state_id": _number(state.id), "state_label": label, "relative_object": related})
-    flag = line.fields[0] if line.fields and line.fields[0].isdecimal() else ""
     value: dict[str, object] = {
         "object_id": _number(line.id),
         "object_label": line.label,
         "object_states": written,
         "ingredients": list(ingredients),
-        "object_in_motion": _number(flag),
+        "object_in_motion": _number(line.motion_flag or ""),
     }
-    if line.category:
+    if line.category and line.motion_flag:  # behind no flag it would be read as one
         value["recipe_category"] = _number(line.category)
     if container is not None:
         value["container"] = container
@@ -95,10 +90,30 @@ def list_motion(line: MotionLine) -> str:
     return _text(line.motion)
 
 
-def json_unit(inputs: Iterable[str], motion: str, outputs: Iterable[str]) -> str:
-    """Put a unit together from the texts of its parts."""
-    sides = [f"[{','.join(side)}]" for side in (inputs, outputs)]
-    return f'{{"input_nodes":{sides[0]},"motion_node":{motion},"output_nodes":{sides[1]}}}'
+def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], level: int) -> str:
+    """Put a unit together from the texts of its parts, laid out for a unit that stands at that level.
+
+    Its motion then stands one level deeper, and its objects two.
+    """
+    key = "\n" + STEP * (level + 1)
+    sides = (written_list(side, level + 1) for side in (inputs, outputs))
+    return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}}}'.format(
+        key, *sides, motion, "\n" + STEP * level
+    )
+
+
+def written_network(videos: Sequence[str], units: Sequence[str]) -> str:
+    """Put a whole file together from the texts of its units, laid out for their level 2."""
+    source = f'    "source": {written_list(list(map(_text, videos)), 1)},\n' if videos else ""
+    return f'{{\n{source}    "functional_units": {written_list(units, 1)}\n}}\n'
+
+
+def written_list(values: Sequence[str], level: int) -> str:
+    """Put a list together from the texts of its values, laid out for one level deeper than its own."""
+    if not values:
+        return "[]"
+    start = "\n" + STEP * (level + 1)
+    return "[" + ",".join(start + value for value in values) + "\n" + STEP * level + "]"
 
 
 def _number(digits: str) -> object:
@@ -118,9 +133,3 @@ def _text(value: object) -> str:
         lone = any("\ud800" <= c <= "\udfff" for c in value)  # half a pair, which is no text in UTF-8
         return json.dumps(value, ensure_ascii=lone)
     return json.dumps(value)
-
-
-@cache
-def laid_out(text: str, level: int) -> str:
-    """Lay out the text of an object or motion, which repeat much."""
-    return lay_out(text, level)

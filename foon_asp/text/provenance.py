@@ -16,7 +16,9 @@ _COPY_LINE = re.compile(r"# From:[\t ]*([^\t]+?):(\d{1,9})((?:\t[^\t]*)*)")
 
 def read_video(comment: str) -> str | None:
     """Give the video that a comment line names; ``None`` for another comment, or one that names none."""
-    return comment[len(_VIDEO) :].strip() or None if comment.startswith(_VIDEO) else None
+    if not comment.startswith(_VIDEO):
+        return None
+    return re.sub(r"\s*\t\s*", " ", comment[len(_VIDEO) :].strip()) or None  # a tab ends it in a # From: line
 
 
 def is_video(comment: str) -> bool:
