@@ -305,7 +305,7 @@ def _listed_json(text: str, file: str, errors: list[Diagnostic]) -> list[ObjectB
     blocks = []
     for value, source in elements:
         try:
-            line, states, container = read_object(value)
+            line, states, container, _ = read_object(value)
         except ValueError as problem:
             elements.error(source, str(problem))
             continue

@@ -1,6 +1,7 @@
 """One object node in JSON, in either of the forms that are about."""
 
 import json
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from foon_asp.network import Contents, Relation
@@ -16,11 +17,15 @@ _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 
 
 class JsonObject(NamedTuple):
-    """An object node as an object line and state lines, and the container that is named without a word."""
+    """An object node as an object line and state lines, and the container that is named without a word.
+
+    ``left_out`` says in words what the node has that lines have no place for.
+    """
 
     line: ObjectLine
     states: tuple[StateLine, ...]
     container: str | None
+    left_out: tuple[str, ...] = ()
 
 
 def read_object(value: object) -> JsonObject:
@@ -45,7 +50,8 @@ def read_object(value: object) -> JsonObject:
     if ingredients:
         states = _with_contents(states, ingredients)
     container = optional_name(value.get("container"), "container")
-    return JsonObject(ObjectLine(label, number(value, "object_id"), _fields(value)), tuple(states), container)
+    line = ObjectLine(label, number(value, "object_id"), _fields(value))
+    return JsonObject(line, tuple(states), container, tuple(_left_out(value)))
 
 
 def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
@@ -105,6 +111,14 @@ def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> lis
         if state.attribute == contents.word:
             return [*states[:index], StateLine(contents, state.id, ingredients), *states[index + 1 :]]
     return [*states, StateLine(contents, "", ingredients)]
+
+
+def _left_out(value: dict[str, object]) -> Iterator[str]:
+    if value.get("has_portions") not in {None, False, "False", ""}:
+        yield "has_portions left out: FOON text has no place for it"
+    for ingredient in _list(value, "ingredients", value.get("ingredients")):
+        if isinstance(ingredient, dict) and read_object(ingredient).states:
+            yield "states of ingredients left out: only their labels count"
 
 
 def _ingredient(value: object) -> str:

@@ -47,7 +47,8 @@ class ObjectLine(NamedTuple):
     @property
     def category(self) -> str | None:
         """The recipe category of a goal, a number, where the line has one."""
-        return next((field for field in self.fields[1:] if field.isdecimal()), None)
+        fields = self.fields if self.motion_flag is None else self.fields[1:]
+        return next((field for field in fields if field.isdecimal() and field not in _SLIPPED_FLAGS), None)
 
 
 class StateLine(NamedTuple):
@@ -91,6 +92,7 @@ class LineError(Exception):
 
 
 MOTION_FLAGS = {"0", "1"}
+_SLIPPED_FLAGS = {"00", "01"}
 _BATCH = 500  # lines handed to the parser at once: one at fault sends only these back, one by one
 
 _TERMINALS = {
@@ -192,7 +194,11 @@ class _LineBuilder(Transformer[Token, object]):
         motion = _name(tokens[1], remarks)
         composite = motion[-1] == "*" and motion.strip("* ") != ""
         if composite:
-            motion = motion.rstrip("* ")
+            written, motion = motion, motion.rstrip("* ")
+            if written != motion + "*":
+                remarks.append(
+                    _remark(tokens[1], "outer-space", f"{written!r} read as '{motion}*'", len(motion))
+                )
         fields = _fields(tokens[2:], remarks)
         times = fields
         if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):  # an entity and its rate
@@ -292,7 +298,7 @@ def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Re
     """Check what follows a label: a motion flag, then for a goal its category or ``!``."""
     places = [token for token in tokens[2:] if token.strip("\t ")]
     flag = fields[0]
-    if flag in {"00", "01"}:
+    if flag in _SLIPPED_FLAGS:
         remarks.append(_remark(places[0], "motion-flag", f"motion flag {flag!r} read as {flag[1]!r}", 1))
         fields = (flag[1], *fields[1:])
     elif flag not in MOTION_FLAGS and flag != "!":

@@ -34,7 +34,7 @@ def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> li
     entries: list[ListedObject] = []
     for value, source in elements:
         try:
-            line, states, container = read_object(value)
+            line, states, container, _ = read_object(value)
             entries.append(ListedObject(_pattern(line.label, states, container), source))
         except ValueError as problem:
             elements.error(source, str(problem))
