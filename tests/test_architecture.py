@@ -19,7 +19,7 @@ FLOORS = (
     {"errors", "resources"},
     {"network"},
     {"text", "problem"},
-    {"asp", "search", "proof"},
+    {"asp", "search", "proof", "store"},
     {"explain", "compare"},
     {"report"},
     {FACE},

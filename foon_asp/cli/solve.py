@@ -49,7 +49,9 @@ def command(
         raise UserError(f"found {clingo_options[0]!r}, expected an option; a goal is named by --goal NAME")
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers)
+    problem = question.problem(
+        question.goals(goals_named), containers, everything=bool(constraints or encodings)
+    )
     settings = Settings(constraints, encodings, constants, clingo_options, time_limit)
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
