@@ -21,6 +21,7 @@ _VERBS = (
     "draw",
     "facts",
     "stats",
+    "lint",
     "fmt",
     "convert",
     "merge",

@@ -18,11 +18,13 @@ _PATH = click.Path(path_type=Path)
 
 _DATA_OPTIONS = (
     click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with all of the following."),
-    click.option("--network", multiple=True, type=_PATH, metavar="FILE|DIR", help="FOON text; repeatable."),
-    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand (JSON)."),
+    click.option(
+        "--network", multiple=True, type=_PATH, metavar="FILE|DIR", help="FOON text or JSON; repeatable."
+    ),
+    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand: JSON, or FOON objects."),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
-    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name (JSON)."),
+    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name, likewise."),
     click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
 )
 
