@@ -20,7 +20,7 @@ FLOORS = (
     {"network"},
     {"text", "problem"},
     {"asp", "search", "proof"},
-    {"explain", "compare"},
+    {"explain", "compare", "lint"},
     {"report"},
     {FACE},
     {"cli"},

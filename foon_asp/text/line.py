@@ -263,7 +263,7 @@ class _LineBuilder(Transformer[Token, object]):
 
 def is_rate(field: str) -> bool:
     """Whether a field of a motion line is a success rate, a decimal from 0 to 1: ``0.85``."""
-    return re.fullmatch(r"0?\.\d+|[01]|[01]\.\d*", field) is not None
+    return re.fullmatch(r"0(\.\d*)?|\.\d+|1(\.0*)?", field) is not None
 
 
 def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
