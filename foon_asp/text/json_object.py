@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.network import Contents, Relation
 from foon_asp.text.json_list import JsonNumber
-from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, read_state
+from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number, read_state
 
 # The names that say the same, and which of them are read at all.
 _LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
@@ -79,7 +79,7 @@ def number(value: dict[str, object], key: str) -> str:
     """Give the digits of a number, which may be written as text; empty where there is none."""
     found = value.get(key)
     written = found.text if isinstance(found, JsonNumber) else found
-    if isinstance(written, str) and written.isdecimal():
+    if isinstance(written, str) and is_number(written):
         return written
     if found in (None, "", "None"):
         return ""
@@ -129,8 +129,8 @@ def _left_out(value: dict[str, object]) -> Iterator[str]:
     if value.get("has_portions") not in (None, False, "False", ""):
         yield "has_portions left out: FOON text has no place for it"
     for ingredient in _list(value, "ingredients", value.get("ingredients")):
-        if isinstance(ingredient, dict) and read_object(ingredient).states:
-            yield "states of ingredients left out: only their labels count"
+        if isinstance(ingredient, dict) and any(read_object(ingredient)[1:3]):
+            yield "states and containers of ingredients left out: only their labels count"
 
 
 def _ingredient(value: object) -> str:
@@ -151,6 +151,8 @@ def _list(value: dict[str, object], key: str, found: object) -> list[object]:
 def _name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
         raise ValueError(f'found {_shown(value)} as "{key}", expected {expected}')
+    if any("\ud800" <= letter <= "\udfff" for letter in value):
+        raise ValueError(f'found half a character in "{key}", {_shown(value)}, expected {expected}')
     return value
 
 

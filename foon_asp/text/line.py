@@ -48,7 +48,7 @@ class ObjectLine(NamedTuple):
     def category(self) -> str | None:
         """The recipe category of a goal, a number, where the line has one."""
         fields = self.fields if self.motion_flag is None else self.fields[1:]
-        return next((field for field in fields if field.isdecimal() and field not in _SLIPPED_FLAGS), None)
+        return next((field for field in fields if is_number(field) and field not in _SLIPPED_FLAGS), None)
 
 
 class StateLine(NamedTuple):
@@ -261,9 +261,14 @@ class _LineBuilder(Transformer[Token, object]):
     note_holding = note_related
 
 
+def is_number(field: str) -> bool:
+    """Whether a field is a number such as an id: digits, of the Latin script."""
+    return field.isascii() and field.isdigit()
+
+
 def is_rate(field: str) -> bool:
     """Whether a field of a motion line is a success rate, a decimal from 0 to 1: ``0.85``."""
-    return re.fullmatch(r"0(\.\d*)?|\.\d+|1(\.0*)?", field) is not None
+    return re.fullmatch(r"0(\.[0-9]*)?|\.[0-9]+|1(\.0*)?", field) is not None
 
 
 def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
@@ -309,7 +314,7 @@ def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Re
     elif flag not in MOTION_FLAGS and flag != "!":
         remarks.append(_remark(places[0], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
     for field, place in zip(fields[1:], places[1:], strict=True):
-        if not field.isdecimal() and field != "!":
+        if not is_number(field) and field != "!":
             message = f"{field!r} is neither a category nor the goal mark !"
             remarks.append(_remark(place, "unknown-field", message, 1))
     return fields

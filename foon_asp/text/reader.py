@@ -222,9 +222,12 @@ class _FileReading:
     def _look_up(self, chunk: str, number: int) -> ReadUnit | None:
         """Read a unit by its object blocks; ``None`` when one of them cannot be taken as it is."""
         first, sources = number, []
-        while chunk[:1] == "#" and (copy := read_copy(chunk[: chunk.find("\n")])):
+        while chunk[:1] == "#":
+            comment, line_end, chunk = chunk.partition("\n")
+            copy = read_copy(comment)
+            if not copy or not line_end:
+                return None
             sources.append(copy)
-            chunk = chunk[chunk.find("\n") + 1 :]
             first += 1
         if chunk[:1] != "O":
             return None
