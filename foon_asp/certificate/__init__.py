@@ -1,0 +1,6 @@
+"""Writing certificates: proofs about trees that ``foon_asp.proof.verify`` checks without a solver."""
+
+from foon_asp.certificate.certificate import Certificate, NotBest, certify, certify_infeasible
+from foon_asp.certificate.coverage import Coverage, coverage
+
+__all__ = ["Certificate", "Coverage", "NotBest", "certify", "certify_infeasible", "coverage"]
