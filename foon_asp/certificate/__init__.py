@@ -2,5 +2,6 @@
 
 from foon_asp.certificate.certificate import Certificate, NotBest, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage, coverage
+from foon_asp.certificate.outcome import certify_outcome
 
-__all__ = ["Certificate", "Coverage", "NotBest", "certify", "certify_infeasible", "coverage"]
+__all__ = ["Certificate", "Coverage", "NotBest", "certify", "certify_infeasible", "certify_outcome", "coverage"]

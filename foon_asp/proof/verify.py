@@ -84,8 +84,8 @@ def digests(
 ) -> dict[str, str]:
     """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's."""
     nodes = [
-        [o.label, sorted(o.states), sorted(o.relations), [[c.word, c.ingredients] for c in o.contents]]
-        for o in network.objects
+        (label, _sorted(states), _sorted(relations), contents)
+        for label, states, relations, contents in network.objects
     ]
     return {
         "network": _digest([nodes, network.motions, network.inputs, network.outputs]),
@@ -111,15 +111,28 @@ def verify(
 
     Takes time linear in cuts times network. Raises :class:`Refused` with the first fault that is found.
     """
+    try:
+        return _verify(certificate, network, kitchen, rates, utensils)
+    except RecursionError:
+        raise Refused("branches within branches without end") from None
+
+
+def _verify(
+    certificate: Any,
+    network: Network,
+    kitchen: frozenset[int],
+    rates: Mapping[str, Fraction] | None,
+    utensils: frozenset[str],
+) -> Verified:
     _require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     _require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
     version = certificate.get("version")
     _require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
     _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
     _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
+    stated = _object(certificate["digests"], ("network", "kitchen", "rates", "utensils"))
     for name, digest in digests(network, kitchen, rates, utensils).items():
-        found = _object(certificate["digests"], ("network", "kitchen", "rates", "utensils"))[name]
-        _require(found == digest, f"the {name} is not the one that the certificate speaks about")
+        _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
     return _Check(certificate, network, kitchen, rates, utensils).claim()
 
 
@@ -418,8 +431,12 @@ def _scaled(amount: Amount, factor: int) -> Amount:
     return {key: factor * value for key, value in amount.items()}
 
 
+def _sorted(values: frozenset[Any]) -> list[Any]:
+    return sorted(values) if len(values) > 1 else [*values]
+
+
 def _digest(value: object) -> str:
-    text = json.dumps(value, sort_keys=True, separators=(",", ":"))
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
