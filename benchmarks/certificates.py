@@ -1,8 +1,8 @@
-"""How many optima have a certificate, how large it is, and how long finding and checking it take beside solving.
+"""How many optima have a certificate, how large it is, and how long finding and checking it take.
 
-A seeded sample of the objects that can be made; for each, both container rules and three objectives. Times are
-those of one process in which everything is imported and read: what finding a certificate, checking it and solving
-take by themselves. Every certificate is written as JSON, read again and verified.
+A seeded sample of the objects that can be made; for each, both container rules and three objectives. Times
+are those of one process in which everything is imported and read: what finding a certificate, checking it
+and solving take by themselves. Every certificate is written as JSON, read again and verified.
 
     python benchmarks/certificates.py                       the bundled kitchen
     python benchmarks/certificates.py --data DIR --sample 500
@@ -30,7 +30,7 @@ _OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
 
 
 class Row(NamedTuple):
-    """One goal under one rule and objective; ``leaves`` is 0 where there is no certificate of the whole claim."""
+    """One goal under one rule and objective; ``leaves`` is 0 where not all of the claim is certified."""
 
     cuts: int
     leaves: int
@@ -66,9 +66,7 @@ def measure(problem: Problem, objective: Objective, limit: float) -> Row:
     checking, _ = timed(
         lambda: verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
     )
-    return Row(
-        len(content["cuts"]), leaves(content["proof"]), len(text.encode()), seconds, solving, checking
-    )
+    return Row(len(content["cuts"]), leaves(content["proof"]), len(text.encode()), seconds, solving, checking)
 
 
 def spread(values: Sequence[float], factor: float, form: str) -> str:

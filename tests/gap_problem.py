@@ -11,8 +11,9 @@ from foon_asp.problem import ContainerRule, Problem
 def gap_problem(seed: int, corners: int = 5, density: float = 0.7) -> Problem:
     """Ask for every edge of a random graph with a triangle: an edge is made at either of its two corners.
 
-    A corner is made ready by one of two units, whose rates and inputs differ; so the best tree is a least cover of
-    the edges by corners. Half of every corner covers a triangle for 3/2, while a whole cover takes 2.
+    A corner is made ready by one of two units, whose rates and inputs differ; so the best tree is a least
+    cover of the edges by corners. Half of every corner covers a triangle for 3/2, while a whole cover takes
+    2.
     """
     rng = random.Random(seed)
     pairs = list(combinations(range(corners), 2))
@@ -20,7 +21,10 @@ def gap_problem(seed: int, corners: int = 5, density: float = 0.7) -> Problem:
     table = ObjectNode.of("table")
     tools = [ObjectNode.of("tool", [str(number)]) for number in range(3)]
     ready = [ObjectNode.of("corner", ["ready"], [("at", str(corner))]) for corner in range(corners)]
-    made = {edge: ObjectNode.of("edge", ["made"], [("from", str(edge[0])), ("to", str(edge[1]))]) for edge in edges}
+    made = {
+        edge: ObjectNode.of("edge", ["made"], [("from", str(edge[0])), ("to", str(edge[1]))])
+        for edge in edges
+    }
     done = ObjectNode.of("figure", ["done"])
     builder = NetworkBuilder()
     line = 0
@@ -39,6 +43,11 @@ def gap_problem(seed: int, corners: int = 5, density: float = 0.7) -> Problem:
     kitchen = frozenset(o for o in at_hand if o is not None)
     goal = network.object_id(done)
     assert goal is not None
-    rates = {"clear": Fraction("0.9"), "wipe": Fraction("0.9"), "scrub": Fraction("0.85"), "draw": Fraction("0.95")}
+    rates = {
+        "clear": Fraction("0.9"),
+        "wipe": Fraction("0.9"),
+        "scrub": Fraction("0.85"),
+        "draw": Fraction("0.95"),
+    }
     rates["finish"] = Fraction(1)
     return Problem(network, kitchen, (goal,), rates, frozenset(), ContainerRule.STRICT)

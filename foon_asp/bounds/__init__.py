@@ -7,11 +7,11 @@ objects are there from the start, some are targets. What the numbers stand for i
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
-from foon_asp.bounds.lower_bound import Branch, Cheaper, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import Branch, CheaperError, Hopeless, Packing, Proof, Prover
 
 __all__ = [
     "Branch",
-    "Cheaper",
+    "CheaperError",
     "Cut",
     "Cutter",
     "Hopeless",

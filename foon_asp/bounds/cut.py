@@ -1,9 +1,10 @@
 """Landmarks by cutting: sets of actions one of which every derivation of the targets uses.
 
 Take a set of objects with a target in it and nothing that is there from the start. The first action of a
-derivation that gives one of them needs none of them. So every derivation uses an action that gives an object
-of the set and needs none: those actions are a *landmark*, and the set is the *cut* that shows it. Landmarks of
-this kind are those of h^max (Bonet and Helmert 2010: every landmark of delete-free planning is a cut).
+derivation that gives one of them needs none of them. So every derivation uses an action that gives an
+object of the set and needs none: those actions are a *landmark*, and the set is the *cut* that shows it.
+Landmarks of this kind are those of h^max (Bonet and Helmert 2010: every landmark of delete-free planning is
+a cut).
 """
 
 from collections.abc import Collection, Iterable
@@ -24,8 +25,8 @@ class Cutter:
 
     ``targets`` that are there from the start are left out. ``actions`` are those that can run and that a
     target can need: only they are worth asking for, and every cut found holds for all actions that are not
-    forbidden. ``hopeless`` is a cut without members where the targets cannot all be reached, or else ``None``.
-    Building one takes time linear in the size of the hypergraph.
+    forbidden. ``hopeless`` is a cut without members where the targets cannot all be reached, or else
+    ``None``. Building one takes time linear in the size of the hypergraph.
     """
 
     def __init__(
@@ -138,7 +139,7 @@ class _Growth:
         """Admit actions; whether the targets are reached, after which the growth is of no more use."""
         if not self._left:
             return True
-        return not all([self.admitted[place] or self.admit(place) for place in places])
+        return not all(self.admitted[place] or self.admit(place) for place in places)
 
     def admit(self, place: int) -> bool:
         """Admit an action unless the targets are reached with it; whether it was admitted."""

@@ -32,85 +32,109 @@ def exact_optimum(
     """Solve a covering problem over ordered costs exactly, from a basis near the optimum.
 
     ``rows`` list the columns that cover them, ``costs`` are those of the columns. The basis is given by its
-    columns and by the rows that are tight in it, as many of them. Each step solves the basis anew, and by Bland's rule
-    none comes back. ``None`` where the basis is singular or its solution not feasible, which floats can lead
-    to, or when the walk is too long.
+    columns and by the rows that are tight in it, as many of them. Each step solves the basis anew, and by
+    Bland's rule none comes back. ``None`` where the basis is singular or its solution not feasible, which
+    floats can lead to, or when the walk is too long.
     """
-    basic, tight_rows = sorted(columns), sorted(tight)
-    used = sorted({column for row in rows for column in row})
-    holders: dict[int, list[int]] = {column: [] for column in used}
-    for number, row in enumerate(rows):
-        for column in row:
-            holders[column].append(number)
+    basis: _Basis | None = _Basis(rows, costs, sorted(columns), sorted(tight))
     for _ in range(_STEPS):
-        if len(basic) != len(tight_rows):
+        if basis is None or not basis.feasible:
             return None
-        place_of_row = {row: place for place, row in enumerate(tight_rows)}
-        place_of_column = {column: place for place, column in enumerate(basic)}
-        by_row: list[_Row] = [
-            {place_of_column[c]: Fraction(1) for c in rows[r] if c in place_of_column} for r in tight_rows
-        ]
-        by_column: list[_Row] = [
-            {place_of_row[r]: Fraction(1) for r in holders.get(c, ()) if r in place_of_row} for c in basic
-        ]
-        one = [(Fraction(1),)] * len(tight_rows)
-        shares = _solve(by_row, one)
-        prices = _solve(by_column, [costs[c] for c in basic])
-        if shares is None or prices is None:
-            return None
-        x = dict(zip(basic, (share for (share,) in shares), strict=True))
-        slack = {
-            number: sum((x[c] for c in row if c in x), Fraction(-1))
-            for number, row in enumerate(rows)
-            if number not in place_of_row
-        }
-        if min(x.values(), default=0) < 0 or min(slack.values(), default=0) < 0:
-            return None
-        weights = dict(zip(tight_rows, prices, strict=True))
-
-        # Bland's rule: the first column or else the first row that would lower the cost comes in
-        def reduced(column: int, weights: dict[int, Vector] = weights) -> Vector:
-            loads = [weights[r] for r in holders[column] if r in weights]
-            return tuple(c - sum(parts) for c, *parts in zip(costs[column], *loads, strict=True))
-
-        entering = next((c for c in used if c not in x and order.sign(reduced(c)) < 0), None)
-        leaving_row = None
+        entering = basis.entering(order)
         if entering is None:
-            leaving_row = next((r for r in tight_rows if order.sign(weights[r]) < 0), None)
-        if entering is None and leaving_row is None:
-            kept = {row: weight for row, weight in weights.items() if any(weight)}
-            value = tuple(map(sum, zip(order.zero, *kept.values(), strict=True)))
-            return ExactOptimum({c: share for c, share in x.items() if share}, kept, value)
+            kept = {row: weight for row, weight in basis.weights.items() if any(weight)}
+            shares = {column: share for column, share in basis.x.items() if share}
+            return ExactOptimum(shares, kept, order.total(kept.values()))
+        basis = basis.exchanged(*entering)
+    return None
 
-        # how the basic shares fall as the one that comes in rises by 1
-        if entering is not None:
-            side = [(Fraction(entering in rows[r]),) for r in tight_rows]
+
+class _Basis:
+    """Columns and as many tight rows, and what follows from them.
+
+    ``x`` are the shares of the basic columns, by which the tight rows hold with equality; ``slack`` is by
+    how much the other rows are exceeded; ``weights`` are those of the tight rows, by which the basic
+    columns are loaded with just their costs. ``feasible`` is false where there is no solution or a negative
+    share or slack.
+    """
+
+    def __init__(
+        self, rows: Sequence[Sequence[int]], costs: Sequence[Vector], columns: list[int], tight: list[int]
+    ) -> None:
+        self._rows, self._costs, self._columns, self._tight = rows, costs, columns, tight
+        self._holders: dict[int, list[int]] = {}
+        for number, row in enumerate(rows):
+            for column in row:
+                self._holders.setdefault(column, []).append(number)
+        self.x: dict[int, Fraction] = {}
+        self.slack: dict[int, Fraction] = {}
+        self.weights: dict[int, Vector] = {}
+        self.feasible = False
+        if len(columns) != len(tight):
+            return
+        row_places = {row: place for place, row in enumerate(tight)}
+        column_places = {column: place for place, column in enumerate(columns)}
+        one = Fraction(1)
+        self._by_row = [{column_places[c]: one for c in rows[r] if c in column_places} for r in tight]
+        by_column = [
+            {row_places[r]: one for r in self._holders.get(c, ()) if r in row_places} for c in columns
+        ]
+        shares = _solve(self._by_row, [(one,)] * len(tight))
+        weights = _solve(by_column, [costs[c] for c in columns])
+        if shares is None or weights is None:
+            return
+        self.x = {column: share for column, (share,) in zip(columns, shares, strict=True)}
+        self.slack = {
+            number: sum((self.x[c] for c in row if c in self.x), -one)
+            for number, row in enumerate(rows)
+            if number not in row_places
+        }
+        self.weights = dict(zip(tight, weights, strict=True))
+        self.feasible = min((*self.x.values(), *self.slack.values()), default=0) >= 0
+
+    def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
+        """Give the first column that is loaded with more than it costs, else the first row of negative weight.
+
+        By Bland's rule; the flag says which of the two it is. ``None`` at the optimum.
+        """
+        for column in sorted(self._holders):
+            if column not in self.x:
+                loads = [self.weights[r] for r in self._holders[column] if r in self.weights]
+                spare = [c - sum(parts) for c, *parts in zip(self._costs[column], *loads, strict=True)]
+                if order.sign(spare) < 0:
+                    return column, True
+        row = next((r for r in self._tight if order.sign(self.weights[r]) < 0), None)
+        return None if row is None else (row, False)
+
+    def exchanged(self, number: int, is_column: bool) -> "_Basis | None":
+        """Let a column in, or a row become slack, and let out what first falls to zero."""
+        if is_column:
+            side = [(Fraction(number in self._rows[r]),) for r in self._tight]
         else:
-            side = [(Fraction(-(r == leaving_row)),) for r in tight_rows]
-        falls = _solve(by_row, side)
+            side = [(Fraction(-(r == number)),) for r in self._tight]
+        falls = _solve(self._by_row, side)
         if falls is None:
             return None
-        fall = dict(zip(basic, (f for (f,) in falls), strict=True))
-        limits = [(x[c] / f, c, True) for c, f in fall.items() if f > 0]
-        for row_number, space in slack.items():
-            row = rows[row_number]
-            lost = sum((fall[c] for c in row if c in fall), Fraction(0)) - (entering in row)
+        fall = {column: value for column, (value,) in zip(self._columns, falls, strict=True)}
+        limits = [(self.x[c] / f, 0, c) for c, f in fall.items() if f > 0]
+        for row, space in self.slack.items():
+            lost = sum((fall[c] for c in self._rows[row] if c in fall), Fraction(0))
+            lost -= is_column and number in self._rows[row]
             if lost > 0:
-                limits.append((space / lost, row_number, False))
+                limits.append((space / lost, 1, row))
         if not limits:
             return None
-        _, number, is_column = min(limits, key=lambda limit: (limit[0], not limit[2], limit[1]))
+        _, is_row, leaving = min(limits)
+        columns, tight = {*self._columns}, {*self._tight}
         if is_column:
-            basic.remove(number)
+            columns.add(number)
         else:
-            tight_rows.append(number)
-        if entering is not None:
-            basic.append(entering)
-        elif leaving_row is not None:
-            tight_rows.remove(leaving_row)
-        basic.sort()
-        tight_rows.sort()
-    return None
+            tight.remove(number)
+        if is_row:
+            tight.add(leaving)
+        else:
+            columns.remove(leaving)
+        return _Basis(self._rows, self._costs, sorted(columns), sorted(tight))
 
 
 def _solve(matrix: Sequence[_Row], right: Sequence[Vector]) -> list[Vector] | None:
@@ -155,7 +179,9 @@ def _solve(matrix: Sequence[_Row], right: Sequence[Vector]) -> list[Vector] | No
                 elif u in other_row:
                     del other_row[u]
                     holders[u].discard(rival)
-            sides[rival] = [b - factor * a if a else b for a, b in zip(sides[number], sides[rival], strict=True)]
+            sides[rival] = [
+                b - factor * a if a else b for a, b in zip(sides[number], sides[rival], strict=True)
+            ]
         holders[unknown] = {number}
     solution: dict[int, Vector] = {}
     for number, unknown in reversed(pivots):

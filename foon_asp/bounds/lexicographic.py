@@ -7,7 +7,7 @@ at which they differ decides. So linear programming works on them as on numbers,
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 Vector = tuple[Fraction, ...]
@@ -33,6 +33,10 @@ class Lexicographic:
     def zero(self) -> Vector:
         """The cost of nothing."""
         return (Fraction(0),) * self.width
+
+    def total(self, vectors: Iterable[Vector]) -> Vector:
+        """Add up costs."""
+        return tuple(sum(parts, Fraction(0)) for parts in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction]) -> int:
         """Give -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly."""

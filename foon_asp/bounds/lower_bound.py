@@ -1,4 +1,4 @@
-"""Proofs that no derivation costs less than one in hand: weighted landmarks, and branching where they leave a gap.
+"""Proofs that no derivation costs less than one in hand: weighted landmarks, and branching at a gap.
 
 Weights on landmarks that overload no action (what the landmarks of an action weigh together is at most its
 cost) add up to a lower bound on the cost of every derivation. The best such weights solve the dual of the
@@ -45,7 +45,7 @@ class Branch(NamedTuple):
 Proof = Packing | Hopeless | Branch
 
 
-class Cheaper(Exception):
+class CheaperError(Exception):
     """A derivation was found that costs less than the one to be proved best."""
 
     def __init__(self, actions: Sequence[int]) -> None:
@@ -53,7 +53,7 @@ class Cheaper(Exception):
         self.actions = tuple(actions)
 
 
-class _TimeUp(Exception):
+class _TimeUpError(Exception):
     pass
 
 
@@ -95,12 +95,12 @@ class Prover:
     def prove(self, derivation: Iterable[int]) -> Proof | None:
         """Prove that no derivation costs less than this one; ``None`` where that takes too long.
 
-        Raises :class:`Cheaper` when one is met that does.
+        Raises :class:`CheaperError` when one is met that does.
         """
         actions = frozenset(derivation)
         try:
             return self._prove(actions, self._total(actions), frozenset(), self._forbidden)
-        except _TimeUp:
+        except _TimeUpError:
             return None
 
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
@@ -115,7 +115,7 @@ class Prover:
         try:
             node = _Node(self, cutter, frozenset(derivation), frozenset())
             exact = node.relax(None)
-        except _TimeUp:
+        except _TimeUpError:
             return None
         return None if exact is None else (node.packing(exact), exact.value)
 
@@ -139,8 +139,8 @@ class Prover:
         if action is None:
             taken = node.taken(exact)
             if cutter.reached_by(taken) and self._order.sign(_minus(self._total(taken), goal)) < 0:
-                raise Cheaper(taken)
-            raise _TimeUp  # floats led nowhere
+                raise CheaperError(taken)
+            raise _TimeUpError  # floats led nowhere
         return Branch(
             action,
             self._prove(derivation, goal, used, forbidden | {action}),
@@ -148,7 +148,7 @@ class Prover:
         )
 
     def _total(self, actions: Iterable[int]) -> Vector:
-        return tuple(map(sum, zip(self._order.zero, *(self._costs[a] for a in actions), strict=True)))
+        return self._order.total(self._costs[a] for a in actions)
 
 
 class _Node:
@@ -175,14 +175,12 @@ class _Node:
         wanted = None if enough is None else self._prover.scaled(enough)
         while True:
             if self._prover._expired():
-                raise _TimeUp
+                raise _TimeUpError
             near = wanted is not None and self._relaxed.value >= wanted * (1 - 1e-7)
             if not near and self._separate(self._relaxed.x):
                 self._relaxed = self._covering.solve()
                 continue
-            exact = exact_optimum(
-                self._rows, self._costs, order, self._relaxed.columns, self._relaxed.rows
-            )
+            exact = exact_optimum(self._rows, self._costs, order, self._relaxed.columns, self._relaxed.rows)
             if exact is None:
                 if near and self._separate(self._relaxed.x):
                     self._relaxed = self._covering.solve()
@@ -219,10 +217,7 @@ class _Node:
         """Look for cuts whose landmarks have shares of less than 1; whether there were any."""
         found = False
         for attempt in range(_ORDERS):
-            if attempt:
-                ties = [self._prover._random.random() for _ in self._actions]
-            else:
-                ties = self._floats
+            ties = [self._prover._random.random() for _ in self._actions] if attempt else self._floats
             places = sorted(range(len(self._actions)), key=lambda p: (-x[p], ties[p], p))
             order = [self._actions[p] for p in places]
             keeps = [self._derivation - {a} for a in sorted(self._derivation - self._used)]

@@ -9,8 +9,8 @@ from foon_asp.errors import BugError
 class Relaxed(NamedTuple):
     """A basic optimum: its value, the share ``x`` of every column, and its basis.
 
-    ``columns`` are the basic columns and ``rows`` the rows that hold with equality by the basis: both have the
-    same number, and the square matrix between them gives the solution and the weights of the rows.
+    ``columns`` are the basic columns and ``rows`` the rows that hold with equality by the basis: both have
+    the same number, and the square matrix between them gives the solution and the weights of the rows.
     """
 
     value: float
@@ -31,7 +31,7 @@ class Covering:
         import numpy as np  # noqa: PLC0415
 
         self._library, self._array = highspy, np.array
-        self._highs = highspy.Highs()
+        self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
         for option, value in (
             ("output_flag", False),
             ("presolve", "off"),

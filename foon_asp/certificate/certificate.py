@@ -7,15 +7,15 @@ import json
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from foon_asp.bounds import Cheaper, Cut, Hopeless, Packing, Proof, Prover
-from foon_asp.certificate.coverage import Coverage
+from foon_asp.bounds import CheaperError, Cut, Hopeless, Packing, Proof, Prover
+from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.certificate.question import Question
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof import verify
 
 
-class NotBest(Exception):
+class NotBestError(Exception):
     """A tree that was to be proved optimal is not: ``units`` make the goals for less."""
 
     def __init__(self, units: tuple[int, ...], costs: Costs) -> None:
@@ -26,8 +26,8 @@ class NotBest(Exception):
 class Certificate(NamedTuple):
     """A certificate that was verified, and what it says.
 
-    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the objectives, from the first on,
-    that it speaks about; those after them are only the solver's.
+    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the objectives, from the first
+    on, that it speaks about; those after them are only the solver's.
     """
 
     content: dict[str, Any]
@@ -57,17 +57,17 @@ def certify(
     problem: Problem,
     objectives: Sequence[Objective],
     units: Sequence[int],
-    covered: Coverage = Coverage(),
+    covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
 ) -> Certificate | None:
-    """Prove a tree optimal by a lexicographic list of objectives, or as many of them from the first as can be.
+    """Prove a tree optimal by a lexicographic list of objectives, or by as many from the first as can be.
 
-    ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that is
-    not optimal raises :class:`NotBest`. With such constraints it may well not be optimal among all trees: then the
-    certificate proves a bound on all of them. ``None`` where nothing is found before ``expired`` says so,
-    and for ``success`` with rates of 0.
+    ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that
+    is not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
+    trees: then the certificate proves a bound on all of them. ``None`` where nothing is found before
+    ``expired`` says so, and for ``success`` with rates of 0.
     """
-    if Objective.SUCCESS in objectives and not all(problem.rates[m] for m in problem.network.motions):
+    if Objective.SUCCESS in objectives and not all((problem.rates or {})[m] for m in problem.network.motions):
         return None
     guide = tuple(units)
     for count in range(len(objectives), 0, -1):
@@ -75,10 +75,10 @@ def certify(
         prover = _prover(question, expired)
         try:
             proof = prover.prove(question.actions(units))
-        except Cheaper as cheaper:
+        except CheaperError as cheaper:
             guide = tuple(a for a in cheaper.actions if a < len(problem.network))
             if not covered.not_covered:
-                raise NotBest(guide, problem.costs(guide)) from None
+                raise NotBestError(guide, problem.costs(guide)) from None
             break
         if proof is not None:
             return _write(question, covered, "optimal", units, proof)
@@ -92,17 +92,15 @@ def certify(
     return _write(question, covered, "bound", units, packing, question.stated(bound))
 
 
-def certify_infeasible(problem: Problem, covered: Coverage = Coverage()) -> Certificate | None:
-    """Prove that there is no tree, or give ``None`` where only constraints that are not covered leave none."""
+def certify_infeasible(problem: Problem, covered: Coverage = NOTHING) -> Certificate | None:
+    """Prove that there is no tree; ``None`` where only constraints that are not covered leave none."""
     question = Question(problem, (), covered)
     cut = _prover(question, lambda: False).hopeless()
     return None if cut is None else _write(question, covered, "infeasible", None, Hopeless(cut))
 
 
 def _prover(question: Question, expired: Callable[[], bool]) -> Prover:
-    return Prover(
-        question.graph, question.goals, question.costs, question.order, question.forbidden, expired
-    )
+    return Prover(question.graph, question.goals, question.costs, question.order, question.forbidden, expired)
 
 
 def _write(
@@ -159,6 +157,6 @@ def _write(
         verify.verify(
             json.loads(certificate.text()), problem.network, problem.kitchen, problem.rates, problem.utensils
         )
-    except verify.Refused as refused:
+    except verify.RefusedError as refused:
         raise BugError(f"a certificate that was found is refused: {refused}") from None
     return certificate

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Settings
 from foon_asp.asp.program import find_constraint
+from foon_asp.network import Network
 from foon_asp.resources import encodings_folder
 
 # Our constraints that rule out units one by one, and the constant that says which.
@@ -14,13 +15,26 @@ _FORBIDDING = {"forbid_motion.lp": "forbidden_motion", "forbid_object.lp": "forb
 class Coverage(NamedTuple):
     """What is forbidden and certified, and what else narrows the trees and is not.
 
-    ``motions`` and ``labels`` (of objects) rule out every unit that has one of them. ``not_covered`` names files
-    of rules, by name and digest, and the constants that were set.
+    ``motions`` and ``labels`` (of objects) rule out every unit that has one of them. ``not_covered`` names
+    files of rules, by name and digest, and the constants that were set.
     """
 
     motions: tuple[str, ...] = ()
     labels: tuple[str, ...] = ()
     not_covered: tuple[str, ...] = ()
+
+    def forbids(self, network: Network) -> frozenset[int]:
+        """Give the units of a network that are ruled out."""
+        nodes = {o for o, node in enumerate(network.objects) if node.label in self.labels}
+        return frozenset(
+            unit
+            for unit, motion in enumerate(network.motions)
+            if motion in self.motions
+            or (nodes and not nodes.isdisjoint((*network.inputs[unit], *network.outputs[unit])))
+        )
+
+
+NOTHING = Coverage()  # no constraints at all
 
 
 def coverage(settings: Settings) -> Coverage:

@@ -11,9 +11,9 @@ from foon_asp.problem import Objective, Problem
 class Question:
     """What is asked of a problem, in numbers: units are actions, and taking a kitchen item may be one.
 
-    Where ``kitchen`` is an objective, nothing is at hand from the start, and each item is given by an action of
-    its own that needs nothing and costs 1: the action's number is ``items[k]`` for item ``k``. Elsewhere
-    ``items`` is empty. ``forbidden`` are the units that the covered constraints rule out.
+    Where ``kitchen`` is an objective, nothing is at hand from the start, and each item is given by an
+    action of its own that needs nothing and costs 1: the action's number is ``items[k]`` for item ``k``.
+    Elsewhere ``items`` is empty. ``forbidden`` are the units that the covered constraints rule out.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
@@ -22,13 +22,7 @@ class Question:
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
         self.order = Lexicographic([self.rates if o is Objective.SUCCESS else None for o in objectives])
         self.goals = [goal for goal in problem.goals if goal not in problem.kitchen]
-        nodes = {o for o, node in enumerate(network.objects) if node.label in covered.labels}
-        self.forbidden = frozenset(
-            unit
-            for unit, motion in enumerate(network.motions)
-            if motion in covered.motions
-            or (nodes and not nodes.isdisjoint((*network.inputs[unit], *network.outputs[unit])))
-        )
+        self.forbidden = covered.forbids(network)
         known: dict[object, Vector] = {}
         self.costs = [self._cost(unit, known) for unit in range(len(network))]
         needs: list[Sequence[int]] = list(problem.needs)

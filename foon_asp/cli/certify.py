@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.certificate import Certificate, NotBest, certify, certify_outcome, coverage
+from foon_asp.certificate import Certificate, NotBestError, certify, certify_outcome, coverage
 from foon_asp.cli import options
-from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, levels, parse_objectives
@@ -23,10 +23,19 @@ from foon_asp.text import FoonReader, summarize
 @click.command("certify")
 @options.goal_option
 @click.option(
-    "--tree", "tree_file", type=click.Path(path_type=Path), metavar="TREE.txt", help="A task tree to prove best."
+    "--tree",
+    "tree_file",
+    type=click.Path(path_type=Path),
+    metavar="TREE.txt",
+    help="A task tree to prove best.",
 )
 @click.option(
-    "-o", "--output", "file", type=click.Path(path_type=Path), metavar="FILE", help="Where to write, for stdout."
+    "-o",
+    "--output",
+    "file",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Where to write, for stdout.",
 )
 @options.objective_option
 @options.containers_option
@@ -53,9 +62,9 @@ def command(
     foon-asp certify --goal 'greek salad' -o proof.json           the optimum is found and proved
     foon-asp certify --goal macaroni --tree tree.txt -o t.json    a tree in FOON text is proved best
 
-    Exits with 0 when the certificate proves a tree optimal by every objective; with 1 when it proves that there is
-    no tree, or when the tree given does not execute or is not the best; with 3 when it proves less (a
-    bound, or the first objectives alone) or when none was found.
+    Exits with 0 when the certificate proves a tree optimal by every objective; with 1 when it proves that
+    there is no tree, or when the tree given does not execute or is not the best; with 3 when it proves less
+    (a bound, or the first objectives alone) or when none was found.
     """
     chosen = parse_objectives(objectives)
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
@@ -73,8 +82,9 @@ def command(
     write_certificate(certificate, file)
     if outcome.status is Status.INFEASIBLE and certificate is not None:
         return ExitCode.NEGATIVE
-    complete = certificate is not None and certificate.certified == levels(chosen)
-    return of_status(outcome.status) if complete and certificate.claim == "optimal" else ExitCode.LIMIT
+    if certificate is None or certificate.claim != "optimal" or certificate.certified != levels(chosen):
+        return ExitCode.LIMIT
+    return ExitCode.DONE
 
 
 def expiry(time_limit: float | None) -> Callable[[], bool]:
@@ -114,7 +124,9 @@ def _certify_tree(
 ) -> ExitCode:
     """Prove a given tree best, with no solver but the linear relaxation."""
     if Objective.SUCCESS in chosen and problem.rates is None:
-        raise UserError("the objective success needs the success rates of the motions; name them with --rates")
+        raise UserError(
+            "the objective success needs the success rates of the motions; name them with --rates"
+        )
     reader = FoonReader(lenient)
     tree = [unit for unit, _ in reader.read_tree(tree_file)]
     for text in summarize(reader.diagnostics):
@@ -132,7 +144,7 @@ def _certify_tree(
     wanted = levels(chosen)
     try:
         certificate = certify(problem, wanted, ordered, coverage(settings), expired)
-    except NotBest as better:
+    except NotBestError as better:
         click.echo(
             f"no certificate: the tree is not the best by {', then '.join(wanted)}: it has "
             f"{costs_text(problem.costs(ordered))}, and there is one with {costs_text(better.costs)}",

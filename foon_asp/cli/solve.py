@@ -7,6 +7,7 @@ import click
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.certify import expiry, find_certificate, write_certificate
+from foon_asp.cli.cross_check import check_across, checkable
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
@@ -29,6 +30,11 @@ from foon_asp.report.certified import certificate_lines
     metavar="FILE",
     help="Also write a proof of the answer that `foon-asp verify` checks without a solver.",
 )
+@click.option(
+    "--cross-check",
+    is_flag=True,
+    help="Also ask other engines: HiGHS, and Fast Downward where it is installed.",
+)
 @options.format_option("text", "json", "foon")
 @options.data_options
 @click.argument("clingo_options", nargs=-1, type=click.UNPROCESSED, metavar="[-- CLINGO OPTIONS]")
@@ -41,6 +47,7 @@ def command(
     constants: tuple[str, ...],
     time_limit: float | None,
     certificate_file: Path | None,
+    cross_check: bool,
     format_: str,
     clingo_options: tuple[str, ...],
     **data: object,
@@ -62,6 +69,7 @@ def command(
     problem = question.problem(question.goals(goals_named), containers)
     settings = Settings(constraints, encodings, constants, clingo_options, time_limit)
     expired = expiry(time_limit)
+    forbidden = checkable(settings, problem) if cross_check else frozenset[int]()
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
     outcome.seconds["read"] = question.read_seconds
@@ -77,6 +85,8 @@ def command(
             click.echo(line)
     if format_ != "text" and outcome.status is not Status.OPTIMAL:
         click.echo(answer.headline(outcome), err=True)
+    if cross_check:
+        remarks += check_across(outcome, forbidden, time_limit)
     for line in remarks:
         click.echo(line, err=format_ != "text")
     return of_status(outcome.status)

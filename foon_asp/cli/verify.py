@@ -8,7 +8,7 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.errors import UserError
-from foon_asp.proof.verify import Refused, read_certificate, verify
+from foon_asp.proof.verify import RefusedError, read_certificate, verify
 from foon_asp.report.certified import verified_json, verified_text
 
 
@@ -35,7 +35,7 @@ def command(certificate: Path, format_: str, **data: object) -> ExitCode:
     try:
         content = read_certificate(text)
         verified = verify(content, read.network, read.kitchen, read.rates, read.utensils)
-    except Refused as refused:
+    except RefusedError as refused:
         if format_ == "json":
             click.echo(json.dumps({"verified": False, "reason": str(refused)}, indent=2, ensure_ascii=False))
         else:

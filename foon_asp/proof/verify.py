@@ -1,15 +1,15 @@
 """Is a certificate right? Checked from the network alone: no solver, no linear program, no floats.
 
 docs/proofs.md describes certificates and proves that what passes here is true. In short: take a set T of
-object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node of T,
-so every tree uses one of the units with an output and no needed input in T: the *members* of T. Positive
-weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a lower
-bound on every tree's cost. A cut without members shows that there is no tree.
+object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node of
+T, so every tree uses one of the units with an output and no needed input in T: the *members* of T. Positive
+weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a
+lower bound on every tree's cost. A cut without members shows that there is no tree.
 
-Weights and costs have one part for each objective and are compared objective by objective, like words.
-The part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by comparing the
-product of ``rate ** e`` with 1 in whole numbers. This module imports the standard library and the plain network,
-and nothing of the rest of the package.
+Weights and costs have one part for each objective and are compared objective by objective, like words. The
+part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by comparing the
+product of ``rate ** e`` with 1 in whole numbers. This module imports the standard library and the plain
+network, and nothing of the rest of the package.
 """
 
 import hashlib
@@ -37,7 +37,7 @@ _LARGEST = 2_000_000  # bits of a product of rates; more is refused rather than 
 Amount = dict[tuple[int, Fraction | None], Fraction]
 
 
-class Refused(Exception):
+class RefusedError(Exception):
     """The certificate is wrong; the message says where."""
 
 
@@ -63,7 +63,7 @@ class Verified(NamedTuple):
 
 
 def read_certificate(text: str) -> Any:
-    """Parse the JSON of a certificate; raises :class:`Refused` where it is not JSON or a key comes twice."""
+    """Parse the JSON of a certificate; raises :class:`RefusedError` where a key comes twice or it is none."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
@@ -73,7 +73,7 @@ def read_certificate(text: str) -> Any:
     try:
         return json.loads(text, object_pairs_hook=once)
     except (ValueError, RecursionError) as error:
-        raise Refused(f"not JSON: {error}") from None
+        raise RefusedError(f"not JSON: {error}") from None
 
 
 def digests(
@@ -96,7 +96,7 @@ def digests(
 
 
 def seal(certificate: Mapping[str, Any]) -> str:
-    """Give the digest of a whole certificate but for its seal: whatever is changed later, it no longer fits."""
+    """Give the digest of a whole certificate but for its seal, which fits no other certificate."""
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
@@ -109,12 +109,12 @@ def verify(
 ) -> Verified:
     """Check a certificate against the data it speaks about; ``kitchen`` are object node ids.
 
-    Takes time linear in cuts times network. Raises :class:`Refused` with the first fault that is found.
+    Takes time linear in cuts times network. Raises :class:`RefusedError` with the first fault that is found.
     """
     try:
         return _verify(certificate, network, kitchen, rates, utensils)
     except RecursionError:
-        raise Refused("branches within branches without end") from None
+        raise RefusedError("branches within branches without end") from None
 
 
 def _verify(
@@ -139,8 +139,8 @@ def _verify(
 class _Check:
     """One certificate, held against the network it speaks about.
 
-    A *member* is a unit, by its id, or a kitchen item ``k``, by the number of units plus ``k``. Items are members
-    only where the objective ``kitchen`` counts them.
+    A *member* is a unit, by its id, or a kitchen item ``k``, by the number of units plus ``k``. Items are
+    members only where the objective ``kitchen`` counts them.
     """
 
     def __init__(
@@ -183,7 +183,9 @@ class _Check:
         if listed is not None:
             _require(bool(self.objectives), "a tree is given, but no objective")
             amount, costs = self._tree(_list(listed))
-            stated = [c if objective == "success" else _count(c) for objective, c in self._by_objective("costs")]
+            stated = [
+                c if objective == "success" else _count(c) for objective, c in self._by_objective("costs")
+            ]
             computed = [str(c) if isinstance(c, Fraction) else c for c in costs]
             _require(stated == computed, f"the tree costs {computed}, not {stated}")
         else:
@@ -198,10 +200,12 @@ class _Check:
         elif claim == "bound":
             _require(bool(self.objectives), "expected objectives")
             bound = self._amount("bound")
-            _require(listed is None or self._sign(_sum([amount, _scaled(bound, -1)])) >= 0, "the bound is false")
+            _require(
+                listed is None or self._sign(_sum([amount, _scaled(bound, -1)])) >= 0, "the bound is false"
+            )
             amount = bound
         else:
-            raise Refused("expected the claim optimal, bound or infeasible")
+            raise RefusedError("expected the claim optimal, bound or infeasible")
         self._prove(proof, amount, claim)
         _require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
         return Verified(
@@ -247,11 +251,18 @@ class _Check:
             if keys == {"weights"}:
                 _require(claim != "infeasible", "weights do not show that there is no tree")
                 bound = _sum([self._packed(node["weights"], used, without), *map(self._cost, used)])
-                _require(self._sign(_sum([bound, _scaled(least, -1)])) >= 0, "the weights do not add up to enough")
+                _require(
+                    self._sign(_sum([bound, _scaled(least, -1)])) >= 0, "the weights do not add up to enough"
+                )
             elif keys == {"hopeless"}:
-                _require(not self._crossing(node["hopeless"], used, without), "a cut said to be hopeless is crossed")
+                _require(
+                    not self._crossing(node["hopeless"], used, without),
+                    "a cut said to be hopeless is crossed",
+                )
             else:
-                _require(keys == {"branch", "without", "using"}, "expected weights, a hopeless cut or a branch")
+                _require(
+                    keys == {"branch", "without", "using"}, "expected weights, a hopeless cut or a branch"
+                )
                 member = self._branch(node["branch"])
                 _require(member not in used | without, "a branch is taken twice")
                 waiting.append((node["without"], used, without | {member}))
@@ -278,13 +289,14 @@ class _Check:
     def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Give the members of a cut that are left; the cut has to stand before a goal or a used unit."""
         _require(type(number) is int and 0 <= number < len(self.cuts), "expected the number of a cut")
-        self.met.add(number)
-        cut = self.cuts[number]
+        place = int(number)
+        self.met.add(place)
+        cut = self.cuts[place]
         before = any(goal in cut and goal not in self.kitchen for goal in self.goals) or any(
             not cut.isdisjoint(self._needs(member)) for member in used if member < len(self.network)
         )
         _require(before, f"cut {number} holds neither a goal nor what a used unit needs")
-        return self.members[number] - without
+        return self.members[place] - without
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
         """Give the units that make a node of the cut and need none, and the kitchen items in it."""
@@ -301,8 +313,8 @@ class _Check:
     def _needs(self, unit: int) -> frozenset[int]:
         """Give the inputs that the container rule asks for.
 
-        Under ``implied`` a utensil with exactly one ingredient is taken as given when that ingredient, located in
-        the utensil, is another input of the unit.
+        Under ``implied`` a utensil with exactly one ingredient is taken as given when that ingredient,
+        located in the utensil, is another input of the unit.
         """
         found = self.needs.get(unit)
         if found is None:
@@ -351,10 +363,12 @@ class _Check:
         return cost
 
     def _sign(self, amount: Amount) -> int:
-        """Give -1, 0 or 1 for an amount below, equal to or above zero; the first objective that differs decides."""
+        """Give -1, 0 or 1 for an amount below, equal to or above zero; the first objective not 0 decides."""
         for level, objective in enumerate(self.objectives):
             if objective == "success":
-                sign = _minus_log_sign({r: e for (at, r), e in amount.items() if at == level and r is not None})
+                sign = _minus_log_sign(
+                    {r: e for (at, r), e in amount.items() if at == level and r is not None}
+                )
             else:
                 value = amount.get((level, None), Fraction(0))
                 sign = (value > 0) - (value < 0)
@@ -410,9 +424,12 @@ def _minus_log_sign(exponents: Mapping[Fraction, Fraction]) -> int:
     powers = {rate: int(e * common) for rate, e in exponents.items()}
     size = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
     _require(size <= _LARGEST, "exponents of rates are too fine to be compared")
-    numerator = math.prod(r.numerator**e if e > 0 else r.denominator**-e for r, e in powers.items())
-    denominator = math.prod(r.denominator**e if e > 0 else r.numerator**-e for r, e in powers.items())
-    return (numerator < denominator) - (numerator > denominator)
+    above, below = 1, 1
+    for rate, power in powers.items():
+        over, under = rate.numerator ** abs(power), rate.denominator ** abs(power)
+        above *= over if power > 0 else under
+        below *= under if power > 0 else over
+    return (above < below) - (above > below)
 
 
 def _add(total: Amount, amount: Amount) -> None:
@@ -442,7 +459,7 @@ def _digest(value: object) -> str:
 
 def _require(holds: bool, otherwise: str) -> None:
     if not holds:
-        raise Refused(otherwise)
+        raise RefusedError(otherwise)
 
 
 def _object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
@@ -476,7 +493,9 @@ def _numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
 def _pairs(value: Any) -> list[tuple[Any, Any]]:
     """Read what maps numbers of cuts to weights: a list of pairs, in order."""
     pairs = _list(value)
-    _require(all(isinstance(pair, list) and len(pair) == 2 for pair in pairs), "expected a cut and its weight")
+    _require(
+        all(isinstance(pair, list) and len(pair) == 2 for pair in pairs), "expected a cut and its weight"
+    )
     numbers = [pair[0] for pair in pairs]
     _require(all(type(number) is int for number in numbers), "expected the number of a cut")
     _require(numbers == sorted(set(numbers)), "expected cuts in order, each of them once")

@@ -35,7 +35,11 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
 def bound_text(content: dict[str, Any]) -> str:
     """Say what the bound of a certificate is by its first objective, and how far the tree is from it."""
     objective, bound = content["objective"][0], content["bound"][0]
-    text = f"success at most {_success(bound):.4g}" if objective == "success" else f"{objective} at least {bound}"
+    text = (
+        f"success at most {_success(bound):.4g}"
+        if objective == "success"
+        else f"{objective} at least {bound}"
+    )
     if content["costs"] is not None:
         cost = content["costs"][0]
         text += f"; the tree has {cost}"
@@ -59,7 +63,9 @@ def verified_text(verified: Verified, network: Network, content: dict[str, Any])
     else:
         costs = zip(verified.costs or (), verified.objectives, strict=True)
         figures = ", ".join(_figure(objective, cost) for cost, objective in costs)
-        lines.append(f"verified: no task tree is better by {', then '.join(verified.objectives)} ({rule}): {figures}")
+        lines.append(
+            f"verified: no task tree is better by {', then '.join(verified.objectives)} ({rule}): {figures}"
+        )
     if verified.motions or verified.labels:
         ruled_out = [*(f"the motion {motion}" for motion in verified.motions)]
         ruled_out += [f"the object {label}" for label in verified.labels]
