@@ -3,8 +3,7 @@
 Take a set of objects with a target in it and nothing that is there from the start. The first action of a
 derivation that gives one of them needs none of them. So every derivation uses an action that gives an
 object of the set and needs none: those actions are a *landmark*, and the set is the *cut* that shows it.
-Landmarks of this kind are those of h^max (Bonet and Helmert 2010: every landmark of delete-free planning is
-a cut).
+Bonet and Helmert (2010) bound delete-free plans by hitting landmarks of this kind.
 """
 
 from collections.abc import Collection, Iterable

@@ -93,7 +93,7 @@ class _Basis:
         self.feasible = min((*self.x.values(), *self.slack.values()), default=0) >= 0
 
     def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
-        """Give the first column that is loaded with more than it costs, else the first row of negative weight.
+        """Give the first column loaded with more than it costs, or else the first row of negative weight.
 
         By Bland's rule; the flag says which of the two it is. ``None`` at the optimum.
         """

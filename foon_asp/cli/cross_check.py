@@ -4,18 +4,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from foon_asp.asp import Outcome, Settings, Status
-from foon_asp.certificate import coverage
+from foon_asp.certificate import Coverage, coverage
 from foon_asp.engines import ENGINES, DisagreementError, cross_check
 from foon_asp.errors import BugError, UserError
-from foon_asp.problem import Problem
 from foon_asp.report.disagreement import disagreement_files, disagreement_name
 from foon_asp.report.whole_file import write_whole
 
 _PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
 
 
-def checkable(settings: Settings, problem: Problem) -> frozenset[int]:
-    """Give the units that constraints rule out; other engines know of no other rules.
+def checkable(settings: Settings) -> Coverage:
+    """Give what constraints rule out; other engines know of no other rules.
 
     Raises :class:`UserError` for constraints that say more.
     """
@@ -25,10 +24,10 @@ def checkable(settings: Settings, problem: Problem) -> frozenset[int]:
             "--cross-check knows of no rules but forbid_motion and forbid_object, and here are also "
             + ", ".join(name.partition(" ")[0] for name in covered.not_covered)
         )
-    return covered.forbids(problem.network)
+    return covered
 
 
-def check_across(outcome: Outcome, forbidden: frozenset[int], time_limit: float | None) -> list[str]:
+def check_across(outcome: Outcome, covered: Coverage, time_limit: float | None) -> list[str]:
     """Ask the other engines and say what they answer, a line for each.
 
     Where one disagrees, writes all that is needed to look into it to a new folder and raises
@@ -37,11 +36,13 @@ def check_across(outcome: Outcome, forbidden: frozenset[int], time_limit: float 
     if outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
         return ["cross-check: nothing is proved, so there is nothing to check"]
     try:
-        answers = cross_check(outcome, forbidden, _PATIENCE if time_limit is None else time_limit)
+        answers = cross_check(
+            outcome, covered.forbids(outcome.problem.network), _PATIENCE if time_limit is None else time_limit
+        )
     except DisagreementError as found:
         folder = Path(disagreement_name(outcome))
         folder.mkdir(exist_ok=True)
-        for name, content in disagreement_files(outcome, forbidden, found).items():
+        for name, content in disagreement_files(outcome, covered, found).items():
             write_whole(folder / name, content.encode())
         raise BugError(f"{found}; data, question and answers are in {folder}/ (see report.json)") from None
 

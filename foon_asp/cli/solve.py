@@ -69,7 +69,7 @@ def command(
     problem = question.problem(question.goals(goals_named), containers)
     settings = Settings(constraints, encodings, constants, clingo_options, time_limit)
     expired = expiry(time_limit)
-    forbidden = checkable(settings, problem) if cross_check else frozenset[int]()
+    covered = checkable(settings) if cross_check else None
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
     outcome.seconds["read"] = question.read_seconds
@@ -85,8 +85,8 @@ def command(
             click.echo(line)
     if format_ != "text" and outcome.status is not Status.OPTIMAL:
         click.echo(answer.headline(outcome), err=True)
-    if cross_check:
-        remarks += check_across(outcome, forbidden, time_limit)
+    if covered is not None:
+        remarks += check_across(outcome, covered, time_limit)
     for line in remarks:
         click.echo(line, err=format_ != "text")
     return of_status(outcome.status)

@@ -20,7 +20,7 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         return ["proof: solver (no certificate was found)"]
     if certificate.claim == "bound":
         return [
-            f"proof: solver; the certificate {file} proves a bound on all trees, whatever the constraints: "
+            f"proof: solver; the certificate {file} proves a bound on all trees, without the constraints: "
             + bound_text(certificate.content)
         ]
     if certificate.claim == "optimal" and outcome.proof.value != "certificate":

@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from foon_asp import __version__
 from foon_asp.asp import Outcome
+from foon_asp.certificate import Coverage
 from foon_asp.engines import DisagreementError
 from foon_asp.proof.verify import digests
 from foon_asp.report.answer import costs_json, outcome_dict
@@ -23,9 +24,7 @@ def disagreement_name(outcome: Outcome) -> str:
     return f"foon-asp-disagreement-{marks['network'][:8]}-{'-'.join(map(str, problem.goals))}"
 
 
-def disagreement_files(
-    outcome: Outcome, forbidden: frozenset[int], found: DisagreementError
-) -> dict[str, str]:
+def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementError) -> dict[str, str]:
     """Give the files of the folder by name: the data, numbered as they were, and ``report.json``.
 
     The kitchen lists nodes as JSON kitchens can; ``report.json`` has them in one-line notation, too.
@@ -44,6 +43,9 @@ def disagreement_files(
     goals = [str(network.objects[o]) for o in problem.goals]
     words = ["foon-asp", "solve", "--data", ".", "--containers", str(problem.containers)]
     words += ["--objective", ",".join(outcome.objectives), "--cross-check"]
+    for name, values in (("motion", covered.motions), ("object", covered.labels)):
+        for value in values:
+            words += ["--constraint", f"forbid_{name}", "-c", f"forbidden_{name}={value}"]
     words += [word for goal in goals for word in ("--goal", goal if ";" in goal else goal + ";")]
     report = {
         "message": str(found),
@@ -53,7 +55,7 @@ def disagreement_files(
         "platform": platform.platform(),
         "digests": digests(network, problem.kitchen, problem.rates, problem.utensils),
         "kitchen": [str(node) for node in nodes],
-        "forbidden_units": sorted(forbidden),
+        "forbidden_units": sorted(covered.forbids(network)),
         "answer": outcome_dict(outcome),
         "other": {
             "engine": answer.engine,
