@@ -22,7 +22,7 @@ from foon_asp.certificate import (
     coverage,
 )
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Objective, Problem, levels, parse_objectives
+from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, Verified, read_certificate, verify
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import find_data, find_goal, read_data, write_units
@@ -49,7 +49,7 @@ def test_every_optimum_of_random_networks(rule: ContainerRule) -> None:
     trees = 0
     for seed in range(250):
         problem = random_problem(seed, rule)
-        lists = [(objective,) for objective in Objective]
+        lists: list[tuple[Objective, ...]] = [(objective,) for objective in Objective]
         lists.append(tuple(random.Random(seed).sample(list(Objective), 3)))
         for objectives in lists:
             outcome, found = certify_outcome(solve(problem, objectives), Settings())
@@ -71,7 +71,7 @@ def test_branching_closes_gaps(corners: int) -> None:
     branched = 0
     for seed in range(8):
         problem = gap_problem(seed, corners)
-        lists = [(objective,) for objective in Objective]
+        lists: list[tuple[Objective, ...]] = [(objective,) for objective in Objective]
         lists.append(tuple(random.Random(seed).sample(list(Objective), 2)))
         for objectives in lists:
             outcome, found = certify_outcome(solve(problem, objectives), Settings())
@@ -377,32 +377,36 @@ def test_the_verifier_loads_nothing_but_the_plain_network(tmp_path: Path) -> Non
     assert found is not None
     (tmp_path / "proof.json").write_text(found.text())
     root = Path(__file__).resolve().parents[1]
-    program = (
-        "import importlib.util, sys\n"
-        f"spec = importlib.util.spec_from_file_location('alone', {str(root / 'foon_asp/proof/verify.py')!r})\n"
-        "module = importlib.util.module_from_spec(spec)\n"
-        "sys.modules['alone'] = module\n"
-        "spec.loader.exec_module(module)\n"
-        "print(*sorted(n for n in sys.modules if n.split('.')[0] not in sys.stdlib_module_names))\n"
-    )
-    ran = subprocess.run(
-        [sys.executable, "-I", "-c", f"import sys; sys.path.insert(0, {str(root)!r})\n{program}"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    loaded = {name for name in ran.stdout.split() if name.startswith("foon_asp") or name == "clingo"}
-    assert all(name == "foon_asp" or name.startswith("foon_asp.network") for name in loaded)
+    alone = f"""
+import importlib.util, sys
+sys.path.insert(0, {str(root)!r})
+spec = importlib.util.spec_from_file_location("alone", {str(root / "foon_asp" / "proof" / "verify.py")!r})
+module = importlib.util.module_from_spec(spec)
+sys.modules["alone"] = module
+spec.loader.exec_module(module)
+print(*sys.modules)
+"""
+    loaded = run_python("-I", "-c", alone).split()
+    ours = {name for name in loaded if name.split(".")[0] == "foon_asp"}
+    assert ours == {name for name in ours if name == "foon_asp" or name.startswith("foon_asp.network")}
+    assert not {"clingo", "highspy", "numpy", "lark", "click"} & {*loaded}
 
-    command = "import sys; from foon_asp.cli.main import main\ntry: main(sys.argv[1:])\nexcept SystemExit as e: code = e.code\nprint(code, *({'clingo', 'highspy', 'numpy'} & {*sys.modules}))"
-    ran = subprocess.run(
-        [sys.executable, "-c", command, "verify", str(tmp_path / "proof.json")],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=root,
-    )
-    assert ran.stdout.endswith("\n0\n")
+    whole = """
+import sys
+from foon_asp.cli.main import main
+try:
+    main(sys.argv[1:])
+except SystemExit as end:
+    print(end.code, *({"clingo", "highspy", "numpy"} & {*sys.modules}))
+"""
+    said = run_python("-c", whole, "verify", str(tmp_path / "proof.json"))
+    assert said.endswith("\n0\n")
+
+
+def run_python(*arguments: str) -> str:
+    root = Path(__file__).resolve().parents[1]
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=True, cwd=root).stdout
 
 
 def test_a_refusal_is_an_error_of_its_own() -> None:

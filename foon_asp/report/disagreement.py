@@ -6,7 +6,6 @@ import shlex
 from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 
-from foon_asp import __version__
 from foon_asp.asp import Outcome
 from foon_asp.certificate import Coverage
 from foon_asp.engines import DisagreementError
@@ -14,7 +13,7 @@ from foon_asp.proof.verify import digests
 from foon_asp.report.answer import costs_json, outcome_dict
 from foon_asp.text import write_units
 
-_LIBRARIES = ("clingo", "highspy", "up-fast-downward")
+_DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
 
 
 def disagreement_name(outcome: Outcome) -> str:
@@ -50,8 +49,7 @@ def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementE
     report = {
         "message": str(found),
         "command": shlex.join(words),
-        "versions": {"foon-asp": __version__, "python": platform.python_version()}
-        | {name: _version(name) for name in _LIBRARIES},
+        "versions": {"python": platform.python_version()} | {name: _version(name) for name in _DISTRIBUTIONS},
         "platform": platform.platform(),
         "digests": digests(network, problem.kitchen, problem.rates, problem.utensils),
         "kitchen": [str(node) for node in nodes],
@@ -75,9 +73,9 @@ def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementE
     return files
 
 
-def _version(library: str) -> str | None:
+def _version(distribution: str) -> str | None:
     try:
-        return version(library)
+        return version(distribution)
     except PackageNotFoundError:
         return None
 
