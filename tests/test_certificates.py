@@ -242,6 +242,11 @@ def test_rates_that_floats_cannot_tell_apart() -> None:
     assert found.claim == "optimal"
     with pytest.raises(NotBestError):
         certify(problem, levels((Objective.SUCCESS,)), [0])
+    for nines in (10, 20, 60, 200):  # beyond what fifty digits of a logarithm tell
+        problem = two_ways("0." + "9" * nines, "0." + "9" * nines + "1")
+        found = certify(problem, (Objective.SUCCESS,), [1])
+        assert found is not None
+        assert found.claim == "optimal"
 
 
 def test_rates_of_one_and_zero() -> None:

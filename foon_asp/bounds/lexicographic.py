@@ -8,11 +8,17 @@ at which they differ decides. So linear programming works on them as on numbers,
 
 import math
 from collections.abc import Iterable, Sequence
+from decimal import Context, Decimal
 from fractions import Fraction
+from functools import lru_cache
 
 Vector = tuple[Fraction, ...]
 
 _MARGIN = 1e-9  # of a sum of logarithms, beyond which its float cannot have the wrong sign
+_TINY = 1e-45  # and where logarithms themselves are so small that sixty digits do not tell them
+_DIGITS = Context(prec=60)
+_FINE = Fraction(1, 10**58)  # how much of a logarithm of so many digits is not known
+_LARGEST = 2_000_000  # bits of powers; what is closer than fifty digits and larger than this counts as equal
 
 
 class Lexicographic:
@@ -25,8 +31,7 @@ class Lexicographic:
         self.levels = tuple(None if rates is None else tuple(rates) for rates in levels)
         self.width = sum(1 if rates is None else len(rates) for rates in self.levels)
         self._logarithms = [
-            [] if rates is None else [math.log(r.denominator) - math.log(r.numerator) for r in rates]
-            for rates in self.levels
+            [float(below - above) for below, above in map(_logarithms, rates or ())] for rates in self.levels
         ]
 
     @property
@@ -53,7 +58,7 @@ class Lexicographic:
             if any(exponents):
                 terms = [float(e) * log for e, log in zip(exponents, logarithms, strict=True)]
                 total, size = sum(terms), sum(map(abs, terms))
-                if abs(total) > _MARGIN * size:
+                if abs(total) > _MARGIN * size + _TINY:
                     return 1 if total > 0 else -1
                 found = _product_sign(rates, exponents)
                 if found:
@@ -75,13 +80,30 @@ class Lexicographic:
         return values
 
 
+@lru_cache(maxsize=4096)
+def _logarithms(rate: Fraction) -> tuple[Fraction, Fraction]:
+    """Give the logarithms of denominator and numerator, each to sixty digits."""
+    denominator, numerator = (_DIGITS.ln(Decimal(n)) for n in (rate.denominator, rate.numerator))
+    return Fraction(denominator), Fraction(numerator)
+
+
 def _product_sign(rates: Sequence[Fraction], exponents: Sequence[Fraction]) -> int:
-    """Compare 1 with a product of rational powers, in whole numbers: -1 where the product is above 1."""
-    common = math.lcm(*(e.denominator for e in exponents))
-    above, below = 1, 1
+    """Compare 1 with a product of rational powers: -1 where the product is above 1."""
+    total = error = Fraction(0)
     for rate, exponent in zip(rates, exponents, strict=True):
-        power = int(exponent * common)
+        if exponent:
+            below, above = _logarithms(rate)
+            total += exponent * (below - above)
+            error += abs(exponent) * (below + above) * _FINE
+    if abs(total) > error:
+        return 1 if total > 0 else -1
+    common = math.lcm(*(e.denominator for e in exponents))
+    powers = [int(e * common) for e in exponents]
+    if sum(abs(p) * r.denominator.bit_length() for r, p in zip(rates, powers, strict=True)) > _LARGEST:
+        return 0
+    over, under = 1, 1
+    for rate, power in zip(rates, powers, strict=True):
         one, other = rate.numerator ** abs(power), rate.denominator ** abs(power)
-        above *= one if power > 0 else other
-        below *= other if power > 0 else one
-    return (above < below) - (above > below)
+        over *= one if power > 0 else other
+        under *= other if power > 0 else one
+    return (over < under) - (over > under)

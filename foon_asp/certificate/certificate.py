@@ -65,7 +65,8 @@ def certify(
     ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that
     is not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
     trees: then the certificate proves a bound on all of them. ``None`` where nothing is found before
-    ``expired`` says so, and for ``success`` with rates of 0.
+    ``expired`` says so, for ``success`` with rates of 0, and where products of rates are too close to be
+    compared.
     """
     if Objective.SUCCESS in objectives and not all((problem.rates or {})[m] for m in problem.network.motions):
         return None
@@ -110,7 +111,7 @@ def _write(
     units: Sequence[int] | None,
     proof: Proof,
     bound: list[object] | None = None,
-) -> Certificate:
+) -> Certificate | None:
     problem = question.problem
     cuts: dict[tuple[int, ...], int] = {}
 
@@ -157,6 +158,8 @@ def _write(
         verify.verify(
             json.loads(certificate.text()), problem.network, problem.kitchen, problem.rates, problem.utensils
         )
+    except verify.TooFineError:
+        return None
     except verify.RefusedError as refused:
         raise BugError(f"a certificate that was found is refused: {refused}") from None
     return certificate

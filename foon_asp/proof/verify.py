@@ -7,9 +7,10 @@ weights on cuts that overload no unit (those of its cuts add up to at most its c
 lower bound on every tree's cost. A cut without members shows that there is no tree.
 
 Weights and costs have one part for each objective and are compared objective by objective, like words. The
-part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by comparing the
-product of ``rate ** e`` with 1 in whole numbers. This module imports the standard library and the plain
-network, and nothing of the rest of the package.
+part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by bounds of the
+logarithms, and where these are too close, by comparing the product of ``rate ** e`` with 1 in whole
+numbers. This module imports the standard library and the plain network, and nothing of the rest of the
+package.
 """
 
 import hashlib
@@ -17,7 +18,9 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from decimal import Context, Decimal
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from foon_asp.network import Network
@@ -32,6 +35,7 @@ _KEYS = {
 }
 _RATIONAL = re.compile(r"-?(0|[1-9]\d{0,999})(/[1-9]\d{0,999})?", re.ASCII)
 _LARGEST = 2_000_000  # bits of a product of rates; more is refused rather than computed for hours
+_DIGITS = Context(prec=50)
 
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
 Amount = dict[tuple[int, Fraction | None], Fraction]
@@ -39,6 +43,10 @@ Amount = dict[tuple[int, Fraction | None], Fraction]
 
 class RefusedError(Exception):
     """The certificate is wrong; the message says where."""
+
+
+class TooFineError(RefusedError):
+    """Two products of rates in the certificate differ by too little to be compared."""
 
 
 class Verified(NamedTuple):
@@ -414,22 +422,43 @@ class _Check:
 def _minus_log_sign(exponents: Mapping[Fraction, Fraction]) -> int:
     """Give the sign of the sum of ``e * -log(rate)``: is the product of ``rate ** e`` below, at or above 1?
 
-    With the exponents over one denominator, the product is below 1 exactly when its power by that denominator
-    is, and that one is a quotient of whole numbers. A rate of 0 costs more than any weight.
+    Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator, the
+    product is below 1 exactly when its power by that denominator is, and that one is a quotient of whole
+    numbers. A rate of 0 costs more than any weight.
     """
     if exponents.get(Fraction(0)):
         return 1 if exponents[Fraction(0)] > 0 else -1
     exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
+    bounds = [(e, *_minus_log(rate)) for rate, e in exponents.items()]
+    if sum(e * (low if e > 0 else high) for e, low, high in bounds) > 0:
+        return 1
+    if sum(e * (high if e > 0 else low) for e, low, high in bounds) < 0:
+        return -1
     common = math.lcm(*(e.denominator for e in exponents.values()))
     powers = {rate: int(e * common) for rate, e in exponents.items()}
-    size = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
-    _require(size <= _LARGEST, "exponents of rates are too fine to be compared")
+    if sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items()) > _LARGEST:
+        raise TooFineError("products of rates are too close to be told apart in reasonable time")
     above, below = 1, 1
     for rate, power in powers.items():
         over, under = rate.numerator ** abs(power), rate.denominator ** abs(power)
         above *= over if power > 0 else under
         below *= under if power > 0 else over
     return (above < below) - (above > below)
+
+
+@lru_cache(maxsize=4096)
+def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
+    """Give bounds of ``-log(rate)`` from below and above.
+
+    Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
+    """
+    low = high = Fraction(0)
+    for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
+        logarithm = _DIGITS.ln(Decimal(number))
+        unit = Fraction(10) ** (logarithm.adjusted() + 1 - _DIGITS.prec) if logarithm else Fraction(0)
+        low += sign * Fraction(logarithm) - unit
+        high += sign * Fraction(logarithm) + unit
+    return low, high
 
 
 def _add(total: Amount, amount: Amount) -> None:
