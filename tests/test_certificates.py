@@ -358,6 +358,30 @@ def test_certify_prints_what_it_finds(cli: Cli) -> None:
     assert none.code == 3
 
 
+def test_the_answer_stands_when_the_search_for_a_certificate_is_interrupted(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("foon_asp.cli.certify.certify_outcome", interrupt)
+    file = tmp_path / "proof.json"
+    ran = cli("solve", "--goal", "ice", "--certificate", file, "--format", "json")
+    assert ran.code == 0
+    assert (ran.json["status"], ran.json["proof"]) == ("optimal", "solver")
+    assert "proof: solver (no certificate was found, and nothing is written)" in ran.err
+    assert not file.exists()
+
+
+def test_a_bound_by_success_is_a_product(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "proof.json"
+    words = ("--constraint", "at_most_units", "-c", "max_units=9", "--objective", "success")
+    ran = cli("solve", "--goal", "macaroni", *words, "--certificate", file, "--format", "json")
+    assert ran.code == 0
+    assert ran.json["proof"] == "solver"
+    assert "success at most 0.6293; the tree has " in cli("verify", file).out
+
+
 def test_a_bound_is_said_to_be_one(cli: Cli, tmp_path: Path) -> None:
     file = tmp_path / "proof.json"
     words = ("--constraint", "at_most_motion", "-c", "limited_motion=crush", "-c", "max_uses=0")

@@ -35,7 +35,7 @@ from foon_asp.text import FoonReader, summarize
     "file",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Where to write, for stdout.",
+    help="Where to write it; stdout by default.",
 )
 @options.objective_option
 @options.containers_option

@@ -17,11 +17,11 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
     if outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]
     if certificate is None:
-        return ["proof: solver (no certificate was found)"]
+        return ["proof: solver (no certificate was found, and nothing is written)"]
     if certificate.claim == "bound":
         return [
-            f"proof: solver; the certificate {file} proves a bound on all trees, without the constraints: "
-            + bound_text(certificate.content)
+            f"proof: solver; the certificate {file} proves a bound on all trees, "
+            "constraints it does not cover left aside: " + bound_text(certificate.content)
         ]
     if certificate.claim == "optimal" and outcome.proof.value != "certificate":
         sure = ", ".join(certificate.certified)
