@@ -330,6 +330,9 @@ def test_certify_a_given_tree(cli: Cli, tmp_path: Path) -> None:
     assert good.err == "proved best by units\n"
     assert cli("verify", file).code == 0
     file.unlink()
+    forbidden = cli(*words, "--constraint", "forbid_object", "-c", "forbidden_object=macaroni")
+    assert forbidden.code == 1
+    assert forbidden.err == "no certificate: a unit of the tree is forbidden by the constraints\n"
     worse = cli(*words, "--objective", "success")
     assert worse.code == 1
     assert worse.err.startswith(

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.certificate import Certificate, NotBestError, certify, certify_outcome, coverage
+from foon_asp.certificate import Certificate, Coverage, NotBestError, certify, certify_outcome, coverage
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
@@ -127,23 +127,13 @@ def _certify_tree(
         raise UserError(
             "the objective success needs the success rates of the motions; name them with --rates"
         )
-    reader = FoonReader(lenient)
-    tree = [unit for unit, _ in reader.read_tree(tree_file)]
-    for text in summarize(reader.diagnostics):
-        click.echo(text, err=True)
-    units = [problem.network.unit_id(unit) for unit in tree]
-    known = [unit for unit in units if unit is not None]
-    if len(known) < len(tree) or len(set(known)) < len(known):
-        click.echo("no certificate: a unit of the tree is not one of the network, or stands twice", err=True)
+    covered = coverage(settings)
+    ordered = _given_tree(problem, tree_file, covered, lenient)
+    if ordered is None:
         return ExitCode.NEGATIVE
-    simulation = simulate_for(problem, problem.tree(known))
-    if simulation.verdict is Verdict.NEVER:
-        click.echo("no certificate: the tree does not execute; `foon-asp check` says why", err=True)
-        return ExitCode.NEGATIVE
-    ordered = [known[position] for position in simulation.order]
     wanted = levels(chosen)
     try:
-        certificate = certify(problem, wanted, ordered, coverage(settings), expired)
+        certificate = certify(problem, wanted, ordered, covered, expired)
     except NotBestError as better:
         click.echo(
             f"no certificate: the tree is not the best by {', then '.join(wanted)}: it has "
@@ -160,3 +150,25 @@ def _certify_tree(
         return ExitCode.LIMIT
     click.echo(f"proved best by {', then '.join(certificate.certified)}", err=True)
     return ExitCode.DONE if certificate.certified == wanted else ExitCode.LIMIT
+
+
+def _given_tree(problem: Problem, tree_file: Path, covered: Coverage, lenient: bool) -> list[int] | None:
+    """Read a tree and put it into an order that executes; says why there is none."""
+    reader = FoonReader(lenient)
+    tree = [unit for unit, _ in reader.read_tree(tree_file)]
+    for text in summarize(reader.diagnostics):
+        click.echo(text, err=True)
+    units = [problem.network.unit_id(unit) for unit in tree]
+    known = [unit for unit in units if unit is not None]
+    simulation = simulate_for(problem, problem.tree(known))
+    why = None
+    if len(known) < len(tree) or len(set(known)) < len(known):
+        why = "a unit of the tree is not one of the network, or stands twice"
+    elif simulation.verdict is Verdict.NEVER:
+        why = "the tree does not execute; `foon-asp check` says why"
+    elif covered.forbids(problem.network) & {*known}:
+        why = "a unit of the tree is forbidden by the constraints"
+    if why is not None:
+        click.echo(f"no certificate: {why}", err=True)
+        return None
+    return [known[position] for position in simulation.order]

@@ -120,28 +120,18 @@ def verify(
     Takes time linear in cuts times network. Raises :class:`RefusedError` with the first fault that is found.
     """
     try:
-        return _verify(certificate, network, kitchen, rates, utensils)
+        _require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
+        _require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
+        version = certificate.get("version")
+        _require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
+        _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
+        _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
+        stated = _object(certificate["digests"], ("network", "kitchen", "rates", "utensils"))
+        for name, digest in digests(network, kitchen, rates, utensils).items():
+            _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
+        return _Check(certificate, network, kitchen, rates, utensils).claim()
     except RecursionError:
         raise RefusedError("branches within branches without end") from None
-
-
-def _verify(
-    certificate: Any,
-    network: Network,
-    kitchen: frozenset[int],
-    rates: Mapping[str, Fraction] | None,
-    utensils: frozenset[str],
-) -> Verified:
-    _require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
-    _require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
-    version = certificate.get("version")
-    _require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
-    _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
-    _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
-    stated = _object(certificate["digests"], ("network", "kitchen", "rates", "utensils"))
-    for name, digest in digests(network, kitchen, rates, utensils).items():
-        _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
-    return _Check(certificate, network, kitchen, rates, utensils).claim()
 
 
 class _Check:
