@@ -166,6 +166,16 @@ def test_the_command_line_says_who_agrees(cli: Cli) -> None:
     assert "at_most_units.lp" in refused.err
 
 
+def test_an_engine_that_is_not_installed_is_named(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("foon_asp.engines.fast_downward.driver", lambda: None)
+    ran = cli("solve", "--goal", "ice", "--cross-check")
+    assert ran.code == 0
+    assert ran.out.endswith(
+        "cross-check: Fast Downward is not installed (pip install 'foon-asp[cross-check]')\n"
+    )
+    assert "HiGHS agrees" in ran.out
+
+
 def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
