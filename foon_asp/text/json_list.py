@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Generator, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -68,20 +69,27 @@ class JsonList:
 
     def _in_object(self, position: int) -> Iterator[tuple[int, object]]:
         """Give the elements of the list under the key; the values of other keys are kept aside."""
-        found = False
+        seen: set[str] = set()
         position = self._skip(position)
         while self._text[position : position + 1] != "}":
+            start = position
             key, position = self._value(position)
+            if not isinstance(key, str):
+                raise json.JSONDecodeError("expected a key in quotes", self._text, start)
+            if key in seen:
+                raise _RepeatedKeyError(key, start)
+            seen.add(key)
             position = self._expect(":", self._skip(position))
             if key == self._key:
-                found = True
                 position = yield from self._in_list(position)
             else:
-                self.others[str(key)], position = self._value(position)
+                self.others[key], position = self._value(position)
             position = self._skip(position)
             if self._text[position : position + 1] != "}":
-                position = self._expect(",", position)
-        if not found:
+                position = self._expect(",", position, "a comma or }")
+                if self._text[position : position + 1] == "}":
+                    raise json.JSONDecodeError("expected a key in quotes", self._text, position)
+        if self._key not in seen:
             raise json.JSONDecodeError(
                 f"expected a list, or an object with the key {self._key!r}", self._text, 0
             )
@@ -122,17 +130,18 @@ class JsonList:
         return match.end() if match else position
 
 
-class JsonNumber(NamedTuple):
+@dataclass(frozen=True)
+class JsonNumber:
     """A number as it is written: none is calculated with, and ids and rates are kept to the letter."""
 
     text: str
 
 
 class _RepeatedKeyError(Exception):
-    def __init__(self, key: str) -> None:
+    def __init__(self, key: str, start: int = 0) -> None:
         super().__init__(key)
         self.key = key
-        self.start = 0
+        self.start = start
 
 
 def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:

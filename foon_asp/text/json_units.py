@@ -12,7 +12,7 @@ from foon_asp.network import Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import number, optional_name, read_object
-from foon_asp.text.line import MotionLine, StateLine
+from foon_asp.text.line import MotionLine, StateLine, is_rate
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 
 _KEYS = {"input_nodes", "motion_node", "output_nodes"}
@@ -93,8 +93,8 @@ def _side(unit: dict[str, object], key: str, source: Source, remarks: list[str])
         raise ValueError(f'found no list as "{key}", expected a list of objects')
     blocks = []
     for value in objects:
-        line, states, container, left_out = read_object(value)
-        remarks += left_out
+        line, states, container, said = read_object(value)
+        remarks += said
         if container is not None and not any(_names(state, container) for state in states):
             states = (*states, StateLine(Relation("in", container)))
         blocks.append(ObjectBlock(line, states, source))
@@ -120,6 +120,8 @@ def _motion(value: object, remarks: list[str]) -> MotionLine:
     rate = rate.text if isinstance(rate, JsonNumber) else optional_name(rate, "weight_success")
     entity = optional_name(value.get("robot_type"), "robot_type")
     if rate is not None:
+        if not is_rate(rate):
+            raise ValueError(f'found {rate[:40]!r} as "weight_success", expected a rate from 0 to 1')
         if entity is None:
             remarks.append(f"the success rate {rate} is of no robot_type; read as that of Robot")
         fields += [entity or "Robot", rate]

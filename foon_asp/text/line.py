@@ -150,10 +150,15 @@ def read_state(text: str) -> StateLine:
 
     Raises :class:`LineError`, with the column in ``text``, when the grammar does not accept it.
     """
+    for column, letter in enumerate(text, 1):
+        if letter in "\t\r\n":
+            raise LineError(column, repr(letter), ("a name", "[object]", "{ingredient,ingredient}"))
     try:
-        return cast(StateLine, parse_line(re.sub(r" *(?=[\[{])", "\t", f"S\t{text}", count=1)))
+        line = cast(StateLine, parse_line(f"S\t{text}"))
     except LineError as error:
         raise LineError(max(1, error.column - 2), error.found, error.expected) from None
+    # between a word and its bracket, a JSON file has a blank where FOON text has a tab
+    return line._replace(remarks=tuple(r for r in line.remarks if r.code != "space-for-tab"))
 
 
 class _LineBuilder(Transformer[Token, object]):
