@@ -18,6 +18,8 @@ _VERBS = (
     "search",
     "compare",
     "check",
+    "certify",
+    "verify",
     "draw",
     "facts",
     "stats",

@@ -4,9 +4,9 @@ import json
 from collections.abc import Iterator
 from fractions import Fraction
 
-from foon_asp.asp import Outcome, Status
+from foon_asp.asp import Outcome, Proof, Status
 from foon_asp.network import Network
-from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.text import write_units
 
 
@@ -67,6 +67,12 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
         "objective": [str(objective) for objective in outcome.objectives],
         "encodings": None if outcome.encodings is None else str(outcome.encodings),
         "status": str(outcome.status),
+        "proof": None if outcome.proof is None else str(outcome.proof),
+        "proof_by_objective": {
+            str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else Proof.SOLVER)
+            for objective in levels(outcome.objectives)
+            if outcome.status is Status.OPTIMAL
+        },
         "costs": costs_json(outcome.costs),
         "lower_bound": {
             str(objective): fraction_json(Fraction(bound)) if objective is Objective.SUCCESS else bound
