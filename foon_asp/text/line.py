@@ -231,7 +231,8 @@ class _LineBuilder(Transformer[Token, object]):
         bracket, what = ("{%s}", "a list") if "," in name or word == "contains" else ("[%s]", "an object")
         shown = bracket % name.rstrip("]}")
         remarks.append(Remark(column, "bracket", f"{name!r} is not in brackets; read as {what}, {shown}"))
-        return _bracketed(word, Token("BARE", shown, column=column), id_, remarks)
+        # the first item stands where the remark says, behind a bracket that is not there
+        return _bracketed(word, Token("BARE", shown, column=column - 1), id_, remarks)
 
     def related(self, tokens: list[Token]) -> StateLine:
         remarks: list[Remark] = []
