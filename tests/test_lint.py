@@ -96,6 +96,7 @@ def test_line_ends_do_not_matter(tmp_path: Path, end: str) -> None:
         ({"tomto": 1, "tomato": 4}, ("tomto", "tomato")),
         ({"tometo": 1, "tomato": 40}, ("tometo", "tomato")),
         ({"bow": 1, "bowl": 900}, ("bow", "bowl")),
+        ({"bow": 3, "bowl": 900}, ("bow", "bowl")),  # the same slip in the copies of a file
     ],
 )
 def test_slips_of_the_pen(counts: dict[str, int], pair: tuple[str, str]) -> None:
@@ -155,6 +156,18 @@ def test_what_is_never_an_object(tmp_path: Path) -> None:
     assert "no unit adds it" in findings[2].message
     known = "O\tsink\nO\trice\nO\tsalt\nM\tuse\nO\tdone\n//\n"
     assert found(tmp_path, text, known) == []
+
+
+def test_the_caret_stands_under_the_whole_name(tmp_path: Path) -> None:
+    text = "O\tbowl\nS\tcontains\t{rice vinegar,rice, rice wine}\nM\tinstall\nO\tbowl\nS\tin [stall]\n//\n"
+    findings = [f for f in found(tmp_path, text) if f.code.startswith("unknown")]
+    carets = [(f.excerpt[f.source.column - 1 :], f.message.split("'")[1]) for f in findings]
+    assert carets == [
+        ("rice vinegar,rice, rice wine}", "rice vinegar"),
+        ("rice, rice wine}", "rice"),
+        ("rice wine}", "rice wine"),
+        ("stall]", "stall"),
+    ]
 
 
 def test_ids_are_those_of_one_file_and_kind(tmp_path: Path) -> None:
@@ -263,6 +276,19 @@ def test_without_a_dead_cycle_everything_can_be_made(units: list[tuple[str, str]
             assert node in found.inputs[unit]
             assert unit in makers[following]
             assert {node, following} <= nodes
+
+
+# Motion flags
+
+
+def test_a_few_missing_flags_are_told_of_once(tmp_path: Path) -> None:
+    flagged = "O\tonion\t0\nM\tchop\nO\tonion\t0\nS\tchopped\n//\n"
+    bare = "O\ttea\nM\tstir\nO\ttea\nS\thot\n//\n"
+    (finding,) = found(tmp_path, flagged + bare + flagged.replace("chop", "dic"))
+    assert (finding.code, finding.source.line, finding.source.column) == ("missing-flag", 6, 3)
+    assert finding.message.startswith("2 of 6 object lines have no motion flag")
+    assert found(tmp_path, bare + flagged) == []  # as many with as without
+    assert found(tmp_path, "O\ta\t0\nO\tb\t0\nO\tc\n") == []  # a kitchen
 
 
 # Goals and kitchens
@@ -424,7 +450,20 @@ def test_json_has_all(tmp_path: Path, cli: Cli) -> None:
         "message": "no tab before [c]; read as if there were one",
         "text": "S\tin [c]",
         "fix": "S\tin\t[c]",
+        "mendable": True,
     }
+
+
+def test_json_does_not_repeat_a_long_line_for_each_finding(tmp_path: Path, cli: Cli) -> None:
+    names = ", ".join(f"ingredient {number}" for number in range(2000))
+    (file,) = written(tmp_path, f"O\ta\nS\tcontains\t{{{names}}}\nM\tgo\nO\ta\nS\tbig\n//\n")
+    ran = cli("lint", "--format", "json", file)
+    slip = next(finding for finding in ran.json["findings"] if finding["code"] == "outer-space")
+    assert (slip["text"], slip["fix"], slip["mendable"]) == (None, None, True)
+    assert len(ran.json["findings"]) > 2000
+    assert len(ran.out) < 500 * len(ran.json["findings"])
+    assert cli("lint", "--fix", "--select", "outer-space", file).code == 0
+    assert ", " not in file.read_text()
 
 
 def test_annotations_are_escaped(tmp_path: Path, cli: Cli) -> None:

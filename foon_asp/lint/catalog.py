@@ -39,6 +39,7 @@ _RULES = (
     Rule("unknown-field", WARNING, "something behind a motion flag that is no category and no !"),
     Rule("time", WARNING, "a time that is none"),
     # Object nodes.
+    Rule("missing-flag", NOTE, "no motion flag on an object line, in a file where most have one"),
     Rule("second-contents", NOTE, "two { } lines under one object"),
     Rule("second-relation", NOTE, "two [ ] lines under one object"),
     Rule("repeated-state", WARNING, "the same state line twice under one object"),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from foon_asp.lint.block_rules import block_findings
 from foon_asp.lint.cycle_rules import cycle_findings
+from foon_asp.lint.flag_rules import flag_findings
 from foon_asp.lint.goal_rules import goal_findings
 from foon_asp.lint.id_rules import id_findings
 from foon_asp.lint.linted_files import LintedFiles
@@ -33,6 +34,7 @@ def lint(files: Iterable[Path]) -> list[Diagnostic]:
 
 def _sheet_by_sheet(files: LintedFiles) -> Iterator[Diagnostic]:
     for sheet in files.sheets:
+        yield from flag_findings(sheet)
         yield from block_findings(sheet)
         yield from id_findings(sheet)
 

@@ -97,7 +97,7 @@ def _is_slip(rare: str, frequent: str, counts: dict[str, int], verbs: bool) -> b
         return shortest >= _MIDDLE and ratio >= _RATIO
     if len(word) == len(other):
         return shortest >= _LONG and ratio >= _HIGH_RATIO and counts[rare] <= _VERY_RARE
-    if ratio >= _HIGHEST_RATIO and counts[rare] <= _VERY_RARE:
+    if ratio >= _HIGHEST_RATIO:
         return shortest >= _SHORT
     return shortest >= _LONG and ratio >= _RATIO
 

@@ -15,6 +15,7 @@ from foon_asp.text.line import Line, ObjectLine, StateLine
 from foon_asp.text.listed_unit import node_of
 
 _LETTERS = {"O", "S", "M"}
+_NAME = re.compile(r"[^\t\[\]{},]+")
 _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)"')
 
 
@@ -48,6 +49,7 @@ class Sheet:
     places: Sequence[Source] | None = None
     entries: list[Entry] | None = None
     source_lines: Sequence[str] = field(default=(), repr=False)
+    _columns: tuple[int, dict[str, int]] = field(default_factory=lambda: (-1, {}), repr=False)
 
     @property
     def lists_goals(self) -> bool:
@@ -111,9 +113,23 @@ class Sheet:
         if self.places is not None:
             source, line = self._in_json(index, name)
             return Diagnostic(severity, code, message, source, line)
+        column = self._column(index, name) if name else 1
+        return Diagnostic(severity, code, message, self.place(index, column), self.lines[index])
+
+    def _column(self, index: int, name: str) -> int:
+        """Give the column of a whole name in a line: ``rice`` is not where ``rice vinegar`` is.
+
+        The columns of the last line are kept: a long list is not searched anew for each of its names.
+        """
         line = self.lines[index]
-        column = max(0, line.find(name, line.find("\t") + 1) if name else 0) + 1
-        return Diagnostic(severity, code, message, self.place(index, column), line)
+        start = line.find("\t") + 1
+        if self._columns[0] != index:
+            columns: dict[str, int] = {}
+            for match in _NAME.finditer(line, start):
+                text = match[0]
+                columns.setdefault(text.strip(), match.end() - len(text.lstrip()) + 1)
+            self._columns = index, columns
+        return self._columns[1].get(name) or max(0, line.find(name, start)) + 1
 
     def _in_json(self, index: int, name: str) -> tuple[Source, str]:
         """Give the place and line of a name, in quotes, behind the place where its unit or entry begins."""

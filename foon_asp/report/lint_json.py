@@ -6,9 +6,15 @@ from collections.abc import Sequence
 
 from foon_asp.text import Diagnostic, Severity
 
+_LONGEST = 1000  # letters: thousands of findings on one line would repeat it thousands of times
+
 
 def lint_json(findings: Sequence[Diagnostic], files: int, mended: int) -> str:
-    """Give every finding, with ``fix`` the line as it should be or ``null``, and the counts."""
+    """Give every finding, and the counts.
+
+    ``text`` is the line and ``fix`` the line as it should be, where it can be mended. Both are ``null`` where
+    the line is longer than a thousand letters; ``mendable`` says in any case whether there is a fix.
+    """
     severities = Counter(finding.severity for finding in findings)
     result = {
         "files": files,
@@ -23,10 +29,15 @@ def lint_json(findings: Sequence[Diagnostic], files: int, mended: int) -> str:
                 "severity": str(finding.severity),
                 "code": finding.code,
                 "message": finding.message,
-                "text": finding.excerpt,
-                "fix": finding.fix,
+                "text": _short(finding.excerpt),
+                "fix": _short(finding.fix),
+                "mendable": finding.fix is not None,
             }
             for finding in findings
         ],
     }
     return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
+
+
+def _short(line: str | None) -> str | None:
+    return line if line is not None and len(line) <= _LONGEST else None
