@@ -151,8 +151,6 @@ def _list(value: dict[str, object], key: str, found: object) -> list[object]:
 def _name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
         raise ValueError(f'found {_shown(value)} as "{key}", expected {expected}')
-    if any("\ud800" <= letter <= "\udfff" for letter in value):
-        raise ValueError(f'found half a character in "{key}", {_shown(value)}, expected {expected}')
     return value
 
 
