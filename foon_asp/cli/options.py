@@ -36,10 +36,10 @@ _DATA_OPTIONS = (
         metavar="FILE|DIR|STORE",
         help="FOON text or JSON, repeatable; or one store.",
     ),
-    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand (JSON)."),
+    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand: JSON, or FOON objects."),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
-    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name (JSON)."),
+    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name, likewise."),
     click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
 )
 
@@ -173,7 +173,7 @@ class Question:
         """Find one goal for each name; without names, all nodes of the goals file."""
         if names:
             return [find_goal(name, self.names, self.listed) for name in names]
-        return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
+        return list(dict.fromkeys(node for entry in self.listed for node in listed_nodes(entry, self.names)))
 
     def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals, which are those of the problem in the same order, under a container rule.
