@@ -3,7 +3,8 @@
 The same recipes, kitchen and goals are imported twice: by themselves (``--small`` units), and with as many
 others as make ``--units``, whose objects have other labels; so every question has the same cone and the same
 answer in both. Every figure is of whole processes, each new, in turn: medians of ``--runs``, seconds from
-start to end, peak memory as the system counts it. Files are in the page cache. Answers are compared.
+start to end, seconds of processor (which other work on the machine disturbs less), peak memory as the system
+counts it. Files are in the page cache. Answers are compared.
 
 *read*: the text is read and its units dropped, with nothing merged; *import*: ``foon-asp import``;
 *solve*: ``foon-asp solve --network STORE --goal NAME``, for each goal with a cone of up to ``--cone`` units.
@@ -45,14 +46,16 @@ began = time.perf_counter()
 process = os.posix_spawn(sys.executable, [sys.executable, *sys.argv[1:]], os.environ)
 _, status, usage = os.wait4(process, 0)
 seconds = time.perf_counter() - began
-print(json.dumps([seconds, usage.ru_maxrss / 1024, os.waitstatus_to_exitcode(status)]), file=sys.stderr)
+processor, peak = usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+print(json.dumps([seconds, processor, peak, os.waitstatus_to_exitcode(status)]), file=sys.stderr)
 """
 
 
 class Run(NamedTuple):
-    """One process: seconds, peak memory in MB, and what it printed."""
+    """One process: seconds, those of processor, peak memory in MB, and what it printed."""
 
     seconds: float
+    processor: float
     peak: float
     output: str
 
@@ -61,6 +64,7 @@ class Medians(NamedTuple):
     """Medians of several runs."""
 
     seconds: float
+    processor: float
     peak: float
 
 
@@ -70,15 +74,19 @@ def run(*words: object) -> Run:
         [sys.executable, "-c", START, *map(str, words)], check=True, capture_output=True, text=True
     )
     *messages, figures = ended.stderr.splitlines()
-    seconds, peak, code = json.loads(figures)
+    seconds, processor, peak, code = json.loads(figures)
     if code:
         raise SystemExit("\n".join([f"{words} ended with {code}", *messages]))
-    return Run(seconds, peak, ended.stdout)
+    return Run(seconds, processor, peak, ended.stdout)
 
 
 def medians(runs: Sequence[Run]) -> Medians:
     """Give the median of each figure."""
-    return Medians(statistics.median(r.seconds for r in runs), statistics.median(r.peak for r in runs))
+    return Medians(
+        statistics.median(one.seconds for one in runs),
+        statistics.median(one.processor for one in runs),
+        statistics.median(one.peak for one in runs),
+    )
 
 
 def generate(units: int, seed: int, folder: Path) -> None:
@@ -126,18 +134,21 @@ def measure_import(folder: Path, store: Path, units: int, runs: int) -> Medians:
         reads.append(run("-c", READ, folder / "FOON.txt"))
         imports.append(run("-m", "foon_asp", "import", "--data", folder, "--store", store))
     read, imported = medians(reads), medians(imports)
-    megabytes = (folder / "FOON.txt").stat().st_size / 1e6, store.stat().st_size / 1e6
-    print(f"{units:>9} units   read    {read.seconds:8.2f} s {read.peak:7.0f} MB peak {megabytes[0]:8.1f} MB")
+    for task, found, file in (("read", read, folder / "FOON.txt"), ("import", imported, store)):
+        print(
+            f"{units:>9} units   {task:6} {found.seconds:8.2f} s {found.processor:8.2f} s of processor"
+            f" {found.peak:7.0f} MB peak {file.stat().st_size / 1e6:8.1f} MB"
+        )
     print(
-        f"{'':15}   import  {imported.seconds:8.2f} s {imported.peak:7.0f} MB peak {megabytes[1]:8.1f} MB"
-        f"   import / read {imported.seconds / read.seconds:.2f}",
+        f"{'':15}   import / read: time {imported.seconds / read.seconds:.2f},"
+        f" processor {imported.processor / read.processor:.2f}",
         flush=True,
     )
     return imported
 
 
-def measure_solve(stores: Sequence[Path], goal: str, cone: int, runs: int) -> tuple[float, float]:
-    """Ask both stores in turn, print and give the ratios of time and of memory."""
+def measure_solve(stores: Sequence[Path], goal: str, cone: int, runs: int) -> Medians:
+    """Ask both stores in turn, print, and give the ratios."""
     asked: list[list[Run]] = [[], []]
     for _ in range(runs):
         for store, found in zip(stores, asked, strict=True):
@@ -146,10 +157,11 @@ def measure_solve(stores: Sequence[Path], goal: str, cone: int, runs: int) -> tu
     if len({json.dumps(answer(one.output)) for found in asked for one in found}) > 1:
         raise SystemExit(f"{goal}: the stores do not answer the same")
     few, many = map(medians, asked)
-    ratios = many.seconds / few.seconds, many.peak / few.peak
+    ratios = Medians(*(b / a for a, b in zip(few, many, strict=True)))
     print(
-        f"{cone:>7} {few.seconds:7.3f} s {many.seconds:7.3f} s {ratios[0]:7.2f}"
-        f" {few.peak:9.1f} MB {many.peak:6.1f} MB {ratios[1]:7.2f}   {goal}",
+        f"{cone:>6}  {few.seconds:6.3f} {many.seconds:6.3f} {ratios.seconds:5.2f}"
+        f"   {few.processor:6.3f} {many.processor:6.3f} {ratios.processor:5.2f}"
+        f"   {few.peak:6.1f} {many.peak:6.1f} {ratios.peak:5.2f}   {goal}",
         flush=True,
     )
     return ratios
@@ -179,14 +191,14 @@ def main() -> None:
         ]
         growth = math.log(imports[1].seconds / imports[0].seconds) / math.log(chosen.units / chosen.small)
         print(f"{'':15}   import grows with the power {growth:.2f} of the units\n")
-        print("   cone    few       many     ratio       few MB    many MB   ratio   goal (solve)")
+        print("  solve: seconds              of processor           MB peak")
+        print("  cone     few   many ratio      few   many ratio      few   many ratio   goal")
         ratios = [
             measure_solve(stores, goal, cone, chosen.runs)
             for goal, cone in small_cones(stores[0], chosen.cone).items()
         ]
-    seconds, peaks = zip(*ratios, strict=True)
-    print(f"\nsolve, many / few: time, median {statistics.median(seconds):.2f}, largest {max(seconds):.2f};")
-    print(f"    peak memory, median {statistics.median(peaks):.2f}, largest {max(peaks):.2f}")
+    for figure, found in zip(Medians._fields, zip(*ratios, strict=True), strict=True):
+        print(f"many / few, {figure}: median {statistics.median(found):.2f}, largest {max(found):.2f}")
 
 
 if __name__ == "__main__":

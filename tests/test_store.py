@@ -694,6 +694,20 @@ def test_a_checksum_knows_its_place() -> None:
     assert seal(Table.UNIT, 1, [1]) != seal(Table.UNIT, 2, [1]) != seal(Table.NODE, 2, [1])
 
 
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_the_real_universal_foon(universal: Path, tmp_path: Path, rule: ContainerRule) -> None:
+    """Clingo is given the same about any object, whether the whole network was read or its cone."""
+    files, store = find_data(universal), tmp_path / "universal.foon"
+    import_files(files, store)
+    data = read_data(files)
+    assert_holds(store, data)
+    for goal in random.Random(3).sample(range(len(data.network.objects)), 25):
+        problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
+        part = cone_problem(store, problem, own_kitchen=True)
+        chosen = (Objective.SUCCESS, Objective.INPUTS)
+        assert program_facts(part, chosen, Settings()) == program_facts(problem, chosen, Settings())
+
+
 @pytest.mark.slow
 def test_a_hundred_thousand_units(tmp_path: Path, cli: Cli) -> None:
     folder = tmp_path / "generated"
