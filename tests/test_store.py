@@ -690,6 +690,17 @@ def test_foreign_files_are_refused(tmp_path: Path, cli: Cli) -> None:
     assert "is empty" in cli("solve", "--network", store, "--goal", "x").err
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_is_no_store(tmp_path: Path, cli: Cli, soup: tuple[DataFiles, Path]) -> None:
+    files, _ = soup
+    pipe = tmp_path / "pipe.foon"
+    os.mkfifo(pipe)
+    ran = cli("solve", "--network", pipe, "--goal", "x")
+    assert ran.code == 2
+    assert "is no file, expected a store" in ran.err
+    assert "there is something else under this name" in cli("import", *files.network, "--store", pipe).err
+
+
 def test_a_checksum_knows_its_place() -> None:
     assert seal(Table.UNIT, 1, [1]) != seal(Table.UNIT, 2, [1]) != seal(Table.NODE, 2, [1])
 
