@@ -11,7 +11,17 @@ import click
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import Data, find_data, find_goal, read_data, summarize
+from foon_asp.text import (
+    Data,
+    DataFiles,
+    ListedObject,
+    find_data,
+    find_goal,
+    kitchen_nodes,
+    listed_nodes,
+    read_data,
+    summarize,
+)
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _PATH = click.Path(path_type=Path)
@@ -131,12 +141,38 @@ class Question(NamedTuple):
         found = (find_goal(name, data.network, data.goals) for name in names)
         return tuple(dict.fromkeys(found))
 
+    def each_goal(self, names: Sequence[str]) -> list[int]:
+        """Find one goal for each name; without names, all nodes of the goals file."""
+        data = self.data
+        if names:
+            return [find_goal(name, data.network, data.goals) for name in names]
+        return [node for entry in data.goals for node in listed_nodes(entry, data.network)]
+
+    def with_kitchen(self, items: Sequence[ListedObject]) -> "Question":
+        """Give the same data with another kitchen."""
+        kitchen = kitchen_nodes(self.data.network, items)
+        return self._replace(data=self.data._replace(kitchen=kitchen, kitchen_items=tuple(items)))
+
     def problem(self, goals: tuple[int, ...], containers: str) -> Problem:
         """Ask for goals under a container rule."""
         data = self.data
         return Problem(
             data.network, data.kitchen, goals, data.rates, data.utensils, ContainerRule(containers)
         )
+
+
+def data_files(
+    folder: Path | None,
+    network: Sequence[Path],
+    kitchen: Path | None,
+    rates: Path | None,
+    utensils: Path | None,
+    goals: Path | None,
+) -> DataFiles:
+    """Find the files that the options name: those of the bundled kitchen without --data and --network."""
+    if folder is None and not network:
+        folder = bundled_kitchen()
+    return find_data(folder, network, kitchen, rates, utensils, goals)
 
 
 def read_question(
@@ -156,9 +192,7 @@ def read_question(
     kitchen and rates, which are made for another one.
     """
     began = time.perf_counter()
-    if folder is None and not network:
-        folder = bundled_kitchen()
-    files = find_data(folder, network, kitchen, rates, utensils, goals)
+    files = data_files(folder, network, kitchen, rates, utensils, goals)
     data = read_data(files, lenient, level)
     seconds = time.perf_counter() - began
     for text in summarize(data.warnings):
