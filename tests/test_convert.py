@@ -340,6 +340,17 @@ def in_order(units: list[ListedUnit]) -> list[object]:
     return [[(state.attribute, state.listed) for state in block.states] for block in blocks_of(units)]
 
 
+@pytest.mark.parametrize("target", list(Dialect))
+def test_an_empty_list_stays_or_is_listed_as_lost(target: Dialect) -> None:
+    text = "O\tcup\nS\tcontains\t{}\nM\tfill\nO\tcup\nS\tfull\n//\n"
+    result, lost = convert(text, target)
+    kept = [unit.inputs[0].node for unit in read(result)] == [
+        ObjectNode.of("cup", contents=[("contains", [])])
+    ]
+    assert kept == (target is not Dialect.JSON_LIST)
+    assert kept == (not lost)
+
+
 @steady
 @given(NETWORKS, st.sampled_from(Dialect))
 def test_whatever_is_lost_is_listed_and_nothing_else(text: str, target: Dialect) -> None:

@@ -89,6 +89,42 @@ def test_counts_by_hand() -> None:
     assert most_connected_objects(network, 1) == [(network.object_id(full), 2, 2)]
 
 
+def test_ties_go_by_the_alphabet_and_by_the_order_of_reading() -> None:
+    network = network_of(("za", "c"), ("b", "y"))
+    assert [label for label, _ in most_connected_labels(network, 9)] == ["a", "b", "c", "y", "z"]
+    assert [node for node, _, _ in most_connected_objects(network, 9)] == [0, 1, 2, 3, 4]
+
+
+def test_lists_of_objects_and_other_json_are_no_networks(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "one.txt").write_text("O\ta\nM\tmix\nO\tb\n//\n")
+    (tmp_path / "package.json").write_text('{"name": "no FOON"}')
+    (tmp_path / "pantry.json").write_text('[{"label": "a"},\n {"label": "b"}]')
+    (tmp_path / "pantry.txt").write_text("O\ta\nO\tb\n")
+    ran = cli("stats", tmp_path, "--format", "json")
+    assert ran.code == 0
+    assert ran.json["units_read"] == 1
+    assert ran.err.count("2 objects and no motion: a list such as a kitchen or goals") == 2
+    assert "package.json" not in ran.err
+
+
+@settings(deadline=None, derandomize=True, max_examples=100)
+@given(seed=st.integers(0, 10_000))
+def test_layers_are_rounds_of_all_that_can_run(seed: int) -> None:
+    problem = random_problem(seed, ContainerRule.STRICT)
+    network = problem.network
+    node_layer, unit_layer = layers(network, problem.kitchen)
+    at_hand, number = set(problem.kitchen), 0
+    while True:
+        assert at_hand == {o for o, layer in enumerate(node_layer) if 0 <= layer <= number}
+        running = [u for u, needs in enumerate(network.inputs) if at_hand.issuperset(needs)]
+        if all(0 <= unit_layer[u] <= number for u in running):
+            break
+        number += 1
+        assert running == [u for u, layer in enumerate(unit_layer) if 0 <= layer <= number]
+        at_hand.update(o for u in running for o in network.outputs[u])
+    assert max(unit_layer) <= number
+
+
 @settings(deadline=None, derandomize=True, max_examples=100)
 @given(seed=st.integers(0, 10_000))
 def test_cycles_are_what_reaches_itself(seed: int) -> None:
@@ -126,11 +162,14 @@ def test_files_and_folders_may_be_named(cli: Cli, tmp_path: Path) -> None:
     ran = cli("stats", tmp_path, "--format", "json")
     assert ran.code == 0, ran.err
     told = json.loads(ran.out)
-    assert (told["units_read"], told["copies"], told["files"]) == (2, 1, 2)
-    assert told["reached_from"] == "not made"
-    told = json.loads(cli("stats", "--data", tmp_path, "--format", "json").out)
+    assert (told["units_read"], told["copies"], told["videos"]) == (2, 1, [])
+    assert told["files"] == [{"file": str(tmp_path / name), "units": 1} for name in ("one.txt", "two.json")]
     assert told["reached_from"] == "kitchen"
     assert [level["level"] for level in told["levels"]] == [1, 2, 3]
+    assert cli("stats", "--data", tmp_path, "--format", "json").out == ran.out
+    together = json.loads(cli("stats", tmp_path / "one.txt", tmp_path / "two.json", "--format", "json").out)
+    assert together["reached_from"] == "not made"
+    assert [level["units"] for level in together["levels"]] == [1, 1, 1]
 
 
 @pytest.mark.skipif(not CORPUS.exists(), reason="the corpus of real FOON files is not here")
@@ -143,5 +182,13 @@ def test_the_real_corpus(cli: Cli) -> None:
     ]
     assert told["levels"][2]["at_hand"] == 1173
     told = json.loads(cli("stats", CORPUS / "subgraphs", "--format", "json").out)
-    assert (told["files"], told["units_read"]) == (56, 1131)
-    assert cli("stats", CORPUS / "dialects").code == 0
+    assert (len(told["files"]), told["units_read"], len(told["videos"])) == (56, 1131, 26)
+    assert [(level["units"], level["objects"]) for level in told["levels"]] == [
+        (991, 337),
+        (1061, 1331),
+        (1099, 2152),
+    ]
+    ran = cli("stats", CORPUS / "dialects", "--format", "json")
+    assert ran.code == 0
+    assert ran.json["reached_from"] == "kitchen"
+    assert len(ran.json["files"]) == 5  # neither the kitchen nor the goals

@@ -21,6 +21,13 @@ class Status(StrEnum):
     UNKNOWN = "unknown"
 
 
+class Proof(StrEnum):
+    """What a claim rests on: an exhausted search, or a certificate that was verified without a solver."""
+
+    SOLVER = "solver"
+    CERTIFICATE = "certificate"
+
+
 class Outcome(NamedTuple):
     """The answer to one problem under a lexicographic list of objectives.
 
@@ -28,7 +35,9 @@ class Outcome(NamedTuple):
     where there is no tree. ``bounds`` gives for each objective the best value that any tree can still have
     (for ``success`` the greatest), as far as it is proved, in the order of the list; an objective counts
     only among the trees that are best under those before it. ``seconds`` has the time of every phase.
+    ``proof`` is what an ``optimal`` or ``infeasible`` answer rests on, ``None`` for the others.
     ``encodings`` is the folder whose encodings replaced ours, if one did: what is best is then what they say.
+    ``certified`` are the objectives, from the first on, for which a certificate proves the tree best.
     """
 
     problem: Problem
@@ -39,3 +48,5 @@ class Outcome(NamedTuple):
     bounds: dict[Objective, int | Fraction]
     seconds: dict[str, float]
     encodings: Path | None = None
+    proof: Proof | None = None
+    certified: tuple[Objective, ...] = ()

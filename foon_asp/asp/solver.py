@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_exponents, write_facts, write_objectives, write_seen, write_wanted
-from foon_asp.asp.outcome import Outcome, Status
+from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.program import Program, Settings, assemble
 from foon_asp.asp.search import Deadline, Run, run
 from foon_asp.errors import BugError, UserError
@@ -263,6 +263,7 @@ class _Solver:
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
     ) -> Outcome:
         """Check the tree by simulation and state the outcome."""
+        proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
         if units is None:
             return Outcome(
                 self.problem,
@@ -273,6 +274,7 @@ class _Solver:
                 bounds,
                 self.seconds,
                 self.settings.encodings,
+                proof,
             )
         began = time.perf_counter()
         problem = self.problem
@@ -292,7 +294,15 @@ class _Solver:
         self._spent("check", began)
         costs = problem.costs(listed)
         return Outcome(
-            problem, self.objectives, status, listed, costs, bounds, self.seconds, self.settings.encodings
+            problem,
+            self.objectives,
+            status,
+            listed,
+            costs,
+            bounds,
+            self.seconds,
+            self.settings.encodings,
+            proof,
         )
 
     def _spent(self, phase: str, began: float) -> None:

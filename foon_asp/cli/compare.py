@@ -111,7 +111,7 @@ def command(
     if all_makeable:
         goals = makeable(question.problem((0,), containers, everything=True))
     else:
-        goals = question.each_goal(goals_named)
+        goals = list(dict.fromkeys(question.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     if charts and len(goals) > _CHARTED:

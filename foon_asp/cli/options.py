@@ -36,10 +36,10 @@ _DATA_OPTIONS = (
         metavar="FILE|DIR|STORE",
         help="FOON text or JSON, repeatable; or one store.",
     ),
-    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand (JSON)."),
+    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand: JSON, or FOON objects."),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
-    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name (JSON)."),
+    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name, likewise."),
     click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
 )
 

@@ -6,11 +6,14 @@ import click
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
+from foon_asp.cli.certify import expiry, find_certificate, write_certificate
+from foon_asp.cli.cross_check import check_across, checkable
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives, reach
 from foon_asp.report import answer
+from foon_asp.report.certified import certificate_lines
 
 
 @click.command("solve")
@@ -20,6 +23,18 @@ from foon_asp.report import answer
 @options.constraint_options
 @options.constant_option
 @options.time_limit_option
+@click.option(
+    "--certificate",
+    "certificate_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Also write a proof of the answer that `foon-asp verify` checks without a solver.",
+)
+@click.option(
+    "--cross-check",
+    is_flag=True,
+    help="Also ask other engines: HiGHS, and Fast Downward where it is installed.",
+)
 @options.format_option("text", "json", "foon")
 @options.data_options
 @click.argument("clingo_options", nargs=-1, type=click.UNPROCESSED, metavar="[-- CLINGO OPTIONS]")
@@ -31,6 +46,8 @@ def command(
     encodings: Path | None,
     constants: tuple[str, ...],
     time_limit: float | None,
+    certificate_file: Path | None,
+    cross_check: bool,
     format_: str,
     clingo_options: tuple[str, ...],
     **data: object,
@@ -50,12 +67,21 @@ def command(
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
     problem = question.problem(
-        question.goals(goals_named), containers, everything=bool(constraints or encodings)
+        question.goals(goals_named),
+        containers,
+        everything=bool(constraints or encodings or certificate_file or cross_check),
     )
     settings = Settings(constraints, encodings, constants, clingo_options, time_limit)
+    expired = expiry(time_limit)
+    covered = checkable(settings) if cross_check else None
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
     outcome.seconds["read"] = question.read_seconds
+    remarks: list[str] = []
+    if certificate_file is not None:
+        outcome, certificate = find_certificate(outcome, settings, expired)
+        write_certificate(certificate, certificate_file)
+        remarks = certificate_lines(outcome, certificate, str(certificate_file))
     render = {"text": answer.outcome_text, "json": answer.outcome_json, "foon": answer.outcome_foon}[format_]
     click.echo(render(outcome), nl=False)
     if format_ == "text" and outcome.status is Status.INFEASIBLE:
@@ -63,4 +89,8 @@ def command(
             click.echo(line)
     if format_ != "text" and outcome.status is not Status.OPTIMAL:
         click.echo(answer.headline(outcome), err=True)
+    if covered is not None:
+        remarks += check_across(outcome, covered, time_limit)
+    for line in remarks:
+        click.echo(line, err=format_ != "text")
     return of_status(outcome.status)

@@ -17,18 +17,26 @@ from foon_asp.text import kitchen_nodes
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|DIR]...")
 @options.format_option("text", "json")
 @options.network_options
-def command(paths: tuple[Path, ...], format_: str, network: tuple[Path, ...], **data: Any) -> ExitCode:
+def command(
+    paths: tuple[Path, ...], format_: str, folder: Path | None, network: tuple[Path, ...], **data: Any
+) -> ExitCode:
     """Count what is in a network, at the levels 1 to 3 of detail.
 
     \b
-    foon-asp stats recipes/
-    foon-asp stats --data my_foon --format json
+    foon-asp stats                           the bundled kitchen
+    foon-asp stats my_foon                   a folder of data, or of recipes
+    foon-asp stats one.txt two.json more/    networks, together
 
     Units, object nodes, motions, states; how many units make each node; cycles, parts, depth, and what is
     out of reach from the kitchen (or, without one, from all that no unit makes); the most connected objects.
     Level 2 leaves contents away, level 1 keeps labels. docs/levels.md says exactly what is counted.
+
+    A folder that is all that is named is read as with --data: with its kitchen, if it has one.
     """
-    question = options.read_question(network=(*paths, *network), level=3, kitchen_expected=False, **data)
+    networks = (*paths, *network)
+    if len(paths) == 1 and paths[0].is_dir() and folder is None and not network:
+        folder, networks = paths[0], ()
+    question = options.read_question(folder=folder, network=networks, level=3, kitchen_expected=False, **data)
     read = question.data
     levels = []
     for level in LEVELS:

@@ -37,7 +37,7 @@ def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
 
 
 def network_at_level(network: Network, level: int) -> Network:
-    """Give a level-3 network at a level: numbered anew, with ``detailed`` and ``stands_for`` set.
+    """Give a level-3 network at a level: numbered anew, and knowing what its units and nodes stand for.
 
     Sources of all units that have become one are kept. Raises :class:`ValueError` when the network is not
     of level 3 or there is no such level.
@@ -58,4 +58,14 @@ def network_at_level(network: Network, level: int) -> Network:
         if merged == len(stands_for):
             stands_for.append([])
         stands_for[merged].append(unit)
-    return replace(builder.build(), level=level, detailed=network, stands_for=tuple(map(tuple, stands_for)))
+    merged_network = builder.build()
+    objects: dict[ObjectNode, list[int]] = {node: [] for node in merged_network.objects}
+    for o, node in enumerate(nodes):
+        objects[node].append(o)
+    return replace(
+        merged_network,
+        level=level,
+        detailed=network,
+        stands_for=tuple(map(tuple, stands_for)),
+        objects_stand_for=tuple(map(tuple, objects.values())),
+    )

@@ -23,8 +23,8 @@ class Network:
     ids used in facts, answers and messages. ``inputs[u]`` and ``outputs[u]`` are the node ids of unit
     ``u``; ``sources[u]`` lists where each copy of it was read. Build one with :class:`NetworkBuilder`.
 
-    A network below ``level`` 3 has the level-3 network it was made from in ``detailed``, and in
-    ``stands_for[u]`` the ids there of the units that ``u`` stands for.
+    A network below ``level`` 3 has the level-3 network it was made from in ``detailed``. ``stands_for[u]``
+    are the ids there of the units that ``u`` stands for, ``objects_stand_for[o]`` those of the nodes.
 
     A network may be a part of a greater one, of which the rest was not read: ``unit_numbers`` and
     ``object_numbers`` are then the ids in the whole, which rise as the ids here do and are the ones to show.
@@ -41,6 +41,7 @@ class Network:
     level: int = 3
     detailed: "Network | None" = field(default=None, repr=False)
     stands_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
+    objects_stand_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
     unit_numbers: tuple[int, ...] = field(default=(), repr=False)
     object_numbers: tuple[int, ...] = field(default=(), repr=False)
 

@@ -97,16 +97,22 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
 
 
 def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
-    """Give the labels that most units have among their inputs and outputs, with the number of such units."""
+    """Give the labels that most units have among their inputs and outputs, with the number of such units.
+
+    Of labels with as many units the first in the alphabet comes first.
+    """
     found: Counter[str] = Counter()
     objects = network.objects
     for inputs, outputs in zip(network.inputs, network.outputs, strict=True):
         found.update({objects[node].label for node in (*inputs, *outputs)})
-    return found.most_common(shown)
+    return sorted(found.items(), key=lambda label: (-label[1], label[0]))[:shown]
 
 
 def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:
-    """Give the object nodes that most units touch: id, units that need it, units that make it."""
+    """Give the object nodes that most units touch: id, units that need it, units that make it.
+
+    Of nodes with as many units the one that was read first comes first.
+    """
     sizes = [
         (len({*users, *makers}), -node)
         for node, (users, makers) in enumerate(zip(network.consumers, network.producers, strict=True))

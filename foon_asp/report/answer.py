@@ -4,9 +4,9 @@ import json
 from collections.abc import Iterator
 from fractions import Fraction
 
-from foon_asp.asp import Outcome, Status
+from foon_asp.asp import Outcome, Proof, Status
 from foon_asp.network import Network
-from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.text import write_units
 
 
@@ -61,11 +61,18 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
     return {
         "goal": " + ".join(goals),
         "goals": goals,
+        **goals_stand_for_json(problem),
         "containers": str(problem.containers),
         "level": problem.network.level,
         "objective": [str(objective) for objective in outcome.objectives],
         "encodings": None if outcome.encodings is None else str(outcome.encodings),
         "status": str(outcome.status),
+        "proof": None if outcome.proof is None else str(outcome.proof),
+        "proof_by_objective": {
+            str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else Proof.SOLVER)
+            for objective in levels(outcome.objectives)
+            if outcome.status is Status.OPTIMAL
+        },
         "costs": costs_json(outcome.costs),
         "lower_bound": {
             str(objective): fraction_json(Fraction(bound)) if objective is Objective.SUCCESS else bound
@@ -90,9 +97,7 @@ def outcome_foon(outcome: Outcome) -> str:
 def outcome_text(outcome: Outcome) -> str:
     """Give an outcome for people: what was proved, and the steps with where each input comes from."""
     problem = outcome.problem
-    objects = problem.network.objects
-    goals = "\n".join(f"goal: {objects[o]}" for o in problem.goals)
-    lines = [goals, headline(outcome)]
+    lines = [*goal_lines(problem), headline(outcome)]
     if outcome.status is Status.FEASIBLE:
         lines.append(_bound_line(outcome))
     if outcome.units is not None:
@@ -102,6 +107,31 @@ def outcome_text(outcome: Outcome) -> str:
         else:
             lines.append("the kitchen already holds it: nothing to do")
     return "\n".join(lines) + "\n"
+
+
+def goal_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
+    """Name the goals; below level 3 with the level-3 nodes that each stands for."""
+    network = problem.network
+    for goal in problem.goals:
+        yield f"goal: {network.objects[goal]}"
+        if network.detailed is None:
+            continue
+        details = network.objects_stand_for[goal]
+        yield f"  stands for {_count(len(details), 'object node')} at level 3:"
+        yield from (f"    {network.detailed.objects[detail]}" for detail in details[:shown])
+        if len(details) > shown:
+            yield f"    ... and {len(details) - shown} more; --format json lists all"
+
+
+def goals_stand_for_json(problem: Problem) -> dict[str, object]:
+    """Give, below level 3 alone, the level-3 nodes that each goal stands for."""
+    network = problem.network
+    if network.detailed is None:
+        return {}
+    objects = network.detailed.objects
+    return {
+        "goals_stand_for": [[str(objects[o]) for o in network.objects_stand_for[g]] for g in problem.goals]
+    }
 
 
 def headline(outcome: Outcome) -> str:
@@ -166,12 +196,14 @@ def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
 
 
 def _details(network: Network, unit: int, shown: int = 5) -> Iterator[str]:
-    """Say which level-3 units a step stands for."""
-    if network.detailed is None:
+    """Say which level-3 units a step stands for: id, first place, and the whole unit."""
+    detailed = network.detailed
+    if detailed is None:
         return
     details = network.stands_for[unit]
     yield f"     stands for {_count(len(details), 'unit')} at level 3:"
-    yield from (f"       {detail}: {network.detailed.unit(detail)}" for detail in details[:shown])
+    for detail in details[:shown]:
+        yield f"       {detail}    [{detailed.sources[detail][0]}]  {detailed.unit(detail)}"
     if len(details) > shown:
         yield f"       ... and {len(details) - shown} more; --format json lists all"
 

@@ -1,6 +1,7 @@
 """What is in a network, for people and for programs."""
 
 import json
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 
@@ -48,8 +49,11 @@ def statistics_text(network: Network, levels: Sequence[Statistics], from_kitchen
     """Give a table with a column for each level, and what is most connected at level 3."""
     hand = "from the kitchen" if from_kitchen else "from the nodes that no unit makes; no kitchen is given"
     headings = {"reach": f"reach {hand}"}
-    copies, files, videos = _origins(network)
-    lines = [f"{copies:,} units read from {_count(files, 'file')}, {_count(videos, 'source video')}"]
+    files, videos = _origins(network)
+    copies = sum(files.values())
+    lines = [
+        f"{copies:,} units read from {_count(len(files), 'file')}, {_count(len(videos), 'source video')}"
+    ]
     lines.append(f"{copies - len(network):,} of them are copies of others")
     lines += ["", _row("at level", [str(s.level) for s in levels])]
     heading = ""
@@ -67,17 +71,23 @@ def statistics_text(network: Network, levels: Sequence[Statistics], from_kitchen
         f"  {users:>7,} {makers:>7,}  {network.objects[node]}"
         for node, users, makers in most_connected_objects(network, _SHOWN)
     ]
+    if len(files) > 1:
+        lines += ["", "most units: files"]
+        lines += [f"  {number:>7,}  {file}" for file, number in files.most_common(_SHOWN)]
+        if len(files) > _SHOWN:
+            lines.append(f"  ... and {_count(len(files) - _SHOWN, 'file')} more; --format json lists all")
     return "\n".join(lines) + "\n"
 
 
 def statistics_json(network: Network, levels: Sequence[Statistics], from_kitchen: bool) -> str:
     """Give the same as JSON."""
-    copies, files, videos = _origins(network)
+    files, videos = _origins(network)
+    copies = sum(files.values())
     result = {
         "units_read": copies,
         "copies": copies - len(network),
-        "files": files,
-        "videos": videos,
+        "files": [{"file": file, "units": number} for file, number in files.items()],
+        "videos": list(videos),
         "reached_from": "kitchen" if from_kitchen else "not made",
         "levels": [asdict(statistics) for statistics in levels],
         "most_connected_labels": [
@@ -91,10 +101,11 @@ def statistics_json(network: Network, levels: Sequence[Statistics], from_kitchen
     return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
 
 
-def _origins(network: Network) -> tuple[int, int, int]:
+def _origins(network: Network) -> tuple[Counter[str], tuple[str, ...]]:
+    """Count the units of each file, copies included, and list the videos they come from."""
     sources = [source for copies in network.sources for source in copies]
-    videos = {video for source in sources for video in source.videos}
-    return len(sources), len({source.file for source in sources}), len(videos)
+    videos = dict.fromkeys(video for source in sources for video in source.videos)
+    return Counter(source.file for source in sources), tuple(videos)
 
 
 def _row(name: str, figures: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_
 from foon_asp.text.dialect import Dialect
 from foon_asp.text.folder_files import FolderFile, foon_files
 from foon_asp.text.formatter import Change, Formatted, format_text
-from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes
+from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, near_labels
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
@@ -52,6 +52,7 @@ __all__ = [
     "kitchen_nodes",
     "listed_nodes",
     "merged_text",
+    "near_labels",
     "network_files",
     "parse_node",
     "read_data",

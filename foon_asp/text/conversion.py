@@ -254,10 +254,9 @@ class Converter:
 
     def _object_back(self, text: str) -> ObjectBlock:
         if self._is_list:
-            errors: list[Diagnostic] = []
-            found = _listed_json(f"[{text}]", "", errors)
-            if errors:
-                raise CannotHoldError(errors[0].message)
+            diagnostics: list[Diagnostic] = []
+            found = _listed_json(f"[{text}]", "", diagnostics)
+            _raise_first_error(diagnostics)
             return found[0]
         return self._unit_back(text, '"x"').inputs[0]
 
@@ -265,14 +264,20 @@ class Converter:
         text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
         diagnostics: list[Diagnostic] = []
         found = list(read_json_units(text, "", diagnostics, lenient=False))
-        if diagnostics:
-            raise CannotHoldError(diagnostics[0].message)
+        _raise_first_error(diagnostics)
         return found[0]
 
     def _cannot_hold(self, problem: CannotHoldError, source: Source) -> None:
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message = f"{self.target} cannot hold this: {problem}" + ("; left out" if self.lenient else "")
         self.diagnostics.append(Diagnostic(severity, "cannot-hold", message, source))
+
+
+def _raise_first_error(diagnostics: list[Diagnostic]) -> None:
+    """Refuse what cannot be read back; what is only in doubt there was so before, or counts as lost."""
+    for diagnostic in diagnostics:
+        if diagnostic.severity is Severity.ERROR:
+            raise CannotHoldError(diagnostic.message)
 
 
 class _Tally:

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from foon_asp.network import Contents, Relation
 from foon_asp.text.conversion_times import MotionFields, in_two_fields
-from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
+from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine, is_number
 
 
 class Loss(StrEnum):
@@ -79,7 +79,7 @@ def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Lo
         elif field == "!":
             yield Loss.GOAL_MARKS
         else:
-            yield Loss.CATEGORIES if index and field.isdecimal() else Loss.FIELDS
+            yield Loss.CATEGORIES if index and is_number(field) else Loss.FIELDS
 
 
 def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:

@@ -1,5 +1,6 @@
 """A folder of FOON data and the pieces it is made of."""
 
+import re
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -16,6 +17,7 @@ from foon_asp.text.reader import FoonReader
 _RATES, _UTENSILS = "motion.txt", "utensils.txt"
 # In JSON or as FOON text, the first that is there.
 _KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
+_OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
 _SIDE_TABLES = {_RATES, _UTENSILS, *_KITCHENS, *_GOALS}
 
 
@@ -97,15 +99,23 @@ def network_files(path: Path) -> list[Path]:
         return [path]
     if (path / "FOON.txt").is_file():
         return [path / "FOON.txt"]
-    files = sorted(
-        file
-        for file in path.iterdir()
-        if file.suffix in {".txt", ".json"} and file.name not in _SIDE_TABLES and file.name[0] != "."
-    )
+    files = sorted(file for file in path.iterdir() if file.name not in _SIDE_TABLES and _may_be_network(file))
     if not files:
         expected = "a folder with FOON.txt or other networks (*.txt, *.json)"
         raise UserError(f"{path}: expected {expected}, found none")
     return files
+
+
+def _may_be_network(file: Path) -> bool:
+    """Whether a name is that of a network; JSON is written for many things, so it has to name an object."""
+    if file.name[0] == "." or not file.is_file():
+        return False
+    if file.suffix == ".json":
+        try:
+            return _OBJECT_KEY.search(file.read_bytes()) is not None
+        except OSError as error:
+            raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+    return file.suffix == ".txt"
 
 
 def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:

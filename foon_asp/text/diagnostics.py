@@ -11,10 +11,14 @@ _SHOWN = 40
 
 
 class Severity(StrEnum):
-    """How bad it is: an error stops the reading, a warning says what was assumed."""
+    """How bad it is: an error stops the reading, a warning says what was assumed.
+
+    Notes come from linting alone: what is worth a look, and may be meant.
+    """
 
     ERROR = "error"
     WARNING = "warning"
+    NOTE = "note"
 
 
 class Diagnostic(NamedTuple):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 
 _LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
 
 
@@ -45,6 +46,8 @@ def _is_foon(file: Path, within: Path) -> bool:
         return False
     sign = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
     try:
-        return sign is not None and sign.search(file.read_bytes()) is not None
+        content = file.read_bytes() if sign else b""
     except OSError as error:
         raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+    # one in UTF-16 is not read, but whoever reads the folder has to be told
+    return sign is not None and (sign.search(content) is not None or content[:2] in _UTF_16)

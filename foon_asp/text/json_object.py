@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.network import Contents, Relation
 from foon_asp.text.json_list import JsonNumber
-from foon_asp.text.line import LineError, ObjectLine, StateLine, read_state
+from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number, read_state
 
 # The names that say the same, and which of them are read at all.
 _LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
@@ -19,13 +19,13 @@ _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 class JsonObject(NamedTuple):
     """An object node as an object line and state lines, and the container that is named without a word.
 
-    ``left_out`` says in words what the node has that lines have no place for.
+    ``remarks`` say in words what was mended, and what the node has that lines have no place for.
     """
 
     line: ObjectLine
     states: tuple[StateLine, ...]
     container: str | None
-    left_out: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 def read_object(value: object) -> JsonObject:
@@ -51,13 +51,20 @@ def read_object(value: object) -> JsonObject:
         states = _with_contents(states, ingredients)
     container = optional_name(value.get("container"), "container")
     line = ObjectLine(label, number(value, "object_id"), _fields(value))
-    return JsonObject(line, tuple(states), container, tuple(_left_out(value)))
+    remarks = (remark.message for state in states for remark in state.remarks)
+    plain = tuple(state._replace(remarks=()) for state in states)
+    return JsonObject(line, plain, container, (*remarks, *_left_out(value)))
 
 
 def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
-    """Give the first of several keys that an object has, and its value; else the first key and ``None``."""
-    key = next((key for key in keys if key in value), keys[0])
-    return key, value.get(key)
+    """Give the one of several keys that an object has, and its value; else the first key and ``None``.
+
+    Raises :class:`ValueError` when it has two of them.
+    """
+    here = [key for key in keys if key in value] or [keys[0]]
+    if len(here) > 1:
+        raise ValueError(f"found both {here[0]!r} and {here[1]!r}, expected one of them")
+    return here[0], value.get(here[0])
 
 
 def optional_name(value: object, key: str) -> str | None:
@@ -72,7 +79,7 @@ def number(value: dict[str, object], key: str) -> str:
     """Give the digits of a number, which may be written as text; empty where there is none."""
     found = value.get(key)
     written = found.text if isinstance(found, JsonNumber) else found
-    if isinstance(written, str) and written.isdecimal():
+    if isinstance(written, str) and is_number(written):
         return written
     if found in (None, "", "None"):
         return ""
@@ -94,12 +101,14 @@ def _state(value: object) -> StateLine:
         key, found = first_of(value, _STATE_LABEL)
         state = _state(_name(found, key))
         related = optional_name(first_of(value, _RELATED)[1], _RELATED[0])
-        if related and isinstance(state.attribute, str):
+        if related:
+            if not isinstance(state.attribute, str):
+                raise ValueError(f"found the related object {related!r} besides the one in {_shown(found)}")
             state = state._replace(attribute=Relation(state.attribute, related))
         return state._replace(id=number(value, "state_id"))
     name = _name(value, "states", "a name").strip(" ")
     try:
-        return read_state(name)._replace(remarks=())
+        return read_state(name)
     except LineError as error:
         raise ValueError(f"found the state {_shown(name)}: at its column {error.column}, {error}") from None
 
@@ -114,11 +123,17 @@ def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> lis
 
 
 def _left_out(value: dict[str, object]) -> Iterator[str]:
-    if value.get("has_portions") not in {None, False, "False", ""}:
+    flag = number(value, "object_in_motion")
+    if flag not in {"", *MOTION_FLAGS}:
+        yield f"the motion flag {flag!r} is not 0 or 1"
+    category = number(value, "recipe_category")
+    if category and not flag:
+        yield f"the recipe category {category!r} stands without a motion flag"
+    if value.get("has_portions") not in (None, False, "False", ""):
         yield "has_portions left out: FOON text has no place for it"
     for ingredient in _list(value, "ingredients", value.get("ingredients")):
-        if isinstance(ingredient, dict) and read_object(ingredient).states:
-            yield "states of ingredients left out: only their labels count"
+        if isinstance(ingredient, dict) and any(read_object(ingredient)[1:3]):
+            yield "states and containers of ingredients left out: only their labels count"
 
 
 def _ingredient(value: object) -> str:
@@ -145,4 +160,8 @@ def _name(value: object, key: str, expected: str = "a name") -> str:
 def _shown(value: object) -> str:
     if isinstance(value, JsonNumber):
         return value.text[:40]
-    return json.dumps(value, default=str)[:40]
+    return json.dumps(value, default=_plain_number)[:40]
+
+
+def _plain_number(value: JsonNumber) -> object:
+    return json.loads(value.text) if len(value.text) < 20 else value.text

@@ -12,8 +12,9 @@ from foon_asp.network import Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import number, optional_name, read_object
-from foon_asp.text.line import MotionLine, StateLine
+from foon_asp.text.line import MotionLine, StateLine, is_rate
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.motion_times import is_time
 
 _KEYS = {"input_nodes", "motion_node", "output_nodes"}
 _LABELS = {"label", "object_label"}
@@ -93,8 +94,8 @@ def _side(unit: dict[str, object], key: str, source: Source, remarks: list[str])
         raise ValueError(f'found no list as "{key}", expected a list of objects')
     blocks = []
     for value in objects:
-        line, states, container, left_out = read_object(value)
-        remarks += left_out
+        line, states, container, said = read_object(value)
+        remarks += said
         if container is not None and not any(_names(state, container) for state in states):
             states = (*states, StateLine(Relation("in", container)))
         blocks.append(ObjectBlock(line, states, source))
@@ -115,11 +116,16 @@ def _motion(value: object, remarks: list[str]) -> MotionLine:
         raise ValueError("found a motion without a label, expected a name")
     composite = label.endswith("*") and label.strip("* ") != ""
     start, end = (optional_name(value.get(key), key) for key in ("start_time", "end_time"))
+    remarks += [
+        f"{time!r} is not a time (m:ss or Assumed)" for time in (start, end) if time and not is_time(time)
+    ]
     fields = [time for time in (start or (end and "Assumed"), end) if time]
     rate = value.get("weight_success")
     rate = rate.text if isinstance(rate, JsonNumber) else optional_name(rate, "weight_success")
     entity = optional_name(value.get("robot_type"), "robot_type")
     if rate is not None:
+        if not is_rate(rate):
+            raise ValueError(f'found {rate[:40]!r} as "weight_success", expected a rate from 0 to 1')
         if entity is None:
             remarks.append(f"the success rate {rate} is of no robot_type; read as that of Robot")
         fields += [entity or "Robot", rate]

@@ -48,7 +48,7 @@ class ObjectLine(NamedTuple):
     def category(self) -> str | None:
         """The recipe category of a goal, a number, where the line has one."""
         fields = self.fields if self.motion_flag is None else self.fields[1:]
-        return next((field for field in fields if field.isdecimal() and field not in _SLIPPED_FLAGS), None)
+        return next((field for field in fields if is_number(field) and field not in _SLIPPED_FLAGS), None)
 
 
 class StateLine(NamedTuple):
@@ -142,7 +142,7 @@ def parse_node(notation: str) -> ObjectNode:
 
     Raises :class:`LineError` when the grammar does not accept it.
     """
-    return cast(ObjectNode, _parse("node", re.sub(r"(?<=[\]}]) +(?=;|$)", "", notation).rstrip(" ")))
+    return cast(ObjectNode, _parse("node", notation.rstrip(" ")))
 
 
 def read_state(text: str) -> StateLine:
@@ -150,10 +150,15 @@ def read_state(text: str) -> StateLine:
 
     Raises :class:`LineError`, with the column in ``text``, when the grammar does not accept it.
     """
+    for column, letter in enumerate(text, 1):
+        if letter in "\t\r\n":
+            raise LineError(column, repr(letter), ("a name", "[object]", "{ingredient,ingredient}"))
     try:
-        return cast(StateLine, parse_line(re.sub(r" *(?=[\[{])", "\t", f"S\t{text}", count=1)))
+        line = cast(StateLine, parse_line(f"S\t{text}"))
     except LineError as error:
         raise LineError(max(1, error.column - 2), error.found, error.expected) from None
+    # between a word and its bracket, a JSON file has a blank where FOON text has a tab
+    return line._replace(remarks=tuple(r for r in line.remarks if r.code != "space-for-tab"))
 
 
 class _LineBuilder(Transformer[Token, object]):
@@ -226,7 +231,8 @@ class _LineBuilder(Transformer[Token, object]):
         bracket, what = ("{%s}", "a list") if "," in name or word == "contains" else ("[%s]", "an object")
         shown = bracket % name.rstrip("]}")
         remarks.append(Remark(column, "bracket", f"{name!r} is not in brackets; read as {what}, {shown}"))
-        return _bracketed(word, Token("BARE", shown, column=column), id_, remarks)
+        # the first item stands where the remark says, behind a bracket that is not there
+        return _bracketed(word, Token("BARE", shown, column=column - 1), id_, remarks)
 
     def related(self, tokens: list[Token]) -> StateLine:
         remarks: list[Remark] = []
@@ -240,25 +246,35 @@ class _LineBuilder(Transformer[Token, object]):
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
         label, *notes = (part for part in parts if not isinstance(part, Token) or part.type == "NAME")
         return ObjectNode(
-            str(label).strip(" "),
+            _unquoted(label),
             frozenset(note for note in notes if isinstance(note, str)),
             frozenset(note for note in notes if isinstance(note, Relation)),
             tuple(sorted(note for note in notes if isinstance(note, Contents))),
         )
 
     def note_plain(self, tokens: list[Token]) -> str:
-        return tokens[0].strip(" ")
+        return _unquoted(tokens[0])
 
     def note_related(self, tokens: list[Token]) -> str | Relation | Contents:
         word, bracket = tokens
-        return _bracketed(word.strip(" "), Token(bracket.type, bracket.strip("\t ")), "", []).attribute
+        return _bracketed(_unquoted(word), Token(bracket.type, bracket.strip("\t ")), "", []).attribute
 
     note_holding = note_related
 
 
+def _unquoted(name: object) -> str:
+    """Give a name as it is from how it is written in the notation."""
+    return re.sub(r"\\([;\\])", r"\1", str(name).strip(" "))
+
+
+def is_number(field: str) -> bool:
+    """Whether a field is a number such as an id: digits, of the Latin script."""
+    return field.isascii() and field.isdigit()
+
+
 def is_rate(field: str) -> bool:
     """Whether a field of a motion line is a success rate, a decimal from 0 to 1: ``0.85``."""
-    return re.fullmatch(r"0?\.\d+|[01]|[01]\.\d*", field) is not None
+    return re.fullmatch(r"0(\.[0-9]*)?|\.[0-9]+|1(\.0*)?", field) is not None
 
 
 def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
@@ -304,7 +320,7 @@ def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Re
     elif flag not in MOTION_FLAGS and flag != "!":
         remarks.append(_remark(places[0], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
     for field, place in zip(fields[1:], places[1:], strict=True):
-        if not field.isdecimal() and field != "!":
+        if not is_number(field) and field != "!":
             message = f"{field!r} is neither a category nor the goal mark !"
             remarks.append(_remark(place, "unknown-field", message, 1))
     return fields
@@ -429,7 +445,9 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
         names = set(error.expected)
     if in_file:
         names.discard("$END")  # a line ends by its newline
-    rest = text[column - 1 :].removesuffix("\n")
+    rest = text[column - 1 :]
+    if in_file:
+        rest = rest.removesuffix("\n")
     found = "the end of the line"
     if rest:
         found = repr(rest if len(rest) <= 24 else rest[:24] + "...")

@@ -4,7 +4,9 @@ import re
 
 _CLOCK = r"\d+:\d\d(?::\d\d)?"
 _SPAN = rf"{_CLOCK}(?: ?- ?{_CLOCK})?"
-_TIME = re.compile(rf"assumed|{_CLOCK}|<assumed(?:, ?assumed)?>|<{_SPAN}(?:, ?{_SPAN})*>", re.IGNORECASE)
+_TIME = re.compile(
+    rf"assumed|{_CLOCK}|<assumed(?:, ?assumed)?>|<{_SPAN}(?:, ?{_SPAN})*>", re.IGNORECASE | re.ASCII
+)
 
 
 def is_time(field: str) -> bool:

@@ -34,7 +34,9 @@ def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> li
     entries: list[ListedObject] = []
     for value, source in elements:
         try:
-            line, states, container, _ = read_object(value)
+            line, states, container, remarks = read_object(value)
+            if warnings is not None:
+                warnings += [Diagnostic(Severity.WARNING, "json-value", text, source) for text in remarks]
             entries.append(ListedObject(_pattern(line.label, states, container), source))
         except ValueError as problem:
             elements.error(source, str(problem))

@@ -11,7 +11,7 @@ from foon_asp.network import Source
 
 _VIDEO = "# Source:"
 _COPY = "# From:"
-_COPY_LINE = re.compile(r"# From:[\t ]*([^\t]+?):(\d{1,9})((?:\t[^\t]*)*)")
+_COPY_LINE = re.compile(r"# From:[\t ]*([^\t]+?):(\d{1,9})((?:\t[^\t]*)*)", re.ASCII)
 
 
 def read_video(comment: str) -> str | None:

@@ -1,6 +1,7 @@
 """Reading FOON files into a network: FOON text of every dialect, and JSON."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, cast
 
@@ -171,19 +172,20 @@ class _FileReading:
         self.text = text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
         self.videos: tuple[str, ...] = ()
         self.header_open = True  # further "# Source:" lines add to the videos until a unit comes between
-        self.rejected = 0  # how often something was, so far
         self.start = 0  # of the piece being read, in the text
         self.looked_ahead = 0  # how far new lines have been parsed
         self.lines: list[str] = []  # of that piece, when it is read line by line
         self.number = 1  # of its first line
         self.objects: list[ObjectBlock] = []  # of units without a motion
         self.is_object_list = False
+        self.pieces = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
         for chunk, number, last in self._chunks():
             unit = None if last else self._look_up(chunk, number)
             if unit:
                 self.header_open = False
+                self.pieces += 1
                 yield unit
             else:
                 yield from map(_identity, self._line_by_line(chunk, number, last))
@@ -194,12 +196,8 @@ class _FileReading:
 
     def object_blocks(self) -> list[ObjectBlock]:
         self.is_object_list = True
-        for unit in self.listed_units():
-            source = unit.motion_source
-            message = "found a motion, expected a list of objects without motions"
-            self.reader.diagnostics.append(
-                Diagnostic(Severity.ERROR, "motion-in-list", message, source, write_line(unit.motion))
-            )
+        for _ in self.listed_units():
+            pass
         return self.objects
 
     def _chunks(self) -> Iterator[tuple[str, int, bool]]:
@@ -223,9 +221,12 @@ class _FileReading:
     def _look_up(self, chunk: str, number: int) -> ReadUnit | None:
         """Read a unit by its object blocks; ``None`` when one of them cannot be taken as it is."""
         first, sources = number, []
-        while chunk[:1] == "#" and (copy := read_copy(chunk[: chunk.find("\n")])):
+        while chunk[:1] == "#":
+            comment, line_end, chunk = chunk.partition("\n")
+            copy = read_copy(comment)
+            if not copy or not line_end:
+                return None
             sources.append(copy)
-            chunk = chunk[chunk.find("\n") + 1 :]
             first += 1
         if chunk[:1] != "O":
             return None
@@ -282,9 +283,9 @@ class _FileReading:
                 self.videos = (*(self.videos if self.header_open else ()), *([video] if video else []))
                 self.header_open = True
             elif first == "/" and line.rstrip(" \t") == "//":
+                unit = self._unit(start, index, closed=True)
                 if line != "//":
                     self._warn("outer-space", "blanks after // left out", index, 3, "//")
-                unit = self._unit(start, index, closed=True)
                 if unit:
                     self.header_open = False
                     yield unit
@@ -300,92 +301,91 @@ class _FileReading:
 
     def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
         """Read the lines between two separators; ``None`` when they hold no unit."""
-        motions: list[tuple[int, MotionLine]] = []
-        inputs: list[ObjectBlock] = []
-        outputs: list[ObjectBlock] = []
-        copies: list[Source] = []
-        states: list[StateLine] | None = None  # under the object line at hand; None before the first
-        first_line = -1
-        rejected_before = self.rejected, self.reader.left_out
+        piece = _Piece(end, closed, self.reader.left_out)
         for index in range(start, end):
             line = self.lines[index]
             letter = line[:1]
             if letter == "#":
                 copy = read_copy(line)
-                copies += [copy] if copy else []
-                continue
-            if not letter or line.isspace():
-                continue
-            if first_line < 0:
-                first_line = index
-            parsed = self.reader.parse(line)
-            if isinstance(parsed, LineError):
-                self._reject("syntax", str(parsed), index, parsed.column)
-                if letter == "O":
-                    states = []  # of an object that cannot be read: lost with it
-                continue
-            self._remark(parsed, index)
-            if isinstance(parsed, StateLine):
-                if states is None:
-                    message = "found a state line, expected an object line before it"
-                    self._reject("state-without-object", message, index)
-                else:
-                    states.append(parsed)
-            elif isinstance(parsed, ObjectLine):
-                states = []
-                side = outputs if motions else inputs
-                side.append(ObjectBlock(parsed, cast(tuple[StateLine, ...], states), self._place(index)))
-            else:
-                states = None
-                motions.append((index, parsed))
-                if len(motions) > 1:
-                    message = "found a second motion in one unit, expected an object line or //"
-                    self._reject("second-motion", message, index)
-        if first_line < 0:
+                piece.copies += [copy] if copy else []
+            elif letter and not line.isspace():
+                if piece.first < 0:
+                    piece.first = index
+                self._line(piece, index)
+        if piece.first < 0:
             return None
-        if len(motions) != 1 or not inputs:
-            self._no_unit(first_line, end, closed, len(motions), inputs, rejected_before)
+        self.pieces += 1
+        if self.is_object_list:
+            self.objects += _settled(piece.inputs + piece.outputs)
             return None
-        index, motion = motions[0]
-        if not outputs:
-            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", first_line)
-        sources = tuple(copies) or (self._place(first_line)._replace(videos=self.videos),)
-        return ListedUnit(motion, _settled(inputs), _settled(outputs), sources, self._place(index))
+        if len(piece.motions) != 1 or not piece.inputs:
+            self._no_unit(piece)
+            return None
+        index, motion = piece.motions[0]
+        if not piece.outputs:
+            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", piece.first)
+        sources = tuple(piece.copies) or (self._place(piece.first)._replace(videos=self.videos),)
+        return ListedUnit(
+            motion, _settled(piece.inputs), _settled(piece.outputs), sources, self._place(index)
+        )
 
-    def _no_unit(
-        self,
-        first_line: int,
-        end: int,
-        closed: bool,
-        motions: int,
-        objects: list[ObjectBlock],
-        before: tuple[int, int],
-    ) -> None:
-        """Say that lines are no unit, unless an error among them already says why."""
-        rejected, left_out = before
-        if not motions:
-            self.objects += _settled(objects)
-        if self.is_object_list or (self.rejected > rejected and not self.reader.lenient):
+    def _line(self, piece: "_Piece", index: int) -> None:
+        """Put a line where it belongs, or say why it belongs nowhere."""
+        parsed = self.reader.parse(self.lines[index])
+        if isinstance(parsed, LineError):
+            self._reject("syntax", str(parsed), index, parsed.column)
+            letter = self.lines[index][0]
+            piece.lost = piece.lost or letter == "O"
+            piece.blamed = piece.blamed or letter != "S"
             return
-        lines = self.lines
-        meaningful = [i for i in range(first_line, end) if lines[i].strip() and lines[i][0] != "#"]
-        self.reader.left_out += len(meaningful) - (self.reader.left_out - left_out)
-        unit = f"the unit of line {self.number + first_line}"
-        where = end if closed else meaningful[-1]
-        found = "found //" if closed else "the file ends"
-        if motions > 1:
-            self._warn("second-motion", f"{unit} has {motions} motions; left out", first_line)
-        elif motions:
-            message = f"{found}, expected an object line before the motion: {unit} has no input objects"
-            self._warn("no-inputs", message + "; left out", first_line)
-        elif not closed and self.number + first_line == 1:
-            message = (
-                f"{len(objects)} objects and no motion: a list such as a kitchen or goals, without units"
-            )
-            self._warn("no-motion", message, first_line)
+        self._remark(parsed, index)
+        if isinstance(parsed, StateLine):
+            if piece.lost:
+                self.reader.left_out += self.reader.lenient
+            elif piece.states is None:
+                message = "found a state line, expected an object line before it"
+                self._reject("state-without-object", message, index)
+                piece.blamed = True
+            else:
+                piece.states.append(parsed)
+            return
+        piece.lost = False
+        if isinstance(parsed, ObjectLine):
+            piece.states = []
+            side = piece.outputs if piece.motions else piece.inputs
+            side.append(ObjectBlock(parsed, cast(tuple[StateLine, ...], piece.states), self._place(index)))
+            return
+        piece.states = None
+        piece.motions.append((index, parsed))
+        if self.is_object_list:
+            message = "found a motion, expected a list of objects without motions"
+            self._reject("motion-in-list", message, index)
+        elif len(piece.motions) > 1:
+            message = "found a second motion in one unit, expected an object line or //"
+            self._reject("second-motion", message, index)
+            piece.blamed = True
+
+    def _no_unit(self, piece: "_Piece") -> None:
+        """Say that lines are no unit, unless an error among them already says why."""
+        if piece.blamed and not self.reader.lenient:
+            return
+        lines, first = self.lines, piece.first
+        meaningful = [i for i in range(first, piece.end) if lines[i].strip() and lines[i][0] != "#"]
+        self.reader.left_out = piece.left_out + len(meaningful)
+        unit = f"the unit of line {self.number + first}"
+        if len(piece.motions) > 1:
+            self._warn("second-motion", f"{unit} has {len(piece.motions)} motions; left out", first)
+        elif piece.motions:
+            message = f"found a motion, expected an object line before it: {unit} has no input objects"
+            self._warn("no-inputs", message + "; left out", piece.motions[0][0])
+        elif not piece.closed and self.pieces == 1:
+            listed = "one object" if len(piece.inputs) == 1 else f"{len(piece.inputs)} objects"
+            message = f"{listed} and no motion: a list such as a kitchen or goals, without units"
+            self._warn("no-motion", message, first)
         else:
+            found = "found //" if piece.closed else "the file ends"
             message = f"{found}, expected a motion line: {unit} has no motion; left out"
-            self._warn("no-motion", message, where)
+            self._warn("no-motion", message, piece.end if piece.closed else meaningful[-1])
 
     def _place(self, index: int, column: int = 1) -> Source:
         return Source(self.file, self.number + index, column)
@@ -406,7 +406,6 @@ class _FileReading:
     def _reject(self, code: str, message: str, index: int, column: int = 1) -> None:
         """Note an error, or under ``lenient`` a warning that the line was left out."""
         reader = self.reader
-        self.rejected += 1
         severity = Severity.ERROR
         if reader.lenient:
             severity = Severity.WARNING
@@ -414,6 +413,28 @@ class _FileReading:
             reader.left_out += 1
         place = self._place(index, column)
         reader.diagnostics.append(Diagnostic(severity, code, message, place, self.lines[index]))
+
+
+@dataclass
+class _Piece:
+    """The lines between two separators, while they are read one by one; places are indices of lines.
+
+    ``states`` are those under the object line at hand, ``None`` before the first; ``lost`` says that this
+    object line cannot be read, and that the states under it go with it. ``blamed`` says that an error among
+    the lines can be why a motion or an object is missing. ``left_out`` is the count of before.
+    """
+
+    end: int
+    closed: bool
+    left_out: int
+    first: int = -1
+    motions: list[tuple[int, MotionLine]] = field(default_factory=list)
+    inputs: list[ObjectBlock] = field(default_factory=list)
+    outputs: list[ObjectBlock] = field(default_factory=list)
+    copies: list[Source] = field(default_factory=list)
+    states: list[StateLine] | None = None
+    lost: bool = False
+    blamed: bool = False
 
 
 def _settled(blocks: list[ObjectBlock]) -> tuple[ObjectBlock, ...]:

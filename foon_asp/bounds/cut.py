@@ -1,0 +1,174 @@
+"""Landmarks by cutting: sets of actions one of which every derivation of the targets uses.
+
+Take a set of objects with a target in it and nothing that is there from the start. The first action of a
+derivation that gives one of them needs none of them. So every derivation uses an action that gives an
+object of the set and needs none: those actions are a *landmark*, and the set is the *cut* that shows it.
+Bonet and Helmert (2010) bound delete-free plans by hitting landmarks of this kind.
+"""
+
+from collections.abc import Collection, Iterable
+from typing import NamedTuple
+
+from foon_asp.bounds.hypergraph import Hypergraph
+
+
+class Cut(NamedTuple):
+    """A cut and its landmark: object numbers and action numbers, both ascending."""
+
+    objects: tuple[int, ...]
+    members: tuple[int, ...]
+
+
+class Cutter:
+    """Finds cuts before the targets of a hypergraph of which some actions are forbidden.
+
+    ``targets`` that are there from the start are left out. ``actions`` are those that can run and that a
+    target can need: only they are worth asking for, and every cut found holds for all actions that are not
+    forbidden. ``hopeless`` is a cut without members where the targets cannot all be reached, or else
+    ``None``. Building one takes time linear in the size of the hypergraph.
+    """
+
+    def __init__(
+        self, graph: Hypergraph, targets: Iterable[int], forbidden: frozenset[int] = frozenset()
+    ) -> None:
+        self._graph = graph
+        self._forbidden = forbidden
+        self.targets = sorted({o for o in targets if not graph.at_start[o]})
+        ready, self._reachable = graph.reach(forbidden)
+        self.actions: list[int] = []
+        self.hopeless: Cut | None = None
+        lost = [o for o in self.targets if not self._reachable[o]]
+        if lost:
+            self.hopeless = self._shrink(lost[0], set(), bytearray(graph.size), [0] * graph.size)
+            return
+        can_run = bytearray(len(graph.needs))
+        for action in ready:
+            can_run[action] = 1
+        # what the targets can need, numbered anew: most of a large network is of no concern to them
+        self._numbers: dict[int, int] = {}
+        stack = list(self.targets)
+        for o in stack:
+            self._numbers[o] = len(self._numbers)
+        chosen: set[int] = set()
+        while stack:
+            for action in graph.makers[stack.pop()]:
+                if can_run[action] and action not in chosen:
+                    chosen.add(action)
+                    for o in graph.needs[action]:
+                        if not graph.at_start[o] and o not in self._numbers:
+                            self._numbers[o] = len(self._numbers)
+                            stack.append(o)
+        self.actions = sorted(chosen)
+        self._places = {action: place for place, action in enumerate(self.actions)}
+        numbers = self._numbers
+        self._gives = [[numbers[o] for o in set(graph.gives[a]) if o in numbers] for a in self.actions]
+        self._takers: list[list[int]] = [[] for _ in numbers]
+        self._missing = [0] * len(self.actions)
+        for place, action in enumerate(self.actions):
+            for o in {numbers[o] for o in graph.needs[action] if o in numbers}:
+                self._takers[o].append(place)
+                self._missing[place] += 1
+
+    def reached_by(self, actions: Collection[int]) -> bool:
+        """Whether these actions alone reach all targets."""
+        return _Growth(self, self._missing).admit_all(self._places[a] for a in actions if a in self._places)
+
+    def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
+        """Find a cut whose landmark holds no action of ``keep`` and few others, late ones of ``order`` first.
+
+        Grows a set of actions that does not reach the targets, ``keep`` first and then along ``order``, until
+        none can be added; what is left out and needed is the landmark. ``None`` where ``keep`` alone
+        reaches the targets, so that there is no such cut. Actions that are in neither are never members: name
+        all of :attr:`actions` in ``order``.
+        """
+        growth = _Growth(self, self._missing)
+        places = self._places
+        if growth.admit_all(places[a] for a in keep if a in places):
+            return None
+        refused: set[int] = set()
+        for action in order:
+            place = places[action]
+            if not growth.admitted[place] and not growth.admit(place):
+                refused.add(action)
+        reached = bytearray(self._reachable)
+        makers: list[int] = [0] * self._graph.size
+        for o, number in self._numbers.items():
+            reached[o] = growth.reached[number]
+            makers[o] = len(self._takers[number])
+        first = next(o for o in self.targets if not reached[o])
+        return self._shrink(first, refused, reached, makers)
+
+    def _shrink(self, target: int, members: set[int], reached: bytearray, weight: list[int]) -> Cut:
+        """Go back from an object that is not reached, only as far as is needed for the cut to hold.
+
+        Every action that is no member and gives an object of the cut has to need one of the cut, and has one
+        that is not reached; the one with the most takers is taken, which other actions need, too.
+        """
+        graph, forbidden = self._graph, self._forbidden
+        inside = {target}
+        stack = [target]
+        makers: set[int] = set()
+        while stack:
+            for action in graph.makers[stack.pop()]:
+                if action in makers or action in forbidden:
+                    continue
+                makers.add(action)
+                if action in members or not inside.isdisjoint(graph.needs[action]):
+                    continue
+                lacking = [o for o in graph.needs[action] if not reached[o] and not graph.at_start[o]]
+                o = max(lacking, key=lambda o: (not self._reachable[o], weight[o], -o))
+                inside.add(o)
+                stack.append(o)
+        landmark = sorted(a for a in makers if inside.isdisjoint(graph.needs[a]))
+        return Cut(tuple(sorted(inside)), tuple(landmark))
+
+
+class _Growth:
+    """A set of actions that is closed step by step and never reaches the targets."""
+
+    def __init__(self, cutter: Cutter, missing: list[int]) -> None:
+        self.admitted = bytearray(len(missing))
+        self._gives, self._takers = cutter._gives, cutter._takers
+        self._missing = list(missing)
+        self.reached = bytearray(len(self._takers))
+        self._left = len(cutter.targets)  # targets are the first objects by number
+        self._targets = len(cutter.targets)
+
+    def admit_all(self, places: Iterable[int]) -> bool:
+        """Admit actions; whether the targets are reached, after which the growth is of no more use."""
+        if not self._left:
+            return True
+        return not all(self.admitted[place] or self.admit(place) for place in places)
+
+    def admit(self, place: int) -> bool:
+        """Admit an action unless the targets are reached with it; whether it was admitted."""
+        admitted, missing, reached = self.admitted, self._missing, self.reached
+        admitted[place] = 1
+        if missing[place]:
+            return True
+        gives, takers, targets = self._gives, self._takers, self._targets
+        new: list[int] = []
+        stack = [place]
+        while stack:
+            for o in gives[stack.pop()]:
+                if not reached[o]:
+                    reached[o] = 1
+                    new.append(o)
+                    if o < targets:
+                        self._left -= 1
+                    for taker in takers[o]:
+                        missing[taker] -= 1
+                        if not missing[taker] and admitted[taker]:
+                            stack.append(taker)
+            if not self._left:
+                break
+        if self._left:
+            return True
+        admitted[place] = 0
+        for o in new:
+            reached[o] = 0
+            if o < targets:
+                self._left += 1
+            for taker in takers[o]:
+                missing[taker] += 1
+        return False

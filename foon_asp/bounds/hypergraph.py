@@ -1,0 +1,71 @@
+"""Actions that need objects and give objects, as plain lists of numbers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+
+@dataclass(frozen=True, eq=False)
+class Hypergraph:
+    """Actions ``0 .. len(needs) - 1`` over objects ``0 .. size - 1``.
+
+    Action ``a`` can run once every object of ``needs[a]`` is at hand, and then those of ``gives[a]`` are.
+    ``start`` lists the objects that are at hand from the beginning; no object is ever used up.
+    """
+
+    size: int
+    needs: Sequence[Sequence[int]]
+    gives: Sequence[Sequence[int]]
+    start: Sequence[int]
+
+    @cached_property
+    def at_start(self) -> bytearray:
+        """A 1 for every object that is at hand from the beginning."""
+        flags = bytearray(self.size)
+        for o in self.start:
+            flags[o] = 1
+        return flags
+
+    @cached_property
+    def makers(self) -> list[list[int]]:
+        """For each object that is not there from the start, the actions that give it."""
+        return self._owners(self.gives)
+
+    @cached_property
+    def takers(self) -> list[list[int]]:
+        """For each object that is not there from the start, the actions that need it."""
+        return self._owners(self.needs)
+
+    @cached_property
+    def missing(self) -> list[int]:
+        """For each action, how many of the objects it needs are not there from the start."""
+        at_start = self.at_start
+        return [sum(not at_start[o] for o in set(needed)) for needed in self.needs]
+
+    def _owners(self, lists: Sequence[Sequence[int]]) -> list[list[int]]:
+        at_start = self.at_start
+        owners: list[list[int]] = [[] for _ in range(self.size)]
+        for action, members in enumerate(lists):
+            for o in set(members):
+                if not at_start[o]:
+                    owners[o].append(action)
+        return owners
+
+    def reach(self, forbidden: frozenset[int] = frozenset()) -> tuple[list[int], bytearray]:
+        """Close the start under all actions but the forbidden ones, in linear time.
+
+        Gives the actions that can run, in an order in which they do, and a 1 for every object at hand then.
+        """
+        missing = list(self.missing)
+        reached = bytearray(self.at_start)
+        gives, takers = self.gives, self.takers
+        ready = [a for a, count in enumerate(missing) if not count and a not in forbidden]
+        for action in ready:  # grows while it is walked through
+            for o in gives[action]:
+                if not reached[o]:
+                    reached[o] = 1
+                    for taker in takers[o]:
+                        missing[taker] -= 1
+                        if not missing[taker] and taker not in forbidden:
+                            ready.append(taker)
+        return ready, reached

@@ -1,0 +1,67 @@
+"""The linear relaxation of hitting every landmark, in floats: where exact weights start from."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from foon_asp.errors import BugError
+
+
+class Relaxed(NamedTuple):
+    """A basic optimum: its value, the share ``x`` of every column, and its basis.
+
+    ``columns`` are the basic columns and ``rows`` the rows that hold with equality by the basis: both have
+    the same number, and the square matrix between them gives the solution and the weights of the rows.
+    """
+
+    value: float
+    x: list[float]
+    columns: list[int]
+    rows: list[int]
+
+
+class Covering:
+    """Minimize the sum of ``costs[c] * x[c]``, ``x >= 0``, with ``x`` adding up to 1 or more in every row.
+
+    Solved by HiGHS; rows are added between solutions, each of which starts from the one before.
+    """
+
+    def __init__(self, costs: Sequence[float]) -> None:
+        # ten times as long to import as all else here, so only when a bound is asked for
+        import highspy  # noqa: PLC0415
+        import numpy as np  # noqa: PLC0415
+
+        self._library, self._array = highspy, np.array
+        self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
+        for option, value in (
+            ("output_flag", False),
+            ("presolve", "off"),
+            ("solver", "simplex"),
+            ("threads", 1),
+            ("primal_feasibility_tolerance", 1e-10),
+            ("dual_feasibility_tolerance", 1e-10),
+        ):
+            self._highs.setOptionValue(option, value)
+        count = len(costs)
+        self._highs.addVars(count, np.zeros(count), np.full(count, highspy.kHighsInf))
+        self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
+
+    def add(self, row: Sequence[int]) -> None:
+        """Add a row: the columns of which at least one, or shares of several, have to be taken."""
+        np_row = self._array(row, dtype="int32")
+        ones = self._array([1.0] * len(row))
+        self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
+
+    def solve(self) -> Relaxed:
+        """Find a basic optimum of the rows so far."""
+        highs = self._highs
+        highs.run()
+        if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal:
+            raise BugError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
+        basis, solution = highs.getBasis(), highs.getSolution()
+        basic = self._library.HighsBasisStatus.kBasic
+        return Relaxed(
+            float(highs.getObjectiveValue()),
+            list(solution.col_value),
+            [c for c, status in enumerate(basis.col_status) if status == basic],
+            [r for r, status in enumerate(basis.row_status) if status != basic],
+        )

@@ -1,0 +1,166 @@
+"""Certificates: JSON that proves a tree optimal, a bound on all trees, or that there is none.
+
+docs/proofs.md describes the format. Nothing is given out that ``foon_asp.proof.verify`` does not accept.
+"""
+
+import json
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from foon_asp.bounds import CheaperError, Cut, Hopeless, Packing, Proof, Prover
+from foon_asp.certificate.coverage import NOTHING, Coverage
+from foon_asp.certificate.question import Question
+from foon_asp.errors import BugError
+from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.proof import verify
+
+
+class NotBestError(Exception):
+    """A tree that was to be proved optimal is not: ``units`` make the goals for less."""
+
+    def __init__(self, units: tuple[int, ...], costs: Costs) -> None:
+        super().__init__("the tree is not the best: another one costs less")
+        self.units, self.costs = units, costs
+
+
+class Certificate(NamedTuple):
+    """A certificate that was verified, and what it says.
+
+    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the objectives, from the first
+    on, that it speaks about; those after them are only the solver's.
+    """
+
+    content: dict[str, Any]
+    claim: str
+    certified: tuple[Objective, ...]
+
+    def text(self) -> str:
+        """Give the certificate as JSON, a cut and a weight on each line."""
+        lines = []
+        for key, value in self.content.items():
+            if key == "cuts" and value:
+                shown = "[\n" + ",\n".join("  " + _line(cut) for cut in value) + "\n ]"
+            elif key == "proof" and isinstance(value, dict) and value.get("weights"):
+                pairs = ",\n".join("  " + _line(pair) for pair in value["weights"])
+                shown = '{"weights": [\n' + pairs + "\n ]}"
+            else:
+                shown = _line(value)
+            lines.append(f' "{key}": {shown}')
+        return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _line(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+def certify(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    units: Sequence[int],
+    covered: Coverage = NOTHING,
+    expired: Callable[[], bool] = lambda: False,
+) -> Certificate | None:
+    """Prove a tree optimal by a lexicographic list of objectives, or by as many from the first as can be.
+
+    ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that
+    is not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
+    trees: then the certificate proves a bound on all of them. ``None`` where nothing is found before
+    ``expired`` says so, for ``success`` with rates of 0, and where products of rates are too close to be
+    compared.
+    """
+    if Objective.SUCCESS in objectives and not all((problem.rates or {})[m] for m in problem.network.motions):
+        return None
+    guide = tuple(units)
+    for count in range(len(objectives), 0, -1):
+        question = Question(problem, objectives[:count], covered)
+        prover = _prover(question, expired)
+        try:
+            proof = prover.prove(question.actions(units))
+        except CheaperError as cheaper:
+            guide = tuple(a for a in cheaper.actions if a < len(problem.network))
+            if not covered.not_covered:
+                raise NotBestError(guide, problem.costs(guide)) from None
+            break
+        if proof is not None:
+            return _write(question, covered, "optimal", units, proof)
+        if expired():
+            break
+    question = Question(problem, objectives, covered)
+    relaxed = _prover(question, expired).relax(question.actions(guide))
+    if relaxed is None:
+        return None
+    packing, bound = relaxed
+    return _write(question, covered, "bound", units, packing, question.stated(bound))
+
+
+def certify_infeasible(problem: Problem, covered: Coverage = NOTHING) -> Certificate | None:
+    """Prove that there is no tree; ``None`` where only constraints that are not covered leave none."""
+    question = Question(problem, (), covered)
+    cut = _prover(question, lambda: False).hopeless()
+    return None if cut is None else _write(question, covered, "infeasible", None, Hopeless(cut))
+
+
+def _prover(question: Question, expired: Callable[[], bool]) -> Prover:
+    return Prover(question.graph, question.goals, question.costs, question.order, question.forbidden, expired)
+
+
+def _write(
+    question: Question,
+    covered: Coverage,
+    claim: str,
+    units: Sequence[int] | None,
+    proof: Proof,
+    bound: list[object] | None = None,
+) -> Certificate | None:
+    problem = question.problem
+    cuts: dict[tuple[int, ...], int] = {}
+
+    def number(cut: Cut) -> int:
+        return cuts.setdefault(cut.objects, len(cuts))
+
+    def stated(proof: Proof) -> dict[str, object]:
+        if isinstance(proof, Hopeless):
+            return {"hopeless": number(proof.cut)}
+        if isinstance(proof, Packing):
+            weights = sorted((number(cut), question.stated(weight)) for cut, weight in proof.weights)
+            return {"weights": [list(pair) for pair in weights]}
+        return {
+            "branch": question.member(proof.action),
+            "without": stated(proof.without),
+            "using": stated(proof.using),
+        }
+
+    found = stated(proof)
+    costs: list[object] | None = None
+    if units is not None:
+        measured = problem.costs(units)
+        figures = [measured.measure(objective) for objective in question.objectives]
+        costs = [figure if isinstance(figure, int) else str(figure) for figure in figures]
+    content: dict[str, Any] = {
+        "format": verify.FORMAT,
+        "version": verify.VERSION,
+        "claim": claim,
+        "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
+        "containers": str(problem.containers),
+        "level": problem.network.level,
+        "objective": [str(objective) for objective in question.objectives],
+        "digests": verify.digests(problem.network, problem.kitchen, problem.rates, problem.utensils),
+        "forbidden": {"motions": list(covered.motions), "objects": list(covered.labels)},
+        "not_covered": list(covered.not_covered),
+        "tree": None if units is None else list(units),
+        "costs": costs,
+        "bound": bound,
+        "cuts": [list(objects) for objects in cuts],
+        "proof": found,
+    }
+    content["seal"] = verify.seal(content)
+    certificate = Certificate(content, claim, question.objectives)
+    try:
+        verify.verify(
+            json.loads(certificate.text()), problem.network, problem.kitchen, problem.rates, problem.utensils
+        )
+    except verify.TooFineError:
+        return None
+    except verify.RefusedError as refused:
+        raise BugError(f"a certificate that was found is refused: {refused}") from None
+    return certificate

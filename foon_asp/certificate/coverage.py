@@ -1,0 +1,63 @@
+"""Which of a user's constraints a certificate can speak about."""
+
+import hashlib
+from typing import NamedTuple
+
+from foon_asp.asp import Settings
+from foon_asp.asp.program import find_constraint
+from foon_asp.network import Network
+from foon_asp.resources import encodings_folder
+
+# Our constraints that rule out units one by one, and the constant that says which.
+_FORBIDDING = {"forbid_motion.lp": "forbidden_motion", "forbid_object.lp": "forbidden_object"}
+
+
+class Coverage(NamedTuple):
+    """What is forbidden and certified, and what else narrows the trees and is not.
+
+    ``motions`` and ``labels`` (of objects) rule out every unit that has one of them. ``not_covered`` names
+    files of rules, by name and digest, and the constants that were set.
+    """
+
+    motions: tuple[str, ...] = ()
+    labels: tuple[str, ...] = ()
+    not_covered: tuple[str, ...] = ()
+
+    def forbids(self, network: Network) -> frozenset[int]:
+        """Give the units of a network that are ruled out."""
+        nodes = {o for o, node in enumerate(network.objects) if node.label in self.labels}
+        return frozenset(
+            unit
+            for unit, motion in enumerate(network.motions)
+            if motion in self.motions
+            or (nodes and not nodes.isdisjoint((*network.inputs[unit], *network.outputs[unit])))
+        )
+
+
+NOTHING = Coverage()  # no constraints at all
+
+
+def coverage(settings: Settings) -> Coverage:
+    """Sort the constraints of a question into those that a certificate covers and the others.
+
+    ``forbid_motion`` and ``forbid_object`` of ours are covered. Other rules only narrow the trees, so a bound
+    without them still holds; a replaced encoding may say anything, and is named, too.
+    """
+    library = encodings_folder() / "constraints"
+    constants = dict(setting.partition("=")[::2] for setting in settings.constants)
+    forbidden: dict[str, set[str]] = {constant: set() for constant in _FORBIDDING.values()}
+    others: list[str] = []
+    for file in dict.fromkeys(map(find_constraint, settings.constraints)):
+        constant = _FORBIDDING.get(file.name)
+        if constant is not None and file.resolve() == (library / file.name).resolve():
+            value = constants.pop(constant, '""')
+            if len(value) > 1 and value[0] == value[-1] == '"':
+                value = value[1:-1]
+            forbidden[constant] |= {value} - {""}
+        else:
+            others.append(f"{file.name} {hashlib.sha256(file.read_bytes()).hexdigest()}")
+    if settings.encodings is not None:
+        others.append(f"encodings {settings.encodings.name}")
+    others += [f"{name}={value}" for name, value in constants.items()]
+    motions, labels = (tuple(sorted(forbidden[constant])) for constant in _FORBIDDING.values())
+    return Coverage(motions, labels, tuple(sorted(set(others))))

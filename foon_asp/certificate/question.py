@@ -1,0 +1,97 @@
+"""A problem and its objectives as the plain arrays that bounds are computed on."""
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+
+from foon_asp.bounds import Hypergraph, Lexicographic, Vector
+from foon_asp.certificate.coverage import Coverage
+from foon_asp.problem import Objective, Problem
+
+
+class Question:
+    """What is asked of a problem, in numbers: units are actions, and taking a kitchen item may be one.
+
+    Where ``kitchen`` is an objective, nothing is at hand from the start, and each item is given by an
+    action of its own that needs nothing and costs 1: the action's number is ``items[k]`` for item ``k``.
+    Elsewhere ``items`` is empty. ``forbidden`` are the units that the covered constraints rule out.
+    """
+
+    def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
+        network = problem.network
+        self.problem, self.objectives = problem, tuple(objectives)
+        self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
+        self.order = Lexicographic([self.rates if o is Objective.SUCCESS else None for o in objectives])
+        self.goals = [goal for goal in problem.goals if goal not in problem.kitchen]
+        self.forbidden = covered.forbids(network)
+        known: dict[object, Vector] = {}
+        self.costs = [self._cost(unit, known) for unit in range(len(network))]
+        needs: list[Sequence[int]] = list(problem.needs)
+        gives: list[Sequence[int]] = list(network.outputs)
+        self.items: dict[int, int] = {}
+        if Objective.KITCHEN in objectives:
+            kitchen = sorted(problem.kitchen)
+            self.items = {o: len(network) + place for place, o in enumerate(kitchen)}
+            gives = [[o for o in given if o not in problem.kitchen] for given in gives]
+            needs += [()] * len(kitchen)
+            gives += [(o,) for o in kitchen]
+            taking = tuple(Fraction(o is Objective.KITCHEN) for o in objectives for _ in range(self.parts(o)))
+            self.costs += [taking] * len(kitchen)
+        start = () if self.items else sorted(problem.kitchen)
+        self.graph = Hypergraph(len(network.objects), needs, gives, start)
+
+    def parts(self, objective: Objective) -> int:
+        """Give the number of coordinates that an objective has in a cost."""
+        return len(self.rates) if objective is Objective.SUCCESS else 1
+
+    def actions(self, units: Iterable[int]) -> list[int]:
+        """Give the actions of a tree: its units, and the taking of the kitchen items that they need."""
+        units = list(units)
+        needed = {o for unit in units for o in self.problem.needs[unit]}
+        return [*units, *(action for o, action in self.items.items() if o in needed)]
+
+    def stated(self, vector: Sequence[Fraction]) -> list[object]:
+        """Write a cost or weight as certificates do, one part for each objective."""
+        parts: list[object] = []
+        place = 0
+        for objective in self.objectives:
+            values = vector[place : place + self.parts(objective)]
+            place += len(values)
+            if objective is Objective.SUCCESS:
+                parts.append({str(r): str(e) for r, e in zip(self.rates, values, strict=True) if e})
+            else:
+                parts.append(str(values[0]))
+        return parts
+
+    def member(self, action: int) -> dict[str, int]:
+        """Name an action as certificates do."""
+        if action < len(self.problem.network):
+            return {"unit": action}
+        return {"item": sorted(self.items)[action - len(self.problem.network)]}
+
+    def _rates(self) -> Iterable[Fraction]:
+        rates = self.problem.rates or {}
+        return (rates[motion] for motion in self.problem.network.motions)
+
+    def _cost(self, unit: int, known: dict[object, Vector]) -> Vector:
+        network = self.problem.network
+        inputs = network.inputs[unit]
+        rate = (self.problem.rates or {}).get(network.motions[unit]) if self.rates else None
+        ingredients = 0
+        if Objective.INPUTS_AND_INGREDIENTS in self.objectives:
+            ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
+        key = (len(inputs), ingredients, rate)
+        if key not in known:
+            counts = {
+                Objective.UNITS: 1,
+                Objective.INPUTS: len(inputs),
+                Objective.INPUTS_AND_INGREDIENTS: len(inputs) + ingredients,
+                Objective.KITCHEN: 0,
+            }
+            cost: list[Fraction] = []
+            for objective in self.objectives:
+                if objective is Objective.SUCCESS:
+                    cost += [Fraction(r == rate) for r in self.rates]
+                else:
+                    cost.append(Fraction(counts[objective]))
+            known[key] = tuple(cost)
+        return known[key]

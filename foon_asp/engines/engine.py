@@ -1,0 +1,64 @@
+"""What every second engine is asked and answers."""
+
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.problem import Objective, Problem
+
+
+class EngineAnswer(NamedTuple):
+    """What an engine says.
+
+    ``units`` is a tree that it calls best by ``objectives``, of which it looks at the first or at all, or
+    ``None`` where it says that there is no tree. ``finished`` is false where it stopped before an answer.
+    """
+
+    engine: str
+    objectives: tuple[Objective, ...]
+    units: tuple[int, ...] | None
+    finished: bool
+    seconds: float
+
+
+class Scope(NamedTuple):
+    """The units that the goals can need, and the nodes that would have to be made."""
+
+    units: list[int]
+    objects: list[int]
+    goals: list[int]
+
+
+def backwards(problem: Problem, forbidden: frozenset[int]) -> Scope:
+    """Go back from the goals to the kitchen through all units that are not forbidden, can they run or not."""
+    network, kitchen = problem.network, problem.kitchen
+    goals = [goal for goal in problem.goals if goal not in kitchen]
+    objects = dict.fromkeys(goals)
+    units: set[int] = set()
+    waiting = list(goals)
+    while waiting:
+        for unit in network.producers[waiting.pop()]:
+            if unit not in units and unit not in forbidden:
+                units.add(unit)
+                new = [o for o in problem.needs[unit] if o not in kitchen and o not in objects]
+                objects.update(dict.fromkeys(new))
+                waiting += new
+    return Scope(sorted(units), sorted(objects), goals)
+
+
+def cost(problem: Problem, objective: Objective, unit: int) -> float:
+    """Give what a unit alone costs: a whole number, but for ``success``; ``kitchen`` is no cost of units."""
+    network = problem.network
+    inputs = network.inputs[unit]
+    if objective is Objective.SUCCESS:
+        rate = Fraction((problem.rates or {})[network.motions[unit]])
+        return math.log(rate.denominator) - math.log(rate.numerator)
+    if objective is Objective.INPUTS_AND_INGREDIENTS:
+        return len(inputs) + sum(len(network.objects[o].ingredients) for o in inputs)
+    return {Objective.UNITS: 1, Objective.INPUTS: len(inputs), Objective.KITCHEN: 0}[objective]
+
+
+def taken(problem: Problem, units: Iterable[int]) -> list[int]:
+    """Give the kitchen items that some units need."""
+    return sorted({o for unit in units for o in problem.needs[unit] if o in problem.kitchen})

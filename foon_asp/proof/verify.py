@@ -1,0 +1,562 @@
+"""Is a certificate right? Checked from the network alone: no solver, no linear program, no floats.
+
+docs/proofs.md describes certificates and proves that what passes here is true. In short: take a set T of
+object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node of
+T, so every tree uses one of the units with an output and no needed input in T: the *members* of T. Positive
+weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a
+lower bound on every tree's cost. A cut without members shows that there is no tree.
+
+Weights and costs have one part for each objective and are compared objective by objective, like words. The
+part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by bounds of the
+logarithms, and where these are too close, by comparing the product of ``rate ** e`` with 1 in whole
+numbers. This module imports the standard library and the plain network, and nothing of the rest of the
+package.
+"""
+
+import hashlib
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from decimal import Context, Decimal
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from foon_asp.network import Network, ObjectNode, node_at_level
+
+FORMAT = "foon-asp certificate"
+VERSION = 1
+OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen")
+
+_KEYS = {
+    *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "forbidden"),
+    *("not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
+}
+_RATIONAL = re.compile(r"-?(0|[1-9]\d{0,999})(/[1-9]\d{0,999})?", re.ASCII)
+_LARGEST = 2_000_000  # bits of a product of rates; more is refused rather than computed for hours
+_DIGITS = Context(prec=50)
+
+# A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
+Amount = dict[tuple[int, Fraction | None], Fraction]
+
+
+class RefusedError(Exception):
+    """The certificate is wrong; the message says where."""
+
+
+class TooFineError(RefusedError):
+    """Two products of rates in the certificate differ by too little to be compared."""
+
+
+class Verified(NamedTuple):
+    """What a certificate proves of the data it was held against.
+
+    ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
+    ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
+    All trees are meant that use no motion of ``motions`` and no object labelled as one of ``labels``.
+    ``costs`` are those of the tree, one for each objective.
+    """
+
+    claim: str
+    goals: tuple[int, ...]
+    containers: str
+    level: int
+    objectives: tuple[str, ...]
+    motions: tuple[str, ...]
+    labels: tuple[str, ...]
+    not_covered: tuple[str, ...]
+    tree: tuple[int, ...] | None
+    costs: tuple[int | Fraction, ...] | None
+    cuts: int
+
+
+def read_certificate(text: str) -> Any:
+    """Parse the JSON of a certificate; raises :class:`RefusedError` where a key comes twice or it is none."""
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        _require(len(found) == len(pairs), "a key stands twice in one object")
+        return found
+
+    try:
+        return json.loads(text, object_pairs_hook=once)
+    except (ValueError, RecursionError) as error:
+        raise RefusedError(f"not JSON: {error}") from None
+
+
+def digests(
+    network: Network,
+    kitchen: Iterable[int],
+    rates: Mapping[str, Fraction] | None,
+    utensils: Iterable[str],
+) -> dict[str, str]:
+    """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's."""
+    return {
+        "network": _digest(_described(network)),
+        "kitchen": _digest(sorted(kitchen)),
+        "rates": _digest(rates and sorted([motion, str(rate)] for motion, rate in rates.items())),
+        "utensils": _digest(sorted(utensils)),
+    }
+
+
+def seal(certificate: Mapping[str, Any]) -> str:
+    """Give the digest of a whole certificate but for its seal, which fits no other certificate."""
+    return _digest({key: value for key, value in certificate.items() if key != "seal"})
+
+
+def verify(
+    certificate: Any,
+    network: Network,
+    kitchen: frozenset[int],
+    rates: Mapping[str, Fraction] | None,
+    utensils: frozenset[str],
+) -> Verified:
+    """Check a certificate against the data it speaks about; ``kitchen`` are object node ids.
+
+    Takes time linear in cuts times network. Raises :class:`RefusedError` with the first fault that is found.
+    """
+    try:
+        _require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
+        _require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
+        version = certificate.get("version")
+        _require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
+        _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
+        _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
+        level = certificate["level"]
+        _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
+        stated = _object(certificate["digests"], ("network", "kitchen", "rates", "utensils"))
+        for name, digest in digests(network, kitchen, rates, utensils).items():
+            _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
+        return _Check(certificate, network, kitchen, rates, utensils).claim()
+    except RecursionError:
+        raise RefusedError("branches within branches without end") from None
+
+
+class _Check:
+    """One certificate, held against the network it speaks about.
+
+    A *member* is a unit, by its id, or a kitchen item ``k``, by the number of units plus ``k``. Items are
+    members only where the objective ``kitchen`` counts them.
+    """
+
+    def __init__(
+        self,
+        certificate: dict[str, Any],
+        network: Network,
+        kitchen: frozenset[int],
+        rates: Mapping[str, Fraction] | None,
+        utensils: frozenset[str],
+    ) -> None:
+        self.certificate, self.network, self.kitchen = certificate, network, kitchen
+        self.rates, self.utensils = rates, utensils
+        self.containers = certificate["containers"]
+        _require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
+        self.objectives = tuple(_list(certificate["objective"]))
+        _require(all(objective in OBJECTIVES for objective in self.objectives), "an objective is unknown")
+        _require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
+        if "success" in self.objectives:
+            _require(rates is not None, "success is claimed, but no rates are given")
+            known = rates or {}
+            motions = set(network.motions)
+            _require(motions <= known.keys(), "a motion has no success rate")
+            _require(all(0 <= known[motion] <= 1 for motion in motions), "a rate is not between 0 and 1")
+        self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
+        _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
+        forbidden = _object(certificate["forbidden"], ("motions", "objects"))
+        self.motions, self.labels = _names(forbidden["motions"]), _names(forbidden["objects"])
+        self.ruled_out = frozenset(self._ruled_out())
+        self.not_covered = _names(certificate["not_covered"])
+        self.needs: dict[int, frozenset[int]] = {}
+        self.cuts = [frozenset(_numbers(cut, len(network.objects))) for cut in _list(certificate["cuts"])]
+        self.members = [frozenset(self._members(cut)) for cut in self.cuts]
+        self.met: set[int] = set()  # the cuts that the proof uses
+
+    def claim(self) -> Verified:
+        """Check tree, costs and proof."""
+        claim, listed, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
+        costs: list[int | Fraction] | None = None
+        amount: Amount = {}
+        if listed is not None:
+            _require(bool(self.objectives), "a tree is given, but no objective")
+            amount, costs = self._tree(_list(listed))
+            stated = [
+                c if objective == "success" else _count(c) for objective, c in self._by_objective("costs")
+            ]
+            computed = [str(c) if isinstance(c, Fraction) else c for c in costs]
+            _require(stated == computed, f"the tree costs {computed}, not {stated}")
+        else:
+            _require(self.certificate["costs"] is None, "costs are given, but no tree")
+        if claim == "infeasible":
+            _require(listed is None and not self.objectives, "there cannot be a tree")
+            _require(self.certificate["bound"] is None, "a bound is given where there is nothing to bound")
+            _require(set(_object(proof)) == {"hopeless"}, "expected a cut that nothing crosses")
+        elif claim == "optimal":
+            _require(listed is not None, "expected the tree that is optimal")
+            _require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
+        elif claim == "bound":
+            _require(bool(self.objectives), "expected objectives")
+            bound = self._amount("bound")
+            _require(
+                listed is None or self._sign(_sum([amount, _scaled(bound, -1)])) >= 0, "the bound is false"
+            )
+            amount = bound
+        else:
+            raise RefusedError("expected the claim optimal, bound or infeasible")
+        self._prove(proof, amount, claim)
+        _require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
+        return Verified(
+            claim,
+            self.goals,
+            self.containers,
+            self.network.level,
+            self.objectives,
+            self.motions,
+            self.labels,
+            self.not_covered,
+            None if listed is None else tuple(listed),
+            None if costs is None else tuple(costs),
+            len(self.cuts),
+        )
+
+    def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
+        """Execute the tree as listed; give what it costs as an amount and as figures."""
+        at_hand = set(self.kitchen)
+        for unit in _numbers(units, len(self.network), ascending=False):
+            _require(unit not in self.ruled_out, f"unit {unit} of the tree is forbidden")
+            _require(self._needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input in its turn")
+            at_hand.update(self.network.outputs[unit])
+        _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
+        items = {o for unit in units for o in self._needs(unit) if o in self.kitchen}
+        members = [*units, *(len(self.network) + o for o in sorted(items))]
+        total = _sum(map(self._cost, members))
+        costs: list[int | Fraction] = []
+        for level, objective in enumerate(self.objectives):
+            if objective == "success":
+                rates = self.rates or {}
+                costs.append(math.prod((rates[self.network.motions[u]] for u in units), start=Fraction(1)))
+                _require(costs[-1] > 0, "a tree that never succeeds is no better than another")
+            else:
+                costs.append(int(total.get((level, None), Fraction(0))))
+        return total, costs
+
+    def _prove(self, proof: Any, least: Amount, claim: str) -> None:
+        """Walk through the branches of a proof that every tree costs at least so much."""
+        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, frozenset(), self.ruled_out)]
+        while waiting:
+            node, used, without = waiting.pop()
+            keys = set(_object(node))
+            if keys == {"weights"}:
+                _require(claim != "infeasible", "weights do not show that there is no tree")
+                bound = _sum([self._packed(node["weights"], used, without), *map(self._cost, used)])
+                _require(
+                    self._sign(_sum([bound, _scaled(least, -1)])) >= 0, "the weights do not add up to enough"
+                )
+            elif keys == {"hopeless"}:
+                _require(
+                    not self._crossing(node["hopeless"], used, without),
+                    "a cut said to be hopeless is crossed",
+                )
+            else:
+                _require(
+                    keys == {"branch", "without", "using"}, "expected weights, a hopeless cut or a branch"
+                )
+                member = self._branch(node["branch"])
+                _require(member not in used | without, "a branch is taken twice")
+                waiting.append((node["without"], used, without | {member}))
+                waiting.append((node["using"], used | {member}, without))
+
+    def _packed(self, weights: Any, used: frozenset[int], without: frozenset[int]) -> Amount:
+        """Add up the weights of cuts after checking that no member is overloaded."""
+        total: Amount = {}
+        loads: dict[int, Amount] = {}
+        for number, stated in _pairs(weights):
+            weight = self._read(stated)
+            _require(self._sign(weight) > 0, "a weight is not above zero")
+            _add(total, weight)
+            for member in self._crossing(number, used, without):
+                _add(loads.setdefault(member, {}), weight)
+        for member, load in loads.items():
+            # a member that is used anyway was paid for, and can carry nothing more
+            allowed = {} if member in used else self._cost(member)
+            if allowed != load:
+                fits = self._sign(_sum([allowed, _scaled(load, -1)])) >= 0
+                _require(fits, f"unit or item {member} carries more than it costs")
+        return total
+
+    def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+        """Give the members of a cut that are left; the cut has to stand before a goal or a used unit."""
+        _require(type(number) is int and 0 <= number < len(self.cuts), "expected the number of a cut")
+        place = int(number)
+        self.met.add(place)
+        cut = self.cuts[place]
+        before = any(goal in cut and goal not in self.kitchen for goal in self.goals) or any(
+            not cut.isdisjoint(self._needs(member)) for member in used if member < len(self.network)
+        )
+        _require(before, f"cut {number} holds neither a goal nor what a used unit needs")
+        return self.members[place] - without
+
+    def _members(self, cut: frozenset[int]) -> Iterator[int]:
+        """Give the units that make a node of the cut and need none, and the kitchen items in it."""
+        network = self.network
+        for o in cut:
+            if o in self.kitchen:
+                _require("kitchen" in self.objectives, "a cut holds a kitchen item")
+                yield len(network) + o
+                continue
+            for unit in network.producers[o]:
+                if cut.isdisjoint(self._needs(unit)):
+                    yield unit
+
+    def _needs(self, unit: int) -> frozenset[int]:
+        """Give the inputs that the container rule asks for.
+
+        Under ``implied`` a utensil with exactly one ingredient is taken as given when that ingredient,
+        located in the utensil, is another input of the unit. Below level 3 nodes do not say what they hold:
+        a unit needs what all the units need that it stands for.
+        """
+        found = self.needs.get(unit)
+        if found is None:
+            network = self.network
+            found = frozenset(network.inputs[unit])
+            if self.containers == "implied":
+                whole = network.detailed or network
+                for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
+                    needed = self._needed(map(whole.objects.__getitem__, whole.inputs[detail]))
+                    found &= {network.object_id(node_at_level(node, network.level)) for node in needed}
+            self.needs[unit] = found
+        return found
+
+    def _needed(self, inputs: Iterable[ObjectNode]) -> list[ObjectNode]:
+        """Leave out the inputs of a unit that the rule ``implied`` takes as given."""
+        nodes = list(inputs)
+        return [
+            vessel
+            for vessel in nodes
+            if vessel.label not in self.utensils
+            or len(vessel.ingredients) != 1
+            or not any(
+                other is not vessel and other.label == vessel.ingredients[0] and other.is_in(vessel.label)
+                for other in nodes
+            )
+        ]
+
+    def _ruled_out(self) -> Iterator[int]:
+        """Give the units with a forbidden motion or a node with a forbidden label."""
+        network = self.network
+        motions, labels = set(self.motions), set(self.labels)
+        nodes = {o for o, node in enumerate(network.objects) if node.label in labels}
+        if motions or nodes:
+            for unit, motion in enumerate(network.motions):
+                touched = (*network.inputs[unit], *network.outputs[unit])
+                if motion in motions or not nodes.isdisjoint(touched):
+                    yield unit
+
+    def _cost(self, member: int) -> Amount:
+        """Give what a unit or an item costs by each objective."""
+        network, cost = self.network, Amount()
+        item = member >= len(network)
+        for level, objective in enumerate(self.objectives):
+            if item or objective == "kitchen":
+                if item and objective == "kitchen":
+                    cost[level, None] = Fraction(1)
+            elif objective == "units":
+                cost[level, None] = Fraction(1)
+            elif objective == "success":
+                cost[level, (self.rates or {})[network.motions[member]]] = Fraction(1)
+            else:
+                inputs = network.inputs[member]
+                count = len(inputs)
+                if objective == "inputs+ingredients":
+                    count += sum(len(network.objects[o].ingredients) for o in inputs)
+                cost[level, None] = Fraction(count)
+        return cost
+
+    def _sign(self, amount: Amount) -> int:
+        """Give -1, 0 or 1 for an amount below, equal to or above zero; the first objective not 0 decides."""
+        for level, objective in enumerate(self.objectives):
+            if objective == "success":
+                sign = _minus_log_sign(
+                    {r: e for (at, r), e in amount.items() if at == level and r is not None}
+                )
+            else:
+                value = amount.get((level, None), Fraction(0))
+                sign = (value > 0) - (value < 0)
+            if sign:
+                return sign
+        return 0
+
+    def _branch(self, choice: Any) -> int:
+        """Give the member that a branch is about."""
+        network = self.network
+        if set(_object(choice)) == {"item"}:
+            _require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
+            item = choice["item"]
+            _require(type(item) is int and item in self.kitchen, "expected the id of a kitchen item")
+            return len(network) + int(item)
+        unit = _object(choice, ("unit",))["unit"]
+        _require(type(unit) is int and 0 <= unit < len(network), "expected the id of a unit")
+        return int(unit)
+
+    def _by_objective(self, key: str) -> list[tuple[str, Any]]:
+        found = _list(self.certificate[key])
+        _require(len(found) == len(self.objectives), f"expected one of {key} for each objective")
+        return list(zip(self.objectives, found, strict=True))
+
+    def _amount(self, key: str) -> Amount:
+        return self._read(self.certificate[key])
+
+    def _read(self, stated: Any) -> Amount:
+        """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
+        amount: Amount = {}
+        parts = _list(stated)
+        _require(len(parts) == len(self.objectives), "expected one part of a weight for each objective")
+        for level, (objective, part) in enumerate(zip(self.objectives, parts, strict=True)):
+            if objective == "success":
+                for rate, exponent in _object(part).items():
+                    _require(0 < _rational(rate) < 1, "expected rates above 0 and below 1 in a weight")
+                    amount[level, _rational(rate)] = _rational(exponent)
+            else:
+                amount[level, None] = _rational(part)
+        return amount
+
+
+def _minus_log_sign(exponents: Mapping[Fraction, Fraction]) -> int:
+    """Give the sign of the sum of ``e * -log(rate)``: is the product of ``rate ** e`` below, at or above 1?
+
+    Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator, the
+    product is below 1 exactly when its power by that denominator is, and that one is a quotient of whole
+    numbers. A rate of 0 costs more than any weight.
+    """
+    if exponents.get(Fraction(0)):
+        return 1 if exponents[Fraction(0)] > 0 else -1
+    exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
+    bounds = [(e, *_minus_log(rate)) for rate, e in exponents.items()]
+    if sum(e * (low if e > 0 else high) for e, low, high in bounds) > 0:
+        return 1
+    if sum(e * (high if e > 0 else low) for e, low, high in bounds) < 0:
+        return -1
+    common = math.lcm(*(e.denominator for e in exponents.values()))
+    powers = {rate: int(e * common) for rate, e in exponents.items()}
+    if sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items()) > _LARGEST:
+        raise TooFineError("products of rates are too close to be told apart in reasonable time")
+    above, below = 1, 1
+    for rate, power in powers.items():
+        over, under = rate.numerator ** abs(power), rate.denominator ** abs(power)
+        above *= over if power > 0 else under
+        below *= under if power > 0 else over
+    return (above < below) - (above > below)
+
+
+@lru_cache(maxsize=4096)
+def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
+    """Give bounds of ``-log(rate)`` from below and above.
+
+    Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
+    """
+    low = high = Fraction(0)
+    for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
+        logarithm = _DIGITS.ln(Decimal(number))
+        unit = Fraction(10) ** (logarithm.adjusted() + 1 - _DIGITS.prec) if logarithm else Fraction(0)
+        low += sign * Fraction(logarithm) - unit
+        high += sign * Fraction(logarithm) + unit
+    return low, high
+
+
+def _add(total: Amount, amount: Amount) -> None:
+    for key, value in amount.items():
+        total[key] = total.get(key, Fraction(0)) + value
+
+
+def _sum(amounts: Iterable[Amount]) -> Amount:
+    total: Amount = {}
+    for amount in amounts:
+        _add(total, amount)
+    return total
+
+
+def _scaled(amount: Amount, factor: int) -> Amount:
+    return {key: factor * value for key, value in amount.items()}
+
+
+def _described(network: Network) -> list[Any]:
+    """List all that a claim about a network can depend on; below level 3 also what it was made from."""
+    nodes = [
+        (label, _sorted(states), _sorted(relations), contents)
+        for label, states, relations, contents in network.objects
+    ]
+    below = [] if network.detailed is None else [_described(network.detailed), network.stands_for]
+    return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
+
+
+def _sorted(values: frozenset[Any]) -> list[Any]:
+    return sorted(values) if len(values) > 1 else [*values]
+
+
+def _digest(value: object) -> str:
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _require(holds: bool, otherwise: str) -> None:
+    if not holds:
+        raise RefusedError(otherwise)
+
+
+def _object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
+    _require(isinstance(value, dict), "expected an object")
+    found: dict[str, Any] = value
+    _require(keys is None or set(found) == set(keys), f"expected the keys {', '.join(keys or ())}")
+    return found
+
+
+def _list(value: Any) -> list[Any]:
+    _require(isinstance(value, list), "expected a list")
+    found: list[Any] = value
+    return found
+
+
+def _names(value: Any) -> tuple[str, ...]:
+    names = _list(value)
+    _require(all(isinstance(name, str) for name in names), "expected names")
+    _require(names == sorted(set(names)), "expected names in order, each of them once")
+    return tuple(names)
+
+
+def _numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
+    numbers = _list(value)
+    _require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
+    _require(len(set(numbers)) == len(numbers), "an id stands twice")
+    _require(not ascending or (numbers == sorted(numbers) and len(numbers) > 0), "expected ids in order")
+    return numbers
+
+
+def _pairs(value: Any) -> list[tuple[Any, Any]]:
+    """Read what maps numbers of cuts to weights: a list of pairs, in order."""
+    pairs = _list(value)
+    _require(
+        all(isinstance(pair, list) and len(pair) == 2 for pair in pairs), "expected a cut and its weight"
+    )
+    numbers = [pair[0] for pair in pairs]
+    _require(all(type(number) is int for number in numbers), "expected the number of a cut")
+    _require(numbers == sorted(set(numbers)), "expected cuts in order, each of them once")
+    return [(number, weight) for number, weight in pairs]
+
+
+def _goal(value: Any, network: Network) -> int:
+    goal = _object(value, ("id", "node"))
+    (found,) = _numbers([goal["id"]], len(network.objects))
+    _require(str(network.objects[found]) == goal["node"], "a goal is not the node of its id")
+    return found
+
+
+def _count(value: Any) -> int:
+    _require(type(value) is int, "expected a whole number")
+    return int(value)
+
+
+def _rational(value: Any) -> Fraction:
+    _require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
+    found = Fraction(value)
+    _require(str(found) == value, "expected a fraction in lowest terms")
+    return found

@@ -1,0 +1,105 @@
+"""Certificates in words: what one that was just written proves, and what one that was verified does."""
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from foon_asp.network import Network
+from foon_asp.proof.verify import Verified
+
+if TYPE_CHECKING:  # the rest of these rooms takes clingo along, which `verify` has to do without
+    from foon_asp.asp import Outcome
+    from foon_asp.certificate import Certificate
+
+
+def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> list[str]:
+    """Say what an answer rests on after a certificate was looked for; ``file`` is where it was written."""
+    if outcome.proof is None:
+        return ["proof: none, so there is nothing to certify"]
+    if certificate is None:
+        return ["proof: solver (no certificate was found, and nothing is written)"]
+    if certificate.claim == "bound":
+        return [
+            f"proof: solver; the certificate {file} proves a bound on all trees, "
+            "constraints it does not cover left aside: " + bound_text(certificate.content)
+        ]
+    if certificate.claim == "optimal" and outcome.proof.value != "certificate":
+        sure = ", ".join(certificate.certified)
+        return [f"proof: solver; the certificate {file} proves the tree best by {sure} alone"]
+    lines = [f"proof: certificate ({file}, {_cuts(len(certificate.content['cuts']))})"]
+    if certificate.content["not_covered"] and certificate.claim == "optimal":
+        lines.append("  it is best among all trees; that it keeps to the constraints is the solver's word")
+    return lines
+
+
+def bound_text(content: dict[str, Any]) -> str:
+    """Say what the bound of a certificate is by its first objective, and how far the tree is from it."""
+    objective, bound = content["objective"][0], content["bound"][0]
+    text = (
+        f"success at most {_success(bound):.4g}"
+        if objective == "success"
+        else f"{objective} at least {bound}"
+    )
+    if content["costs"] is not None:
+        cost = content["costs"][0]
+        text += f"; the tree has {cost}"
+        if objective != "success":
+            text += f" (gap {Fraction(cost) - Fraction(bound)})"
+    return text
+
+
+def _success(exponents: dict[str, str]) -> float:
+    return math.exp(sum(float(Fraction(e)) * math.log(Fraction(rate)) for rate, e in exponents.items()))
+
+
+def verified_text(verified: Verified, network: Network, content: dict[str, Any]) -> str:
+    """Say what a verified certificate proves."""
+    lines = [f"goal: {network.objects[goal]}" for goal in verified.goals]
+    rule = f"{verified.containers} containers" + (f", level {verified.level}" if verified.level < 3 else "")
+    if verified.claim == "infeasible":
+        lines.append(f"verified: there is no task tree ({rule})")
+    elif verified.claim == "bound":
+        lines.append(f"verified: a bound on all task trees ({rule}): {bound_text(content)}")
+    else:
+        costs = zip(verified.costs or (), verified.objectives, strict=True)
+        figures = ", ".join(_figure(objective, cost) for cost, objective in costs)
+        lines.append(
+            f"verified: no task tree is better by {', then '.join(verified.objectives)} ({rule}): {figures}"
+        )
+    if verified.motions or verified.labels:
+        ruled_out = [*(f"the motion {motion}" for motion in verified.motions)]
+        ruled_out += [f"the object {label}" for label in verified.labels]
+        lines.append(f"among the trees without {', '.join(ruled_out)}")
+    lines += [f"not covered, so among all trees: {name}" for name in verified.not_covered]
+    lines.append(f"proof: {_cuts(verified.cuts)}, checked without a solver")
+    return "\n".join(lines) + "\n"
+
+
+def verified_json(verified: Verified, network: Network) -> dict[str, object]:
+    """Give what a verified certificate proves for programs."""
+    return {
+        "verified": True,
+        "claim": verified.claim,
+        "goals": [str(network.objects[goal]) for goal in verified.goals],
+        "containers": verified.containers,
+        "level": verified.level,
+        "objective": list(verified.objectives),
+        "costs": None
+        if verified.costs is None
+        else {
+            objective: str(cost) if isinstance(cost, Fraction) else cost
+            for objective, cost in zip(verified.objectives, verified.costs, strict=True)
+        },
+        "forbidden": {"motions": list(verified.motions), "objects": list(verified.labels)},
+        "not_covered": list(verified.not_covered),
+        "tree": None if verified.tree is None else list(verified.tree),
+        "cuts": verified.cuts,
+    }
+
+
+def _figure(objective: str, cost: int | Fraction) -> str:
+    return f"success {cost} ≈ {float(cost):.4g}" if objective == "success" else f"{cost} {objective}"
+
+
+def _cuts(number: int) -> str:
+    return f"{number} cut" + ("" if number == 1 else "s")

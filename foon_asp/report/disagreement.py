@@ -1,0 +1,94 @@
+"""A disagreement between engines as a folder of data that asks the same question again."""
+
+import json
+import platform
+import shlex
+from fractions import Fraction
+from importlib.metadata import PackageNotFoundError, version
+
+from foon_asp.asp import Outcome
+from foon_asp.certificate import Coverage
+from foon_asp.engines import DisagreementError
+from foon_asp.proof.verify import digests
+from foon_asp.report.answer import costs_json, outcome_dict
+from foon_asp.text import write_units
+
+_DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
+
+
+def disagreement_name(outcome: Outcome) -> str:
+    """Name the folder, by the data and the question."""
+    problem = outcome.problem
+    marks = digests(problem.network, problem.kitchen, problem.rates, problem.utensils)
+    return f"foon-asp-disagreement-{marks['network'][:8]}-{'-'.join(map(str, problem.goals))}"
+
+
+def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementError) -> dict[str, str]:
+    """Give the files of the folder by name: the data, numbered as they were, and ``report.json``.
+
+    The kitchen lists nodes as JSON kitchens can; ``report.json`` has them in one-line notation, too.
+    """
+    problem, answer = outcome.problem, found.answer
+    network = problem.network
+    # below level 3 the folder has what the network was made from; the command names the level
+    whole = network.detailed or network
+    at_hand = sorted(problem.kitchen)
+    if network.detailed is not None:
+        at_hand = sorted(detail for o in at_hand for detail in network.objects_stand_for[o])
+    nodes = [whole.objects[o] for o in at_hand]
+    kitchen = [
+        {
+            "label": node.label,
+            "states": [*sorted(node.states), *map(str, sorted(node.relations))],
+            "ingredients": list(node.ingredients),
+        }
+        for node in nodes
+    ]
+    goals = [str(network.objects[o]) for o in problem.goals]
+    words = ["foon-asp", "solve", "--data", ".", "--containers", str(problem.containers)]
+    words += ["--level", str(network.level), "--objective", ",".join(outcome.objectives), "--cross-check"]
+    for name, values in (("motion", covered.motions), ("object", covered.labels)):
+        for value in values:
+            words += ["--constraint", f"forbid_{name}", "-c", f"forbidden_{name}={value}"]
+    words += [word for goal in goals for word in ("--goal", goal if ";" in goal else goal + ";")]
+    report = {
+        "message": str(found),
+        "command": shlex.join(words),
+        "versions": {"python": platform.python_version()} | {name: _version(name) for name in _DISTRIBUTIONS},
+        "platform": platform.platform(),
+        "digests": digests(network, problem.kitchen, problem.rates, problem.utensils),
+        "kitchen": [str(node) for node in nodes],
+        "forbidden_units": sorted(covered.forbids(network)),
+        "answer": outcome_dict(outcome),
+        "other": {
+            "engine": answer.engine,
+            "objectives": [str(objective) for objective in answer.objectives],
+            "units": None if answer.units is None else list(answer.units),
+            "costs": None if answer.units is None else costs_json(problem.costs(answer.units)),
+        },
+    }
+    files = {
+        "FOON.txt": write_units(map(whole.unit, range(len(whole)))),
+        "kitchen.json": json.dumps(kitchen, indent=1, ensure_ascii=False) + "\n",
+        "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
+        "report.json": json.dumps(report, indent=2, ensure_ascii=False) + "\n",
+    }
+    if problem.rates is not None:
+        files["motion.txt"] = "".join(f"{motion}\t{_decimal(r)}\n" for motion, r in problem.rates.items())
+    return files
+
+
+def _version(distribution: str) -> str | None:
+    try:
+        return version(distribution)
+    except PackageNotFoundError:
+        return None
+
+
+def _decimal(rate: Fraction) -> str:
+    """Write a rate as the decimal it was read from."""
+    places = 0
+    while (rate * 10**places).denominator != 1 and places < 1000:
+        places += 1
+    digits = f"{int(rate * 10**places):0{places + 1}d}"
+    return f"{digits[:-places]}.{digits[-places:]}" if places else digits

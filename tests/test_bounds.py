@@ -1,0 +1,236 @@
+"""Cuts, exact comparisons, exact optima and proofs on plain arrays."""
+
+import random
+from fractions import Fraction
+from itertools import combinations
+
+import pytest
+
+from foon_asp.bounds import (
+    Branch,
+    CheaperError,
+    Cutter,
+    Hopeless,
+    Hypergraph,
+    Lexicographic,
+    Packing,
+    Proof,
+    Prover,
+)
+from foon_asp.bounds.exact_optimum import exact_optimum
+
+COUNT = Lexicographic([None])
+
+# 0 and 1 are at hand; 4 is made of 2 and 3, 2 from 0 or from 3, 3 from 1 or from 2: there is a circle.
+KITCHEN = Hypergraph(5, needs=[[2, 3], [0], [3], [1], [2]], gives=[[4], [2], [2], [3], [3]], start=[0, 1])
+
+
+def ones(graph: Hypergraph) -> list[tuple[Fraction]]:
+    return [(Fraction(1),)] * len(graph.needs)
+
+
+def is_landmark(graph: Hypergraph, members: tuple[int, ...], target: int) -> bool:
+    """Whether the target is out of reach without these actions, by the definition."""
+    _, reached = graph.reach(frozenset(members))
+    return not reached[target]
+
+
+def test_the_start_is_closed_in_an_order_that_runs() -> None:
+    order, reached = KITCHEN.reach()
+    assert sorted(order) == [0, 1, 2, 3, 4]
+    assert order.index(0) > min(order.index(1), order.index(2))
+    assert list(reached) == [1] * 5
+    assert list(KITCHEN.reach(frozenset({1, 3}))[1]) == [1, 1, 0, 0, 0]
+
+
+def test_cuts_are_landmarks() -> None:
+    cutter = Cutter(KITCHEN, [4])
+    assert cutter.actions == [0, 1, 2, 3, 4]
+    cut = cutter.cut([], [1, 2, 3, 4, 0])
+    assert cut is not None
+    assert cut.members == (0,)
+    assert cut.objects == (4,)
+    both = cutter.cut([], [0, 2, 4, 1, 3])
+    assert both is not None
+    assert both.members in {(3,), (1, 3)}
+    assert cutter.cut([0, 1, 3], []) is None
+    assert cutter.reached_by([0, 1, 3])
+    assert not cutter.reached_by([0, 2, 4])
+
+
+def test_random_cuts_are_landmarks_on_the_whole_graph() -> None:
+    found = 0
+    for seed in range(300):
+        rng = random.Random(seed)
+        size = rng.randint(4, 9)
+        actions = rng.randint(3, 12)
+        needs = [rng.sample(range(size), rng.randint(0, 2)) for _ in range(actions)]
+        gives = [rng.sample(range(size), rng.randint(1, 2)) for _ in range(actions)]
+        graph = Hypergraph(size, needs, gives, [0])
+        forbidden = frozenset(rng.sample(range(actions), rng.randint(0, 2)))
+        target = rng.randrange(1, size)
+        cutter = Cutter(graph, [target], forbidden)
+        cut = cutter.hopeless or cutter.cut([], rng.sample(cutter.actions, len(cutter.actions)))
+        assert cut is not None
+        found += not cutter.hopeless
+        assert (cutter.hopeless is not None) == (not graph.reach(forbidden)[1][target])
+        assert target in cut.objects
+        assert 0 not in cut.objects
+        inside = set(cut.objects)
+        members = [
+            a
+            for a in range(actions)
+            if a not in forbidden and inside & {*gives[a]} and not inside & {*needs[a]}
+        ]
+        assert list(cut.members) == members
+        assert is_landmark(graph, (*cut.members, *forbidden), target)
+        for member in cut.members:  # none of them is there for nothing
+            assert not is_landmark(graph, (*(set(cut.members) - {member}), *forbidden), target)
+    assert found > 100
+
+
+def test_products_are_compared_exactly() -> None:
+    rates = [Fraction("0.3"), Fraction("0.09"), Fraction("0.300000001")]
+    order = Lexicographic([rates, None])
+    half, one = Fraction(1, 2), Fraction(1)
+    assert order.sign((one * 2, -one, Fraction(0), Fraction(0))) == 0
+    assert order.sign((one, -half, Fraction(0), -one)) == -1
+    assert order.sign((one, Fraction(0), -one, -one)) == 1
+    assert order.sign((-half, Fraction(0), half, one)) == -1
+    assert order.sign(order.zero) == 0
+    tiny = Fraction(1, 10**30)  # 1 - 2 * 10**-30 against (1 - 10**-30) ** 2: their floats are equal
+    close = Lexicographic([[1 - 2 * tiny, 1 - tiny]])
+    assert close.sign((one, -2 * one)) == 1
+    assert close.sign((-one, 2 * one)) == -1
+
+
+def test_the_first_level_that_differs_decides() -> None:
+    order = Lexicographic([None, None])
+    assert order.sign((Fraction(0), Fraction(-1))) == -1
+    assert order.sign((Fraction(1, 9), Fraction(-1))) == 1
+
+
+def test_the_exact_optimum_of_a_triangle_is_a_half_of_each() -> None:
+    rows = [[0, 1], [0, 2], [1, 2]]
+    costs = [(Fraction(1), Fraction(c)) for c in (1, 2, 3)]
+    order = Lexicographic([None, None])
+    for columns, tight in (([0, 1, 2], [0, 1, 2]), ([0, 1], [1, 2])):
+        found = exact_optimum(rows, costs, order, columns, tight)
+        assert found is not None
+        assert found.x == dict.fromkeys(range(3), Fraction(1, 2))
+        assert found.value == (Fraction(3, 2), Fraction(3))
+    assert exact_optimum(rows, costs, order, [0], [2]) is None  # singular
+    assert exact_optimum(rows, costs, order, [0], [0]) is None  # the last row is not covered
+
+
+def covering(sets: list[list[int]], elements: int) -> tuple[Hypergraph, list[int]]:
+    """Ask for elements, each of which needs one of the sets that hold it; sets cost, elements do not."""
+    needs: list[list[int]] = [[] for _ in sets]
+    gives = [[number] for number in range(len(sets))]
+    for number, members in enumerate(sets):
+        for element in members:
+            needs.append([number])
+            gives.append([len(sets) + element])
+    return Hypergraph(len(sets) + elements, needs, gives, []), [len(sets) + e for e in range(elements)]
+
+
+def least_cover(sets: list[list[int]], elements: int) -> list[int]:
+    for size in range(len(sets) + 1):
+        for chosen in combinations(range(len(sets)), size):
+            if {e for number in chosen for e in sets[number]} == set(range(elements)):
+                return list(chosen)
+    raise AssertionError
+
+
+def check(
+    graph: Hypergraph, targets: list[int], costs: list[tuple[Fraction]], proof: Proof
+) -> Fraction | None:
+    """Recompute what a proof proves: the least of its leaves, ``None`` where there is no derivation."""
+
+    def bound(proof: Proof, used: frozenset[int], without: frozenset[int]) -> Fraction | None:
+        if isinstance(proof, Branch):
+            sides = (
+                bound(proof.without, used, without | {proof.action}),
+                bound(proof.using, used | {proof.action}, without),
+            )
+            return min((side for side in sides if side is not None), default=None)
+        wanted = {*targets, *(o for a in used for o in graph.needs[a])}
+        cuts = [proof.cut] if isinstance(proof, Hopeless) else [cut for cut, _ in proof.weights]
+        for cut in cuts:
+            assert wanted & {*cut.objects}
+        if isinstance(proof, Hopeless):
+            assert not {*proof.cut.members} - without
+            return None
+        assert isinstance(proof, Packing)
+        for action, (cost,) in enumerate(costs):
+            load = sum((weight for cut, (weight,) in proof.weights if action in cut.members), Fraction(0))
+            assert load <= (0 if action in used else cost) or action in without
+        return sum((w for _, (w,) in proof.weights), Fraction(0)) + sum(
+            (costs[a][0] for a in used), Fraction(0)
+        )
+
+    return bound(proof, frozenset(), frozenset())
+
+
+def test_branching_closes_the_gap_of_random_covers() -> None:
+    branched = 0
+    for seed in range(40):
+        rng = random.Random(seed)
+        elements = rng.randint(4, 7)
+        sets = [rng.sample(range(elements), 2) for _ in range(rng.randint(6, 9))]
+        sets += [[e] for e in range(elements) if not any(e in members for members in sets)]
+        graph, targets = covering(sets, elements)
+        costs = [(Fraction(number < len(sets)),) for number in range(len(graph.needs))]
+        best = least_cover(sets, elements)
+        derivation = [*best, *_deliveries(sets, best, elements)]
+        prover = Prover(graph, targets, costs, COUNT)
+        proof = prover.prove(derivation)
+        assert proof is not None
+        assert check(graph, targets, costs, proof) == len(best)
+        branched += isinstance(proof, Branch)
+        worse = [*range(len(sets)), *_deliveries(sets, list(range(len(sets))), elements)]
+        if len(best) < len(sets):
+            with pytest.raises(CheaperError) as found:
+                prover.prove(worse)
+            assert Cutter(graph, targets).reached_by(found.value.actions)
+            assert sum(a < len(sets) for a in found.value.actions) < len(sets)
+    assert branched >= 5
+
+
+def _deliveries(sets: list[list[int]], chosen: list[int], elements: int) -> list[int]:
+    """Give for each element one action that takes it from a chosen set."""
+    actions = [(number, element) for number, members in enumerate(sets) for element in members]
+    first: dict[int, int] = {}
+    for place, (number, element) in enumerate(actions):
+        if number in chosen:
+            first.setdefault(element, len(sets) + place)
+    return [first[element] for element in range(elements)]
+
+
+def test_the_relaxation_gives_what_it_has() -> None:
+    graph, targets = covering([[0, 1], [0, 2], [1, 2]], 3)
+    costs = [(Fraction(number < 3),) for number in range(len(graph.needs))]
+    relaxed = Prover(graph, targets, costs, COUNT).relax([])
+    assert relaxed is not None
+    packing, value = relaxed
+    assert value == (Fraction(3, 2),)
+    assert check(graph, targets, costs, packing) == Fraction(3, 2)
+
+
+def test_time_is_kept() -> None:
+    graph, targets = covering([[0, 1], [0, 2], [1, 2]], 3)
+    assert Prover(graph, targets, ones(graph), COUNT, expired=lambda: True).prove([0, 1, 3, 4, 6]) is None
+
+
+def test_targets_at_hand_cost_nothing() -> None:
+    assert Prover(KITCHEN, [0, 1], ones(KITCHEN), COUNT).prove([]) == Packing(())
+
+
+def test_what_is_forbidden_is_out_of_every_proof() -> None:
+    prover = Prover(KITCHEN, [4], ones(KITCHEN), COUNT, frozenset({1}))
+    proof = prover.prove([0, 3, 2])
+    assert isinstance(proof, Packing)
+    assert all(1 not in cut.members for cut, _ in proof.weights)
+    lost = Prover(KITCHEN, [4], ones(KITCHEN), COUNT, frozenset({1, 3})).hopeless()
+    assert lost is not None
+    assert lost.members == ()

@@ -1,0 +1,209 @@
+"""Second engines: one question, one answer; and what is said where they differ."""
+
+import json
+import random
+import shlex
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.cli import cross_check as command
+from foon_asp.engines import ENGINES, DisagreementError, EngineAnswer, agree, cross_check
+from foon_asp.engines.agreement import Engine
+from foon_asp.engines.fast_downward import installed, solve_with_fast_downward
+from foon_asp.engines.highs import solve_with_highs
+from foon_asp.network import FunctionalUnit
+from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
+from foon_asp.proof.verify import digests
+from foon_asp.text import find_data, read_data
+from tests import oracle
+from tests.conftest import Cli
+from tests.gap_problem import gap_problem
+from tests.hard_problem import hard_problem
+from tests.random_problems import random_problem
+
+RULES = list(ContainerRule)
+Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
+
+needs_fast_downward = pytest.mark.skipif(
+    not installed(), reason="Fast Downward is not installed: pip install 'foon-asp[cross-check]'"
+)
+SOLVERS = [
+    pytest.param(solve_with_highs, id="HiGHS"),
+    pytest.param(solve_with_fast_downward, id="Fast Downward", marks=needs_fast_downward),
+]
+
+
+def units(problem: Problem, answer: EngineAnswer) -> tuple[FunctionalUnit, ...]:
+    assert answer.units is not None
+    return tuple(map(problem.network.unit, answer.units))
+
+
+@pytest.mark.parametrize("engine", SOLVERS)
+@pytest.mark.parametrize("rule", RULES)
+def test_every_engine_agrees_with_brute_force(engine: Solve, rule: ContainerRule) -> None:
+    trees = 0
+    for seed in range(12):
+        problem = random_problem(seed, rule)
+        found = list(oracle.trees(problem))
+        for objective in Objective:
+            answer = engine(problem, levels((objective,)), frozenset(), 60.0)
+            assert answer.finished
+            judged = [str(looked_at) for looked_at in answer.objectives]
+            keys = [tuple(oracle.measure(problem, tree, o) for o in judged) for tree in found]
+            if not keys:
+                assert answer.units is None
+                continue
+            tree = units(problem, answer)
+            assert oracle.makes(problem, tree)
+            mine = tuple(oracle.measure(problem, tree, o) for o in judged)
+            if objective is Objective.SUCCESS:  # in floats: rates that differ in the ninth digit are one
+                assert float(mine[0]) == pytest.approx(float(min(keys)[0]), rel=1e-4)
+            else:
+                assert mine == min(keys)
+            trees += bool(tree)
+    assert trees > 10
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_all_engines_give_one_answer(rule: ContainerRule) -> None:
+    asked = 0
+    for seed in range(100, 104):
+        for problem in (random_problem(seed, rule), replace(gap_problem(seed, 4), containers=rule)):
+            for objective in Objective:
+                answers = cross_check(solve(problem, (objective,)), frozenset(), 60.0)
+                assert all(answer.finished for answer in answers)
+                asked += len(answers)
+    assert asked == 40 * sum(engine.installed() for engine in ENGINES)
+
+
+def test_lists_are_checked_level_by_level() -> None:
+    for seed in range(40):
+        problem = random_problem(seed, RULES[seed % 2])
+        objectives = tuple(random.Random(seed).sample(list(Objective), 3))
+        (answer,) = cross_check(solve(problem, objectives), frozenset(), 60.0, ENGINES[:1])
+        assert answer.objectives == levels(objectives)
+
+
+def test_forbidden_units_are_left_out() -> None:
+    problem = gap_problem(1, 4)
+    settings = Settings((Path("forbid_motion"),), constants=("forbidden_motion=scrub",))
+    forbidden = frozenset(u for u, motion in enumerate(problem.network.motions) if motion == "scrub")
+    for answer in cross_check(solve(problem, (Objective.SUCCESS,), settings), forbidden, 60.0):
+        assert answer.finished
+        assert not forbidden & {*(answer.units or ())}
+
+
+def test_an_engine_that_finds_nothing_in_time_says_so() -> None:
+    answer = solve_with_highs(hard_problem(), (Objective.UNITS,), frozenset(), 0.05)
+    assert not answer.finished
+    agree(solve(gap_problem(0, 3)), answer)
+
+
+# --- disagreements
+
+
+def optimum() -> Outcome:
+    return solve(gap_problem(2, 4), (Objective.UNITS,))
+
+
+def answer(outcome: Outcome, units: tuple[int, ...] | None) -> EngineAnswer:
+    return EngineAnswer("Oracle", levels(outcome.objectives), units, True, 0.0)
+
+
+def test_disagreements_are_found() -> None:
+    outcome = optimum()
+    assert outcome.units is not None
+    agree(outcome, answer(outcome, outcome.units))
+    with pytest.raises(DisagreementError, match="we say a tree exists, Oracle says no tree exists"):
+        agree(outcome, answer(outcome, None))
+    none = outcome._replace(status=Status.INFEASIBLE, units=None, costs=None)
+    with pytest.raises(DisagreementError, match="we say no tree exists, Oracle says a tree exists"):
+        agree(none, answer(outcome, outcome.units))
+    with pytest.raises(DisagreementError, match="does not execute"):
+        agree(outcome, answer(outcome, outcome.units[1:]))
+    everything = tuple(range(len(outcome.problem.network)))
+    with pytest.raises(DisagreementError, match="Oracle calls a worse one the best"):
+        agree(outcome, answer(outcome, everything))
+    costs = outcome.problem.costs(everything)
+    with pytest.raises(DisagreementError, match="ours is not the best"):
+        agree(outcome._replace(units=everything, costs=costs), answer(outcome, outcome.units))
+
+
+def test_success_is_compared_as_far_as_engines_can_tell() -> None:
+    outcome = solve(gap_problem(2, 4), (Objective.SUCCESS,))
+    assert outcome.units is not None
+    assert outcome.costs is not None
+    assert outcome.costs.success is not None
+
+    def with_success(factor: str) -> Outcome:
+        costs: Costs = outcome.costs._replace(success=outcome.costs.success * Fraction(factor))  # type: ignore[union-attr, operator]
+        return outcome._replace(costs=costs)
+
+    agree(with_success("1.0000001"), answer(outcome, outcome.units))
+    with pytest.raises(DisagreementError, match="Oracle calls a worse one the best"):
+        agree(with_success("1.001"), answer(outcome, outcome.units))
+    with pytest.raises(DisagreementError, match="ours is not the best"):
+        agree(with_success("0.9999999"), answer(outcome, outcome.units))
+
+
+def test_the_command_line_says_who_agrees(cli: Cli) -> None:
+    ran = cli("solve", "--goal", "macaroni", "--objective", "success", "--cross-check")
+    assert ran.code == 0
+    assert "cross-check: HiGHS agrees by success, units (" in ran.out
+    if installed():
+        assert "cross-check: Fast Downward agrees by success (" in ran.out
+    else:
+        assert "cross-check: Fast Downward is not installed" in ran.out
+    assert cli("solve", "--goal", "apple pie", "--cross-check", "--format", "json").code == 1
+    narrower = ("--constraint", "at_most_units", "-c", "max_units=9")
+    refused = cli("solve", "--goal", "ice", "--cross-check", *narrower)
+    assert refused.code == 2
+    assert "at_most_units.lp" in refused.err
+
+
+def test_an_engine_that_is_not_installed_is_named(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("foon_asp.engines.fast_downward.driver", lambda: None)
+    ran = cli("solve", "--goal", "ice", "--cross-check")
+    assert ran.code == 0
+    assert ran.out.endswith(
+        "cross-check: Fast Downward is not installed (pip install 'foon-asp[cross-check]')\n"
+    )
+    assert "HiGHS agrees" in ran.out
+
+
+def test_a_disagreement_is_our_bug_with_all_that_is_needed(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def liar(
+        problem: Problem, objectives: tuple[Objective, ...], forbidden: frozenset[int], seconds: float
+    ) -> EngineAnswer:
+        return EngineAnswer("Liar", objectives, None, True, seconds)
+
+    def with_liar(outcome: Outcome, forbidden: frozenset[int], seconds: float) -> list[EngineAnswer]:
+        return cross_check(outcome, forbidden, seconds, (Engine("Liar", lambda: True, liar),))
+
+    monkeypatch.setattr(command, "cross_check", with_liar)
+    monkeypatch.chdir(tmp_path)
+    words = ("--goal", "ice", "--constraint", "forbid_motion", "-c", "forbidden_motion=crush")
+    ran = cli("solve", *words, "--cross-check")
+    assert ran.code == 70
+    assert "we say a tree exists, Liar says no tree exists" in ran.err
+    (folder,) = tmp_path.iterdir()
+    assert str(folder.name) in ran.err
+    report = json.loads((folder / "report.json").read_text())
+    assert report["other"] == {"engine": "Liar", "objectives": ["units"], "units": None, "costs": None}
+    assert report["answer"]["costs"]["units"] == 3
+    assert set(report["versions"]) == {"foon-asp", "python", "clingo", "highspy", "up-fast-downward"}
+    # the folder asks the same question of the same data
+    data = read_data(find_data(folder))
+    assert digests(data.network, data.kitchen, data.rates, data.utensils) == report["digests"]
+    monkeypatch.undo()
+    monkeypatch.chdir(folder)
+    again = cli(*shlex.split(report["command"])[1:])
+    assert again.code == 0
+    assert "3 units" in again.out

@@ -1,0 +1,134 @@
+"""The real universal FOON: a verified certificate for every goal, and engines that agree."""
+
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Proof, Settings, Status, solve
+from foon_asp.certificate import certify_outcome
+from foon_asp.compare import makeable
+from foon_asp.engines import cross_check
+from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.proof.verify import read_certificate, verify
+from foon_asp.text import Data, find_data, find_goal, read_data
+from tests.conftest import Cli
+
+ROOT = Path(__file__).resolve().parents[1]
+RULES = list(ContainerRule)
+OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
+
+
+@pytest.fixture(scope="module")
+def data(universal: Path) -> Data:
+    return read_data(find_data(universal))
+
+
+def ask(data: Data, goal: int, rule: ContainerRule) -> Problem:
+    return Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
+
+
+def certify_and_verify(problem: Problem, objective: Objective) -> Status:
+    """Solve, certify, write, read and verify; the whole claim has to be proved."""
+    outcome, found = certify_outcome(solve(problem, (objective,)), Settings())
+    assert outcome.proof is Proof.CERTIFICATE
+    assert found is not None
+    content = read_certificate(found.text())
+    claim = verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
+    assert claim.goals == problem.goals
+    assert claim.containers == str(problem.containers)
+    if outcome.status is Status.INFEASIBLE:
+        assert claim.claim == "infeasible"
+    else:
+        assert claim.claim == "optimal"
+        assert outcome.costs is not None
+        assert claim.costs == tuple(outcome.costs.measure(level) for level in levels((objective,)))
+    return outcome.status
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_every_goal_of_the_goals_file(data: Data, rule: ContainerRule) -> None:
+    infeasible = []
+    for entry in data.goals:
+        goal = find_goal(entry.pattern.label, data.network, data.goals)
+        for objective in OBJECTIVES:
+            status = certify_and_verify(ask(data, goal, rule), objective)
+            if status is Status.INFEASIBLE:
+                infeasible.append(entry.pattern.label)
+    assert infeasible == ["whipped cream"] * len(OBJECTIVES)
+
+
+@pytest.mark.parametrize("level", [1, 2])
+def test_goals_at_lower_levels(universal: Path, level: int) -> None:
+    data = read_data(find_data(universal), level=level)
+    goals = sorted({node for entry in data.goals for node in data.network.find(entry.pattern)})
+    problems = [ask(data, goal, rule) for rule in RULES for goal in goals]
+    proved = [certify_and_verify(problem, Objective.SUCCESS) for problem in problems]
+    assert proved.count(Status.OPTIMAL) >= 8
+
+
+def test_whipped_cream_by_the_command_line(cli: Cli, universal: Path, tmp_path: Path) -> None:
+    file = tmp_path / "proof.json"
+    words = ("--data", universal, "--goal", "whipped cream", "--certificate", file, "--format", "json")
+    ran = cli("solve", *words)
+    assert ran.code == 1
+    assert ran.json["proof"] == "certificate"
+    checked = cli("verify", file, "--data", universal)
+    assert checked.code == 0
+    assert "verified: there is no task tree (strict containers)" in checked.out
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_all_engines_agree_on_the_goals(data: Data, rule: ContainerRule) -> None:
+    for entry in data.goals:
+        goal = find_goal(entry.pattern.label, data.network, data.goals)
+        for objective in OBJECTIVES:
+            answers = cross_check(solve(ask(data, goal, rule), (objective,)), frozenset(), 60.0)
+            assert answers
+            assert all(answer.finished for answer in answers)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("rule", RULES)
+def test_a_sample_of_all_that_can_be_made(data: Data, rule: ContainerRule, objective: Objective) -> None:
+    goals = random.Random(2).sample(makeable(ask(data, 0, rule)), 100)
+    for goal in goals:
+        assert certify_and_verify(ask(data, goal, rule), objective) is Status.OPTIMAL
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("rule", RULES)
+def test_all_engines_agree_on_a_sample(data: Data, rule: ContainerRule, objective: Objective) -> None:
+    for goal in random.Random(3).sample(makeable(ask(data, 0, rule)), 40):
+        answers = cross_check(solve(ask(data, goal, rule), (objective,)), frozenset(), 60.0)
+        assert answers[0].finished
+
+
+@pytest.mark.slow
+def test_verifying_takes_less_time_than_importing_clingo(cli: Cli, universal: Path, tmp_path: Path) -> None:
+    file = tmp_path / "proof.json"
+    words = ("--data", universal, "--goal", "greek salad", "-o", file)
+    assert cli("certify", *words).code == 0
+    importing = "import time; began = time.perf_counter(); import clingo; print(time.perf_counter() - began)"
+    verifying = f"""
+import time
+from pathlib import Path
+from foon_asp.text import find_data, read_data
+from foon_asp.proof.verify import read_certificate, verify
+data = read_data(find_data(Path({str(universal)!r})))
+began = time.perf_counter()
+content = read_certificate(Path({str(file)!r}).read_text())
+verify(content, data.network, data.kitchen, data.rates, data.utensils)
+print(time.perf_counter() - began)
+"""
+
+    def least(program: str) -> float:
+        command = [sys.executable, "-c", program]
+        runs = (subprocess.check_output(command, text=True, cwd=ROOT) for _ in range(7))
+        return min(map(float, runs))
+
+    assert least(verifying) < least(importing)
