@@ -20,7 +20,7 @@ FLOORS = (
     {"errors", "resources"},
     {"network"},
     {"text", "problem", "bounds"},
-    {"asp", "search", "proof"},
+    {"asp", "search", "proof", "store"},
     {"explain", "compare", "lint", "certificate", "engines"},
     {"report"},
     {"batch"},

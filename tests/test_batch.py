@@ -380,3 +380,18 @@ def test_a_worker_opens_equal_data_once() -> None:
     one, other = (Opening((("level", 3),), "d") for _ in range(2))
     assert one == other
     assert hash(one) == hash(other)
+
+
+def test_a_store_gives_the_same_rows(cli: Cli, questions: Path, tmp_path: Path) -> None:
+    with questions.open("a") as more:
+        more.write('{"goal": "@goals", "containers": "implied"}\n')
+    store = tmp_path / "kitchen.foon"
+    assert cli("import", "--data", bundled_kitchen(), "--store", store).code == 0
+    assert cli("batch", questions, "--results", tmp_path / "a.jsonl").code == 0
+    ran = cli("batch", questions, "--results", tmp_path / "b.jsonl", "--network", store, "--jobs", 2)
+    assert ran.code == 0
+    ours, theirs = (
+        {asked_by(row): (row["status"], row["costs"]) for row in rows_of(tmp_path / name)}
+        for name in ("a.jsonl", "b.jsonl")
+    )
+    assert ours == theirs

@@ -45,6 +45,7 @@ def failed_row(asked: Asked, error: str) -> Row:
 
 
 def _answered(asked: Asked, outcome: Outcome) -> Row:
+    network = outcome.problem.network
     return {
         **asked.shown(),
         "status": str(outcome.status),
@@ -52,5 +53,5 @@ def _answered(asked: Asked, outcome: Outcome) -> Row:
         "proof": None if outcome.proof is None else str(outcome.proof),
         "costs": costs_json(outcome.costs),
         "lower_bound": bounds_json(outcome),
-        "units": None if outcome.units is None else list(outcome.units),
+        "units": None if outcome.units is None else list(map(network.unit_number, outcome.units)),
     }

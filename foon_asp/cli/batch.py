@@ -52,7 +52,7 @@ def command(
 
     \b
     foon-asp batch questions.jsonl --results answers.jsonl --jobs 2
-    foon-asp batch questions.jsonl --results answers.parquet --data my_foon
+    foon-asp batch questions.jsonl --results answers.parquet --network recipes.foon
     foon-asp batch questions.jsonl --results answers.jsonl --scheduler tcp://10.0.0.5:8786
 
     \b

@@ -11,6 +11,7 @@ from typing import Any
 from foon_asp.batch import Asked
 from foon_asp.cli import options
 from foon_asp.compare import makeable
+from foon_asp.network import Network
 from foon_asp.problem import Problem
 from foon_asp.text import read_object_list
 
@@ -40,11 +41,14 @@ class BatchData:
     def named(self, word: str, containers: str, kitchen: Path | None) -> Sequence[str]:
         """Give the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
         question = self._with(kitchen)
-        goals = question.each_goal(())
         if word == "@makeable":
-            goals = makeable(question.problem((0,), containers))
-        objects = question.data.network.objects
-        return [str(objects[goal]) for goal in dict.fromkeys(goals)]
+            problem = question.problem((0,), containers, everything=True)
+            return [str(problem.network.objects[goal]) for goal in makeable(problem)]
+        names = question.names
+        goals = dict.fromkeys(question.each_goal(()))
+        if isinstance(names, Network):
+            return [str(names.objects[goal]) for goal in goals]
+        return [str(names.node(goal)) for goal in goals]
 
     def problem(self, asked: Asked) -> Problem:
         """Pose a question."""

@@ -33,7 +33,6 @@ from foon_asp.report.comparison_table import (
 from foon_asp.report.published_table import PublishedTable, published_markdown, read_published
 from foon_asp.resources import published_table
 from foon_asp.search import SEARCHES, Count, SearchSettings, Ties
-from foon_asp.text import find_goal, listed_nodes
 
 _CHARTED = 60  # goals that a chart has room for
 
@@ -99,7 +98,6 @@ def command(
     stopped at the time limit.
     """
     question = options.read_question(**data)  # type: ignore[arg-type]
-    network, listed = question.data.network, question.data.goals
     table = read_published(published_table()) if published else None
     if table is not None:
         goals_named = goals_named or tuple(table.goals)
@@ -107,18 +105,18 @@ def command(
         if unknown or all_makeable:
             raise UserError(f"the published table has the goals {', '.join(table.goals)} and no others")
     if all_makeable:
-        one = question.problem((0,), containers)
-        goals = makeable(one)
-    elif goals_named:
-        goals = [find_goal(name, network, listed) for name in goals_named]
+        goals = makeable(question.problem((0,), containers, everything=True))
     else:
-        goals = list(dict.fromkeys(node for entry in listed for node in listed_nodes(entry, network)))
+        goals = list(dict.fromkeys(question.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     if charts and len(goals) > _CHARTED:
         raise UserError(f"a chart of {len(goals)} goals could not be read; name up to {_CHARTED} with --goal")
     settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit)
-    problem = question.problem((goals[0],), containers)
+    # Results are kept with a digest of all the data.
+    everything = all_makeable or results is not None
+    problem = question.problem(goals, containers, everything)
+    goals = list(problem.goals)
     rows = _run(problem, goals, searches, settings, jobs, results)
 
     for chart in charts:

@@ -43,7 +43,7 @@ def unit_json(network: Network, unit: int) -> dict[str, object]:
     """
     objects = network.objects
     given: dict[str, object] = {
-        "id": unit,
+        "id": network.unit_number(unit),
         "motion": network.motions[unit],
         "inputs": [str(objects[o]) for o in network.inputs[unit]],
         "outputs": [str(objects[o]) for o in network.outputs[unit]],
