@@ -328,6 +328,7 @@ QUESTIONS = (
     ("optima", "--objective", "units", "--format", "json"),
     ("optima", "--goal", "ice", "--objective", "inputs,success", "--format", "json"),
     ("compare", "--goal", "macaroni", "--goal", "ice", "--format", "csv"),
+    pytest.param(("compare", "--all-makeable", "--search", "bfs"), marks=pytest.mark.slow),
     ("draw", "--goal", "macaroni"),
     ("draw", "--unit", "7", "--unit", "3"),
     ("draw", "--unit", "999999"),

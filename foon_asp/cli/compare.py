@@ -4,15 +4,14 @@ import contextlib
 import hashlib
 import json
 import os
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.progress import bar
 from foon_asp.cli.search_options import search_options
 from foon_asp.compare import (
     Comparison,
@@ -34,9 +33,6 @@ from foon_asp.report.comparison_table import (
 from foon_asp.report.published_table import PublishedTable, published_markdown, read_published
 from foon_asp.resources import published_table
 from foon_asp.search import SEARCHES, Count, SearchSettings, Ties
-
-if TYPE_CHECKING:
-    from rich.progress import Progress
 
 _CHARTED = 60  # goals that a chart has room for
 
@@ -111,7 +107,7 @@ def command(
     if all_makeable:
         goals = makeable(question.problem((0,), containers, everything=True))
     else:
-        goals = question.each_goal(goals_named)
+        goals = list(dict.fromkeys(question.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     if charts and len(goals) > _CHARTED:
@@ -149,14 +145,13 @@ def _run(
             file = stack.enter_context(ResultsFile(results, _question(problem, searches, settings)))
             done = file.done
         left = [goal for goal in dict.fromkeys(goals) if names[goal] not in done]
-        progress = stack.enter_context(_progress(len(names), len(names) - len(left)))
+        advance = stack.enter_context(bar("comparing", len(names), len(names) - len(left)))
         for row in compare_goals(problem, left, searches, settings, settings.time_limit, jobs):
             if file is None:
                 done[row.goal] = row
             else:
                 file.add(row)
-            if progress is not None:
-                progress.advance(progress.task_ids[0])
+            advance()
     return [done[names[goal]] for goal in goals]
 
 
@@ -183,21 +178,6 @@ def _question(problem: Problem, searches: Sequence[str], settings: SearchSetting
         "depth_limit": settings.depth_limit,
         "time_limit": settings.time_limit,
     }
-
-
-@contextlib.contextmanager
-def _progress(total: int, completed: int) -> "Iterator[Progress | None]":
-    """Show a bar on a terminal, for more than a handful of goals."""
-    if total < 20 or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("comparing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
-        progress.add_task("", total=total, completed=completed)
-        yield progress
 
 
 def _print(rows: list[Comparison], format_: str, summary_only: bool) -> None:

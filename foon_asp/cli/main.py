@@ -17,6 +17,7 @@ _VERBS = (
     "optima",
     "search",
     "compare",
+    "batch",
     "check",
     "certify",
     "verify",

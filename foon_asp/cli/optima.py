@@ -41,7 +41,7 @@ def command(
     """
     lists = [parse_objectives([text]) for text in objectives]
     question = options.read_question(**data)  # type: ignore[arg-type]
-    goals = question.each_goal(goals_named)
+    goals = list(dict.fromkeys(question.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     outcomes: list[Outcome] = []

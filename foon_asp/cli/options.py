@@ -14,11 +14,13 @@ from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import (
     Data,
+    DataFiles,
     ListedObject,
     NodeNames,
     find_data,
     find_goal,
     is_store,
+    kitchen_nodes,
     listed_nodes,
     read_data,
     summarize,
@@ -173,7 +175,13 @@ class Question:
         """Find one goal for each name; without names, all nodes of the goals file."""
         if names:
             return [find_goal(name, self.names, self.listed) for name in names]
-        return list(dict.fromkeys(node for entry in self.listed for node in listed_nodes(entry, self.names)))
+        return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
+
+    def with_kitchen(self, items: Sequence[ListedObject]) -> "Question":
+        """Give the same data with another kitchen."""
+        kitchen = kitchen_nodes(self.data.network, items)
+        data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items))
+        return Question(data, self.read_seconds)
 
     def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals, which are those of the problem in the same order, under a container rule.
@@ -198,6 +206,20 @@ class Question:
                 raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
 
 
+def data_files(
+    folder: Path | None,
+    network: Sequence[Path],
+    kitchen: Path | None,
+    rates: Path | None,
+    utensils: Path | None,
+    goals: Path | None,
+) -> DataFiles:
+    """Find the files that the options name: those of the bundled kitchen without --data and --network."""
+    if folder is None and not network:
+        folder = bundled_kitchen()
+    return find_data(folder, network, kitchen, rates, utensils, goals)
+
+
 def read_question(
     folder: Path | None,
     network: Sequence[Path],
@@ -215,9 +237,7 @@ def read_question(
     kitchen and rates, which are made for another one.
     """
     began = time.perf_counter()
-    if folder is None and not network:
-        folder = bundled_kitchen()
-    files = find_data(folder, network, kitchen, rates, utensils, goals)
+    files = data_files(folder, network, kitchen, rates, utensils, goals)
     if any(map(is_store, files.network)):
         from foon_asp.cli.stored_question import read_stored
 

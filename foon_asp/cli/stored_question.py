@@ -87,6 +87,11 @@ class StoredQuestion(Question):
             self._at_hand = {o for item in kitchen for o in store.find(item.pattern)}.__contains__
         self.read_seconds = time.perf_counter() - began
 
+    def with_kitchen(self, items: Sequence[ListedObject]) -> Question:
+        """Give the same store with another kitchen."""
+        began = time.perf_counter()
+        return StoredQuestion(self._store, items, self._listed, self._rates, self._utensils, began)
+
     @cached_property
     def data(self) -> Data:
         """Everything there is: the whole store is read."""

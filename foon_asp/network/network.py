@@ -41,9 +41,9 @@ class Network:
     level: int = 3
     detailed: "Network | None" = field(default=None, repr=False)
     stands_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
+    objects_stand_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
     unit_numbers: tuple[int, ...] = field(default=(), repr=False)
     object_numbers: tuple[int, ...] = field(default=(), repr=False)
-    objects_stand_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
 
     def __len__(self) -> int:
         """Count the units."""

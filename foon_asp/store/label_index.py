@@ -1,12 +1,12 @@
 """The labels of a store: by name, by how they begin, and by what they are like, without reading them all."""
 
-import difflib
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 from zlib import crc32
 
 from foon_asp.store.block import SIZES, Table
+from foon_asp.text import near_labels
 
 LISTED = 12  # node ids kept with a label: as many as a message has room for
 
@@ -95,10 +95,7 @@ class LabelIndex:
             for place in places:
                 shared[place] += 1
         likest = sorted(shared, key=lambda place: (-shared[place], place))[:_COMPARED]
-        by_lower = {found.lower(): found for found in (self._at(place).label for place in sorted(likest))}
-        return [
-            by_lower[name] for name in difflib.get_close_matches(label.lower(), by_lower, n=most, cutoff=0.6)
-        ]
+        return near_labels(label, (self._at(place).label for place in sorted(likest)), most)
 
     def _place(self, label: str) -> int:
         """Give the place of the first label that is not before this one."""

@@ -2,6 +2,7 @@
 
 import difflib
 import shlex
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
@@ -53,7 +54,7 @@ def find_goal(name: str, network: Network | NodeNames, listed: Sequence[ListedOb
         node = node_at_level(parse_node(name), names.level)
     except LineError as error:
         raise UserError(f"the goal {name!r} cannot be read: at column {error.column}, {error}") from None
-    bare = ";" not in name
+    bare = node == ObjectNode(node.label) and not _is_closed(name, node)
     entries = [entry for entry in listed if bare and entry.pattern.label == node.label]
     if entries:
         found = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
@@ -65,20 +66,23 @@ def find_goal(name: str, network: Network | NodeNames, listed: Sequence[ListedOb
     exact = names.object_id(node)
     if exact is not None:
         return exact
+    if not bare:  # a label with a semicolon in it, as it is
+        count, labelled = names.labelled(name)
+        if count:
+            return _only(name, names, count, labelled)
     count, labelled = names.labelled(node.label)
     if count:
         raise UserError(
             f"no object node is exactly {str(node)!r}; with that label there are\n"
             + _list(names, count, labelled)
         )
-    begins = names.beginning(node.label, _SHOWN)
-    near = names.near(node.label, _NEAR)
-    message = f"no object node has the label {node.label!r}"
-    if begins or near:
-        similar = [names.labelled(label) for label in dict.fromkeys((*near, *begins))]
-        candidates = [o for _, first in similar for o in first]
-        message += "; similar are\n" + _list(names, sum(count for count, _ in similar), candidates)
-    raise UserError(message)
+    raise UserError(f"no object node has the label {node.label!r}" + _similar(node.label, names))
+
+
+def _is_closed(name: str, node: ObjectNode) -> bool:
+    """Whether a notation ends in a semicolon that is no part of a name."""
+    name = name.rstrip(" ")
+    return name.endswith(";") and parse_node(name[:-1]) == node
 
 
 def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[int]:
@@ -93,7 +97,7 @@ def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[
             + (
                 "; with that label there are\n" + _list(names, count, labelled)
                 if count
-                else " of the network"
+                else " of the network" + _similar(entry.pattern.label, names)
             )
         )
     return found
@@ -119,12 +123,32 @@ class _NetworkNames:
         return sorted(label for label in self._network.by_label if label.startswith(start))[:most]
 
     def near(self, label: str, most: int) -> Sequence[str]:
-        lower = {known.lower(): known for known in self._network.by_label}
-        return [lower[name] for name in difflib.get_close_matches(label.lower(), lower, n=most, cutoff=0.6)]
+        return near_labels(label, self._network.by_label, most)
+
+
+def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
+    """Give those of the known labels that are like one, whatever their capitals, the likest first."""
+    lower: defaultdict[str, list[str]] = defaultdict(list)
+    for name in known:
+        lower[name.lower()].append(name)
+    close = difflib.get_close_matches(label.lower(), lower, n=most, cutoff=0.6)
+    return [name for small in close for name in lower[small]]
 
 
 def _names(network: Network | NodeNames) -> NodeNames:
     return _NetworkNames(network) if isinstance(network, Network) else network
+
+
+def _similar(label: str, names: NodeNames) -> str:
+    """List nodes whose labels begin so or are near, a few of each label; empty where there are none."""
+    labels = dict.fromkeys((*names.beginning(label, _SHOWN), *names.near(label, _NEAR)))
+    found = [names.labelled(like) for like in labels]
+    if not found:
+        return ""
+    each = max(1, _SHOWN // len(found))
+    return "; similar are\n" + _list(
+        names, sum(count for count, _ in found), [o for _, first in found for o in first[:each]]
+    )
 
 
 def _only(name: str, names: NodeNames, count: int, found: Sequence[int]) -> int:
@@ -137,8 +161,10 @@ def _only(name: str, names: NodeNames, count: int, found: Sequence[int]) -> int:
 
 
 def _list(names: NodeNames, count: int, first: Iterable[int]) -> str:
-    shown = [str(names.node(o)) for o in [*first][:_SHOWN]]
-    lines = [f"  --goal {shlex.quote(name if ';' in name else name + ';')}" for name in shown]
+    shown = [names.node(o) for o in [*first][:_SHOWN]]
+    # a semicolon makes the notation of a node that is only a label
+    texts = [f"{node};" if node == ObjectNode(node.label) else str(node) for node in shown]
+    lines = [f"  --goal {shlex.quote(text)}" for text in texts]
     if count > len(shown):
         lines.append(f"  ... and {count - len(shown)} more")
     return "\n".join(lines)
