@@ -22,9 +22,14 @@ class Status(StrEnum):
 
 
 class Proof(StrEnum):
-    """What a claim rests on: an exhausted search, or a certificate that was verified without a solver."""
+    """What a claim rests on.
+
+    ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search; see
+    docs/reductions.md. ``certificate``: a certificate that was verified without either.
+    """
 
     SOLVER = "solver"
+    CUTS = "cuts"
     CERTIFICATE = "certificate"
 
 

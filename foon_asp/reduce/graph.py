@@ -1,0 +1,84 @@
+"""A question as plain arrays: actions that need and give objects, towards some goals."""
+
+from collections.abc import Collection, Container, Iterable, Sequence
+from dataclasses import dataclass
+
+from foon_asp.problem import Objective, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """Actions and objects by number; nothing is copied where the network has it already.
+
+    Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
+    taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is empty;
+    elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
+    ``makers[o]`` are the actions that give object ``o``. ``goals`` are those that are not there from the start.
+    """
+
+    units: int
+    needs: Sequence[Sequence[int]]
+    gives: Sequence[Sequence[int]]
+    makers: Sequence[Sequence[int]]
+    start: frozenset[int]
+    goals: tuple[int, ...]
+
+    def cone(self, allowed: Container[int] | None = None) -> tuple[list[int], set[int]]:
+        """Go backwards from the goals through all (allowed) actions, and stop at the start.
+
+        Gives the actions that something wanted can come from, in no order, and the objects that are wanted.
+        """
+        needs, makers, start = self.needs, self.makers, self.start
+        wanted = set(self.goals)
+        stack = list(wanted)
+        chosen: set[int] = set()
+        while stack:
+            for action in makers[stack.pop()]:
+                if action not in chosen and (allowed is None or action in allowed):
+                    chosen.add(action)
+                    for o in needs[action]:
+                        if o not in wanted and o not in start:
+                            wanted.add(o)
+                            stack.append(o)
+        return list(chosen), wanted
+
+    def order(self, actions: Collection[int]) -> list[int] | None:
+        """Put actions into an order in which they run; ``None`` when some never do, or a goal is missed."""
+        start, needs, gives = self.start, self.needs, self.gives
+        missing: dict[int, int] = {}
+        takers: dict[int, list[int]] = {}
+        ready: list[int] = []
+        for action in sorted(actions):
+            lacking = [o for o in needs[action] if o not in start]
+            missing[action] = len(lacking)
+            for o in lacking:
+                takers.setdefault(o, []).append(action)
+            if not lacking:
+                ready.append(action)
+        made = set(start)
+        for action in ready:  # grows while it is walked through
+            for o in gives[action]:
+                if o not in made:
+                    made.add(o)
+                    for taker in takers.get(o, ()):
+                        missing[taker] -= 1
+                        if not missing[taker]:
+                            ready.append(taker)
+        return ready if len(ready) == len(missing) and made.issuperset(self.goals) else None
+
+
+def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
+    """Give the graph of a problem under a list of objectives."""
+    network, kitchen = problem.network, problem.kitchen
+    units = len(network)
+    if Objective.KITCHEN not in objectives:
+        goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
+        return Graph(units, problem.needs, network.outputs, network.producers, kitchen, goals)
+    makers = list(network.producers)
+    for o in kitchen:
+        makers[o] = (units + o,)
+    gives: list[Sequence[int]] = [[o for o in given if o not in kitchen] for given in network.outputs]
+    gives += [(o,) for o in range(len(network.objects))]
+    needs = [*problem.needs, *([()] * len(network.objects))]
+    goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
+    return Graph(units, needs, gives, makers, frozenset(), goals)

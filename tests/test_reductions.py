@@ -1,0 +1,84 @@
+"""Reductions: each alone and all together leave the optimum as it is."""
+
+from itertools import combinations
+
+import pytest
+
+from foon_asp.asp import Proof, Settings, Status, solve
+from foon_asp.errors import UserError
+from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.reduce import ALL, NONE, SAFE, Reduction, parse_reductions, reduce
+from tests.oracle import best, key, trees
+from tests.random_problems import random_problem
+
+LISTS = [
+    *([objective] for objective in Objective),
+    ["success", "inputs"],
+    ["inputs", "success"],
+    ["units", "success"],
+    ["kitchen", "success", "inputs"],
+    ["units", "inputs", "kitchen"],
+    ["inputs+ingredients", "kitchen"],
+]
+CHOICES = [
+    ALL,
+    SAFE,
+    *(frozenset({one}) for one in Reduction),
+    *(frozenset(two) for two in combinations(Reduction, 2)),
+]
+
+
+def best_left(problem: Problem, units: tuple[int, ...], names: list[str]) -> object:
+    """Give the best measure among the trees made of the units left, by brute force."""
+    left = {problem.network.unit(u) for u in units}
+    found = list(trees(problem, lambda chosen: left.issuperset(chosen)))
+    return best(found, problem, names)
+
+
+@pytest.mark.parametrize("rule", ContainerRule)
+@pytest.mark.parametrize("seed", range(120))
+def test_what_is_left_has_an_optimum(seed: int, rule: ContainerRule) -> None:
+    problem = random_problem(seed, rule)
+    found = list(trees(problem))
+    for place, names in enumerate(LISTS):
+        objectives = levels(tuple(map(Objective, names)))
+        for number, reductions in enumerate(CHOICES):
+            if number and (seed + place + number) % 4:
+                continue
+            expected = best(found, problem, names)
+            left = reduce(problem, objectives, reductions)
+            if expected is None:
+                assert left.tree is None
+                continue
+            assert left.tree is not None
+            units = tuple(problem.network.unit(u) for u in sorted(left.tree))
+            in_hand = key(problem, units, names)
+            assert in_hand >= expected
+            assert best_left(problem, left.units, names) == expected, (names, reductions)
+            if left.settled:
+                assert in_hand == expected, (names, reductions)
+            if reductions <= SAFE:  # every optimal tree is left
+                kept = {problem.network.unit(u) for u in left.units}
+                for tree in found:
+                    if key(problem, tree, names) == expected:
+                        assert kept.issuperset(tree), (names, reductions)
+            if left.costs is not None:
+                total = sum(map(left.costs, left.tree)) if "kitchen" not in names else None
+                assert total is None or left.bound <= total
+                bound, first = left.costs.first(left.bound), expected[0]
+                assert (-bound if names[0] == "success" else bound) <= first
+
+
+@pytest.mark.parametrize("rule", ContainerRule)
+@pytest.mark.parametrize("seed", range(200))
+def test_answers_are_the_same(seed: int, rule: ContainerRule) -> None:
+    problem = random_problem(seed, rule, units=14)
+    names = LISTS[seed % len(LISTS)]
+    objectives = tuple(map(Objective, names))
+    plain = solve(problem, objectives, Settings(reductions=NONE))
+    for reductions in (ALL, CHOICES[2 + seed % (len(CHOICES) - 2)]):
+        outcome = solve(problem, objectives, Settings(reductions=reductions))
+        assert outcome.status is plain.status
+        if plain.costs is not None and outcome.costs is not None:
+            assert outcome.costs.key(levels(objectives)) == plain.costs.key(levels(objectives)), reductions
+            assert outcome.bounds == plain.bounds
