@@ -4,15 +4,14 @@ from itertools import combinations
 
 import pytest
 
-from foon_asp.asp import Proof, Settings, Status, solve
-from foon_asp.errors import UserError
+from foon_asp.asp import Settings, solve
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.reduce import ALL, NONE, SAFE, Reduction, parse_reductions, reduce
+from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce
 from tests.oracle import best, key, trees
 from tests.random_problems import random_problem
 
-LISTS = [
-    *([objective] for objective in Objective),
+LISTS: list[list[str]] = [
+    *([str(objective)] for objective in Objective),
     ["success", "inputs"],
     ["inputs", "success"],
     ["units", "success"],
@@ -31,7 +30,7 @@ CHOICES = [
 def best_left(problem: Problem, units: tuple[int, ...], names: list[str]) -> object:
     """Give the best measure among the trees made of the units left, by brute force."""
     left = {problem.network.unit(u) for u in units}
-    found = list(trees(problem, lambda chosen: left.issuperset(chosen)))
+    found = list(trees(problem, left.issuperset))
     return best(found, problem, names)
 
 

@@ -43,6 +43,7 @@ class Outcome(NamedTuple):
     ``proof`` is what an ``optimal`` or ``infeasible`` answer rests on, ``None`` for the others.
     ``encodings`` is the folder whose encodings replaced ours, if one did: what is best is then what they say.
     ``certified`` are the objectives, from the first on, for which a certificate proves the tree best.
+    ``left`` counts the units that the search had to choose from, 0 where nothing was left to search.
     """
 
     problem: Problem
@@ -55,3 +56,4 @@ class Outcome(NamedTuple):
     encodings: Path | None = None
     proof: Proof | None = None
     certified: tuple[Objective, ...] = ()
+    left: int = 0

@@ -4,11 +4,11 @@ import time
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
+from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_exponents, write_facts, write_objectives, write_seen, write_wanted
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.program import Program, Settings, assemble
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.run import Run
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach
@@ -101,9 +101,12 @@ class _Solver:
         self._report_tree(incumbent)
         if self.reduced and self.reduced.settled:
             return self._optimal(incumbent)
-        if self.deadline.passed:
-            return self._outcome(Status.FEASIBLE, incumbent, self._bounds([]))
+        return self._search(incumbent)
 
+    def _search(self, incumbent: Units) -> Outcome:
+        """Ask clingo for what is better than the tree in hand."""
+        if self.reduced and self.deadline.passed:
+            return self._outcome(Status.FEASIBLE, incumbent, self._bounds([]))
         wanted, strict = self._wanted(incumbent)
         ended = self._run(self.levels, opt_mode=wanted, report=True)
         if ended.units is None and ended.exhausted:
@@ -290,8 +293,8 @@ class _Solver:
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
 
-        Where it has none yet, no cost is below 0 and no success above 1. A bound on trees that are better than
-        the one in hand is no bound beyond that one. What the cuts say of the first objective counts, too.
+        Where it has none yet, no cost is below 0 and no success above 1. A bound on trees that are better
+        than the one in hand is no bound beyond that one. What the cuts say of the first objective counts.
         """
         bounds: dict[Objective, int | Fraction] = {
             objective: max(0, value)
@@ -335,6 +338,7 @@ class _Solver:
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
         if status is Status.OPTIMAL and self.reduced and self.reduced.settled:
             proof = Proof.CUTS
+        left = 0 if proof is Proof.CUTS else len(self.units)
         if units is None:
             return Outcome(
                 self.problem,
@@ -374,6 +378,7 @@ class _Solver:
             self.seconds,
             self.settings.encodings,
             proof,
+            left=left,
         )
 
     def _spent(self, phase: str, began: float) -> None:

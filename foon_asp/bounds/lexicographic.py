@@ -93,7 +93,7 @@ def _product_sign(rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
     for rate, exponent in zip(rates, exponents, strict=True):
         if exponent:
             below, above = _logarithms(rate)
-            total += exponent * (below - above)
+            total += (below - above) * exponent
             error += abs(exponent) * (below + above) * _FINE
     if abs(total) > error:
         return 1 if total > 0 else -1

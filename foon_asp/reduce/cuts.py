@@ -12,7 +12,7 @@ from foon_asp.reduce.graph import Graph
 
 
 class WeightedCut(NamedTuple):
-    """A cut: its objects, the actions of its landmark, the one that had least cost left, and that as weight."""
+    """A cut: its objects, its landmark, the member that had least cost left, and that cost as its weight."""
 
     objects: frozenset[int]
     members: tuple[int, ...]
@@ -46,35 +46,14 @@ def landmark_cuts(
     thought to be: a cut passes through the dearest object that an action needs. What is made for nothing only
     grows, so that the time goes with what the cuts touch and not with the size of the graph.
     """
-    needs, gives, makers, start = graph.needs, graph.gives, graph.makers, graph.start
+    needs, makers = graph.needs, graph.makers
     left: dict[int, int] = {}
-    free: set[int] = set()
-    lacking: dict[int, int] = {}
-    waiting: dict[int, list[int]] = {}
+    free = _Free(graph)
     found: list[WeightedCut] = []
     bound = 0
     goals = sorted(graph.goals, key=lambda o: (dear.get(o, 0), o))
-
-    def release(action: int) -> None:
-        """Let an action that has no cost left run as soon as all it needs is free."""
-        count = 0
-        for o in needs[action]:
-            if o not in free and o not in start:
-                count += 1
-                waiting.setdefault(o, []).append(action)
-        lacking[action] = count
-        stack = [] if count else [action]
-        while stack:
-            for o in gives[stack.pop()]:
-                if o not in free and o not in start:
-                    free.add(o)
-                    for taker in waiting.pop(o, ()):
-                        lacking[taker] -= 1
-                        if not lacking[taker]:
-                            stack.append(taker)
-
     while goals and not expired():
-        if goals[-1] in free:
+        if goals[-1] in free.objects:
             goals.pop()
             continue
         zone = {goals[-1]}
@@ -91,10 +70,7 @@ def landmark_cuts(
                 passed.add(action)
                 needed = needs[action]
                 if zone.isdisjoint(needed):
-                    o = max(
-                        (o for o in needed if o not in free and o not in start),
-                        key=lambda o: (dear.get(o, 0), o),
-                    )
+                    o = max(free.lacking(action), key=lambda o: (dear.get(o, 0), o))
                     zone.add(o)
                     stack.append(o)
         members = tuple(action for action in edge if zone.isdisjoint(needs[action]))
@@ -107,5 +83,37 @@ def landmark_cuts(
         for action, rest in zip(members, rests, strict=True):
             left[action] = rest - weight
             if rest == weight:
-                release(action)
+                free.release(action)
     return Cuts(bound, left, found)
+
+
+class _Free:
+    """What can be made for nothing, growing as actions run out of cost."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self.objects: set[int] = set()
+        self._missing: dict[int, int] = {}
+        self._waiting: dict[int, list[int]] = {}
+
+    def lacking(self, action: int) -> list[int]:
+        """Give what an action needs and what is neither free nor there from the start."""
+        free, start = self.objects, self._graph.start
+        return [o for o in self._graph.needs[action] if o not in free and o not in start]
+
+    def release(self, action: int) -> None:
+        """Let an action that has no cost left run as soon as all it needs is free."""
+        lacking = self.lacking(action)
+        self._missing[action] = len(lacking)
+        for o in lacking:
+            self._waiting.setdefault(o, []).append(action)
+        gives, start, free = self._graph.gives, self._graph.start, self.objects
+        stack = [] if lacking else [action]
+        while stack:
+            for o in gives[stack.pop()]:
+                if o not in free and o not in start:
+                    free.add(o)
+                    for taker in self._waiting.pop(o, ()):
+                        self._missing[taker] -= 1
+                        if not self._missing[taker]:
+                            stack.append(taker)

@@ -26,8 +26,8 @@ class ExactCosts:
 
     A counted objective is multiplied by more than the sum of everything after it, so that sums are compared
     as the lexicographic list compares. Where rates multiply, each of a set of coprime factors has a rounded
-    logarithm of forty digits: equal products are then equal sums, and ``doubt`` is by how much two sums have to
-    differ for rounding not to matter. It is 0 where nothing is rounded.
+    logarithm of forty digits: equal products are then equal sums, and ``doubt`` is by how much two sums have
+    to differ for rounding not to matter. It is 0 where nothing is rounded.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:

@@ -1,6 +1,6 @@
 """A question as plain arrays: actions that need and give objects, towards some goals."""
 
-from collections.abc import Collection, Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 
 from foon_asp.problem import Objective, Problem
@@ -11,9 +11,9 @@ class Graph:
     """Actions and objects by number; nothing is copied where the network has it already.
 
     Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
-    taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is empty;
-    elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
-    ``makers[o]`` are the actions that give object ``o``. ``goals`` are those that are not there from the start.
+    taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is
+    empty; elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
+    ``makers[o]`` are the actions that give object ``o``. ``goals`` are those not there from the start.
     """
 
     units: int
@@ -41,30 +41,6 @@ class Graph:
                             wanted.add(o)
                             stack.append(o)
         return list(chosen), wanted
-
-    def order(self, actions: Collection[int]) -> list[int] | None:
-        """Put actions into an order in which they run; ``None`` when some never do, or a goal is missed."""
-        start, needs, gives = self.start, self.needs, self.gives
-        missing: dict[int, int] = {}
-        takers: dict[int, list[int]] = {}
-        ready: list[int] = []
-        for action in sorted(actions):
-            lacking = [o for o in needs[action] if o not in start]
-            missing[action] = len(lacking)
-            for o in lacking:
-                takers.setdefault(o, []).append(action)
-            if not lacking:
-                ready.append(action)
-        made = set(start)
-        for action in ready:  # grows while it is walked through
-            for o in gives[action]:
-                if o not in made:
-                    made.add(o)
-                    for taker in takers.get(o, ()):
-                        missing[taker] -= 1
-                        if not missing[taker]:
-                            ready.append(taker)
-        return ready if len(ready) == len(missing) and made.issuperset(self.goals) else None
 
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:

@@ -1,5 +1,6 @@
 """A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
 
+import gc
 from collections.abc import Callable, Collection, Sequence
 from typing import NamedTuple
 
@@ -59,9 +60,14 @@ def reduce(
     ``objectives`` is the list as it is optimized, ``units`` being in it, so that every unit costs
     something. Without reductions that is what can be made from the kitchen and the goals can need.
     """
-    return _Reducer(
-        problem, tuple(objectives), frozenset(reductions), expired, listener or Listener()
-    ).reduce()
+    reducer = _Reducer(problem, tuple(objectives), frozenset(reductions), expired, listener or Listener())
+    collecting = gc.isenabled()
+    gc.disable()  # nothing here is circular, and a collection walks over the whole network
+    try:
+        return reducer.reduce()
+    finally:
+        if collecting:
+            gc.enable()
 
 
 class _Reducer:

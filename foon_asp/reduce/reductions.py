@@ -1,6 +1,5 @@
 """The reductions by name, and which of them keep what."""
 
-from collections.abc import Iterable
 from enum import StrEnum
 
 from foon_asp.errors import UserError
@@ -11,8 +10,8 @@ class Reduction(StrEnum):
 
     ``forced``: units beside those that every tree has. ``dear``: units of which every tree costs more than
     one in hand. Both keep every optimal tree. ``dominated``: units that another one can always stand in for.
-    ``bounds``: only what is better than the tree in hand is searched for, and nothing where bounds meet. These
-    two keep one optimal tree at least.
+    ``bounds``: only what is better than the tree in hand is searched for, and nothing where bounds meet.
+    These two keep one optimal tree at least.
     """
 
     FORCED = "forced"

@@ -57,10 +57,10 @@ def improved(
             if action in tried or expired():
                 continue
             tried.add(action)
-            kept = best
-            found = derive(
-                graph, [a for a in actions if a != action], lambda a: 0 if a in kept else cost(a), added=True
-            )
+            others = [a for a in actions if a != action]
+            prices = dict.fromkeys(others, 0)
+            prices.update((a, cost(a)) for a in others if a not in best)
+            found = derive(graph, others, prices, added=True)
             if offer(found.tree(graph, graph.goals)):
                 again = True
                 tried &= best
