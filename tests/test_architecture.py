@@ -22,7 +22,7 @@ FLOORS = (
     {"text", "problem", "bounds"},
     {"reduce"},
     {"asp", "search", "proof"},
-    {"explain", "compare", "certificate", "engines"},
+    {"explain", "compare", "lint", "certificate", "engines"},
     {"report"},
     {FACE},
     {"cli"},

@@ -398,6 +398,26 @@ def test_a_bound_is_said_to_be_one(cli: Cli, tmp_path: Path) -> None:
     assert "not covered, so among all trees: at_most_motion.lp" in checked.out
 
 
+@pytest.mark.parametrize("level", [1, 2])
+@pytest.mark.parametrize("rule", RULES)
+def test_levels_below_three_are_certified(cli: Cli, tmp_path: Path, rule: ContainerRule, level: int) -> None:
+    file = tmp_path / "proof.json"
+    data = read_data(find_data(bundled_kitchen()), level=level)
+    labels = sorted({entry.pattern.label for entry in data.goals})
+    for label in labels[::3]:
+        goal = str(data.network.objects[find_goal(label, data.network, data.goals)])
+        words = ("--level", str(level), "--containers", str(rule), "--format", "json")
+        ran = cli("solve", "--goal", goal + ";", *words, "--objective", "success", "--certificate", file)
+        assert ran.json["proof"] == "certificate"
+        checked = cli("verify", file, "--level", str(level), "--format", "json")
+        assert checked.code == 0
+        assert checked.json["level"] == level
+        assert checked.json["claim"] == ran.json["status"]
+    other = cli("verify", file)
+    assert other.code == 1
+    assert other.out == "refused: not a claim about level 3\n"
+
+
 # --- the verifier stands alone
 
 

@@ -60,6 +60,15 @@ def test_every_goal_of_the_goals_file(data: Data, rule: ContainerRule) -> None:
     assert infeasible == ["whipped cream"] * len(OBJECTIVES)
 
 
+@pytest.mark.parametrize("level", [1, 2])
+def test_goals_at_lower_levels(universal: Path, level: int) -> None:
+    data = read_data(find_data(universal), level=level)
+    goals = sorted({node for entry in data.goals for node in data.network.find(entry.pattern)})
+    problems = [ask(data, goal, rule) for rule in RULES for goal in goals]
+    proved = [certify_and_verify(problem, Objective.SUCCESS) for problem in problems]
+    assert proved.count(Status.OPTIMAL) >= 8
+
+
 def test_whipped_cream_by_the_command_line(cli: Cli, universal: Path, tmp_path: Path) -> None:
     file = tmp_path / "proof.json"
     words = ("--data", universal, "--goal", "whipped cream", "--certificate", file, "--format", "json")

@@ -142,6 +142,7 @@ def _write(
         "claim": claim,
         "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "objective": [str(objective) for objective in question.objectives],
         "digests": verify.digests(problem.network, problem.kitchen, problem.rates, problem.utensils),
         "forbidden": {"motions": list(covered.motions), "objects": list(covered.labels)},

@@ -12,6 +12,7 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
+from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels, parse_objectives
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.report.answer import costs_text, headline
@@ -155,7 +156,7 @@ def _certify_tree(
 def _given_tree(problem: Problem, tree_file: Path, covered: Coverage, lenient: bool) -> list[int] | None:
     """Read a tree and put it into an order that executes; says why there is none."""
     reader = FoonReader(lenient)
-    tree = [unit for unit, _ in reader.read_tree(tree_file)]
+    tree = [unit_at_level(unit, problem.network.level) for unit, _ in reader.read_tree(tree_file)]
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
     units = [problem.network.unit_id(unit) for unit in tree]

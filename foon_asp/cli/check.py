@@ -6,7 +6,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.network import TaskTree
+from foon_asp.network import TaskTree, unit_at_level
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.report.verdict import verdict_json, verdict_text
 from foon_asp.text import FoonReader, summarize
@@ -40,6 +40,7 @@ def command(
     listed = reader.read_tree(tree_file)
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
+    listed = [(unit_at_level(unit, problem.network.level), source) for unit, source in listed]
     tree = TaskTree(tuple(unit for unit, _ in listed))
     simulation = simulate_for(problem, tree)
     render = {"text": verdict_text, "json": verdict_json}[format_]

@@ -116,7 +116,7 @@ def command(
     elif goals_named:
         goals = [find_goal(name, network, listed) for name in goals_named]
     else:
-        goals = [node for entry in listed for node in listed_nodes(entry, network)]
+        goals = list(dict.fromkeys(node for entry in listed for node in listed_nodes(entry, network)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     if charts and len(goals) > _CHARTED:
@@ -177,6 +177,7 @@ def _question(problem: Problem, searches: Sequence[str], settings: SearchSetting
     return {
         "data": digest.hexdigest()[:16],
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "searches": list(searches),
         "ties": str(settings.ties),
         "count": str(settings.count),

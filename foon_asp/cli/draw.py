@@ -13,8 +13,8 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, TaskTree
-from foon_asp.problem import ContainerRule, parse_objectives
+from foon_asp.network import FunctionalUnit, TaskTree, unit_at_level
+from foon_asp.problem import ContainerRule, conditions, parse_objectives
 from foon_asp.proof import Verdict, simulate
 from foon_asp.report.answer import headline
 from foon_asp.report.dot import dot_text
@@ -150,7 +150,9 @@ def _given_tree(
 ) -> Drawing:
     """Number the units in an order that executes, if one does, and say whether."""
     reader = FoonReader(lenient)
-    tree = TaskTree(tuple(dict.fromkeys(unit for unit, _ in reader.read_tree(file))))
+    level = data.network.level
+    listed = (unit_at_level(unit, level) for unit, _ in reader.read_tree(file))
+    tree = TaskTree(tuple(dict.fromkeys(listed)))
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
     if not tree.units:
@@ -158,7 +160,7 @@ def _given_tree(
     objects = data.network.objects
     kitchen = frozenset(objects[o] for o in data.kitchen)
     goals = tuple(objects[o] for o in goal_ids)
-    simulation = simulate(tree, kitchen, goals, containers, data.utensils)
+    simulation = simulate(tree, kitchen, goals, containers, data.utensils, data.network)
     units = tree.units
     if simulation.verdict is Verdict.REORDERED:
         units = tuple(units[position] for position in simulation.order)
@@ -168,7 +170,8 @@ def _given_tree(
         Verdict.REORDERED: "executes in the order of the numbers, not as listed",
         Verdict.NEVER: "does not execute; numbered as listed",
     }[simulation.verdict]
-    return draw_tree(units, kitchen, goals, (title, f"{verdict} ({containers} containers), {_count(units)}"))
+    caption = f"{verdict} ({conditions(containers, level)}), {_count(units)}"
+    return draw_tree(units, kitchen, goals, (title, caption))
 
 
 def _subgraph(data: Data, goal_ids: tuple[int, ...], unit_ids: tuple[int, ...]) -> Drawing:

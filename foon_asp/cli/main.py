@@ -12,7 +12,22 @@ from foon_asp import __version__
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.errors import UserError
 
-_VERBS = ("solve", "optima", "search", "compare", "check", "certify", "verify", "draw", "facts")
+_VERBS = (
+    "solve",
+    "optima",
+    "search",
+    "compare",
+    "check",
+    "certify",
+    "verify",
+    "draw",
+    "facts",
+    "stats",
+    "lint",
+    "fmt",
+    "convert",
+    "merge",
+)
 
 
 class _Verbs(click.Group):

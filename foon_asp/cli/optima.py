@@ -46,7 +46,7 @@ def command(
     if goals_named:
         goals = [find_goal(name, network, listed) for name in goals_named]
     else:
-        goals = [node for entry in listed for node in listed_nodes(entry, network)]
+        goals = list(dict.fromkeys(node for entry in listed for node in listed_nodes(entry, network)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     outcomes: list[Outcome] = []

@@ -18,12 +18,22 @@ _PATH = click.Path(path_type=Path)
 
 _DATA_OPTIONS = (
     click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with all of the following."),
-    click.option("--network", multiple=True, type=_PATH, metavar="FILE|DIR", help="FOON text; repeatable."),
-    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand (JSON)."),
+    click.option(
+        "--network", multiple=True, type=_PATH, metavar="FILE|DIR", help="FOON text or JSON; repeatable."
+    ),
+    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand: JSON, or FOON objects."),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
-    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name (JSON)."),
+    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name, likewise."),
     click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
+)
+
+_LEVEL_OPTION = click.option(
+    "--level",
+    type=click.IntRange(1, 3),
+    default=3,
+    show_default=True,
+    help="What counts of an object node: 3 all of it, 2 without contents, 1 the label.",
 )
 
 _CONSTRAINT_OPTIONS = (
@@ -89,9 +99,14 @@ def format_option(*formats: str) -> Callable[[Command], Command]:
     )
 
 
-def data_options(command: Command) -> Command:
+def network_options(command: Command) -> Command:
     """Add the options that name the data."""
     return functools.reduce(lambda f, option: option(f), reversed((*_DATA_OPTIONS, debug_option)), command)
+
+
+def data_options(command: Command) -> Command:
+    """Add the options that name the data, and the level at which it is taken."""
+    return network_options(_LEVEL_OPTION(command))
 
 
 def constraint_options(command: Command) -> Command:
@@ -132,6 +147,8 @@ def read_question(
     utensils: Path | None,
     goals: Path | None,
     lenient: bool,
+    level: int,
+    kitchen_expected: bool = True,
 ) -> Question:
     """Read the data that the options name; warnings go to stderr.
 
@@ -142,13 +159,13 @@ def read_question(
     if folder is None and not network:
         folder = bundled_kitchen()
     files = find_data(folder, network, kitchen, rates, utensils, goals)
-    data = read_data(files, lenient)
+    data = read_data(files, lenient, level)
     seconds = time.perf_counter() - began
     for text in summarize(data.warnings):
         click.echo(text, err=True)
     if data.left_out:
         lines = "1 line" if data.left_out == 1 else f"{data.left_out} lines"
         click.echo(f"warning: {lines} left out", err=True)
-    if files.kitchen is None:
+    if files.kitchen is None and kitchen_expected:
         click.echo("warning: no kitchen is given, so nothing is at hand; name one with --kitchen", err=True)
     return Question(data, seconds)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.errors import BugError
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import ContainerRule, Objective, Problem, conditions
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.search import SEARCHES, Ending, SearchSettings
 
@@ -42,12 +42,18 @@ class Judgement(NamedTuple):
 
 
 class Comparison(NamedTuple):
-    """The searches and the optimum for one goal (in one-line notation) under one container rule."""
+    """The searches and the optimum for one goal (in one-line notation) under one rule, at one level."""
 
     goal: str
     containers: str
     optima: dict[Objective, Optimum]
     judgements: tuple[Judgement, ...]
+    level: int = 3
+
+    @property
+    def conditions(self) -> str:
+        """What all of it holds under, in a few words: ``strict containers``."""
+        return conditions(ContainerRule(self.containers), self.level)
 
     def ratio(self, judgement: Judgement, objective: Objective) -> Fraction | None:
         """Give the measure of a tree over the proved optimum; ``None`` where either is not known or 0."""
@@ -84,6 +90,7 @@ def compare(
         str(problem.containers),
         optima,
         tuple(judge(problem, name, settings) for name in searches),
+        problem.network.level,
     )
     _require_consistent(comparison)
     return comparison

@@ -17,6 +17,7 @@ def comparison_json(comparison: Comparison) -> dict[str, object]:
     return {
         "goal": comparison.goal,
         "containers": comparison.containers,
+        "level": comparison.level,
         "optimum": {
             str(objective): {"status": optimum.status, "value": _text(optimum.value)}
             for objective, optimum in comparison.optima.items()
@@ -73,6 +74,7 @@ def read_comparison(row: dict[str, Any]) -> Comparison:
             )
             for s in row["searches"]
         ),
+        row["level"],
     )
 
 

@@ -1,6 +1,13 @@
 """What a FOON is: object nodes, functional units, the merged network, task trees."""
 
 from foon_asp.network.functional_unit import FunctionalUnit
+from foon_asp.network.level import (
+    LEVELS,
+    network_at_level,
+    node_at_level,
+    pattern_at_level,
+    unit_at_level,
+)
 from foon_asp.network.network import Network, NetworkBuilder
 from foon_asp.network.node_pattern import NodePattern
 from foon_asp.network.object_node import Contents, ObjectNode, Relation
@@ -8,6 +15,7 @@ from foon_asp.network.source import Source
 from foon_asp.network.task_tree import TaskTree
 
 __all__ = [
+    "LEVELS",
     "Contents",
     "FunctionalUnit",
     "Network",
@@ -17,4 +25,8 @@ __all__ = [
     "Relation",
     "Source",
     "TaskTree",
+    "network_at_level",
+    "node_at_level",
+    "pattern_at_level",
+    "unit_at_level",
 ]

@@ -21,6 +21,9 @@ class Network:
     Nodes and units are numbered from 0 in the order in which they were first read; the numbers are the
     ids used in facts, answers and messages. ``inputs[u]`` and ``outputs[u]`` are the node ids of unit
     ``u``; ``sources[u]`` lists where each copy of it was read. Build one with :class:`NetworkBuilder`.
+
+    A network below ``level`` 3 has the level-3 network it was made from in ``detailed``. ``stands_for[u]``
+    are the ids there of the units that ``u`` stands for, ``objects_stand_for[o]`` those of the nodes.
     """
 
     objects: tuple[ObjectNode, ...]
@@ -30,6 +33,10 @@ class Network:
     sources: tuple[tuple[Source, ...], ...]
     _object_ids: dict[ObjectNode, int] = field(repr=False)
     _unit_ids: dict[UnitKey, int] = field(repr=False)
+    level: int = 3
+    detailed: "Network | None" = field(default=None, repr=False)
+    stands_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
+    objects_stand_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
 
     def __len__(self) -> int:
         """Count the units."""
@@ -99,9 +106,9 @@ class NetworkBuilder:
         self._sources: list[list[Source]] = []
 
     def add(
-        self, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode], source: Source
+        self, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode], *sources: Source
     ) -> int:
-        """Add one copy of a unit and return the unit's id."""
+        """Add one copy of a unit, or several with their sources, and return the unit's id."""
         ids = self._object_ids
         # dict.fromkeys: a node that one unit lists twice is one input, in the place of its first mention
         ins = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))
@@ -112,9 +119,9 @@ class NetworkBuilder:
             self._motions.append(motion)
             self._inputs.append(ins)
             self._outputs.append(outs)
-            self._sources.append([source])
+            self._sources.append([*sources])
         else:
-            self._sources[unit_id].append(source)
+            self._sources[unit_id] += sources
         return unit_id
 
     def build(self) -> Network:

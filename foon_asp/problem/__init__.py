@@ -1,6 +1,6 @@
 """One question over a network, and its cut down to what can matter."""
 
-from foon_asp.problem.containers import ContainerRule, needed_inputs
+from foon_asp.problem.containers import ContainerRule, conditions, needed_inputs
 from foon_asp.problem.costs import Costs
 from foon_asp.problem.objective import Objective, levels, parse_objectives
 from foon_asp.problem.order import executable_order
@@ -13,6 +13,7 @@ __all__ = [
     "Objective",
     "Problem",
     "Reached",
+    "conditions",
     "executable_order",
     "first_tree",
     "levels",

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from foon_asp.errors import UserError
 from foon_asp.network import Network, TaskTree
-from foon_asp.problem.containers import ContainerRule, needed_inputs
+from foon_asp.problem.containers import ContainerRule, conditions, network_needs
 from foon_asp.problem.costs import Costs
 
 
@@ -34,25 +34,15 @@ class Problem:
         if self.rates is not None:
             require_rates(self.network, self.rates)
 
+    @property
+    def conditions(self) -> str:
+        """What every claim about this question holds under, in a few words: ``strict containers``."""
+        return conditions(self.containers, self.network.level)
+
     @cached_property
     def needs(self) -> tuple[tuple[int, ...], ...]:
         """For each unit, the ids of the inputs that the container rule asks for."""
-        network = self.network
-        if self.containers is ContainerRule.STRICT:
-            return network.inputs
-        vessels = {
-            o
-            for o, node in enumerate(network.objects)
-            if node.label in self.utensils and len(node.ingredients) == 1
-        }
-        needs: list[tuple[int, ...]] = []
-        for unit, inputs in enumerate(network.inputs):
-            if vessels.isdisjoint(inputs):
-                needs.append(inputs)
-                continue
-            needed = set(needed_inputs(network.unit(unit), self.containers, self.utensils))
-            needs.append(tuple(o for o in inputs if network.objects[o] in needed))
-        return tuple(needs)
+        return network_needs(self.network, self.containers, self.utensils)
 
     def tree(self, units: Iterable[int]) -> TaskTree:
         """Give units, by id and in the order given, as a tree."""

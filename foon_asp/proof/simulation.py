@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
-from foon_asp.network import ObjectNode, TaskTree
+from foon_asp.network import Network, ObjectNode, TaskTree
 from foon_asp.problem import ContainerRule, Problem, needed_inputs
 
 
@@ -48,7 +48,7 @@ def simulate_for(problem: Problem, tree: TaskTree) -> Simulation:
     objects = problem.network.objects
     kitchen = frozenset(objects[o] for o in problem.kitchen)
     goals = tuple(objects[goal] for goal in problem.goals)
-    return simulate(tree, kitchen, goals, problem.containers, problem.utensils)
+    return simulate(tree, kitchen, goals, problem.containers, problem.utensils, problem.network)
 
 
 def simulate(
@@ -57,12 +57,14 @@ def simulate(
     goals: tuple[ObjectNode, ...],
     containers: ContainerRule,
     utensils: frozenset[str],
+    network: Network | None = None,
 ) -> Simulation:
     """Execute the units of a tree from the kitchen, first as listed, then in any order that works.
 
-    Items do not run out. The tree executes when all of its units do and all goals are then at hand.
+    Items do not run out. The tree executes when all of its units do and all goals are then at hand. Below
+    level 3 the ``network`` of the units says what they stand for, and so what they need.
     """
-    needs = [needed_inputs(unit, containers, utensils) for unit in tree]
+    needs = [needed_inputs(unit, containers, utensils, network) for unit in tree]
     at_hand = set(kitchen)
     as_listed: Obstacle | None = None
     for position, unit in enumerate(tree):

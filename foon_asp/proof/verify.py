@@ -23,14 +23,14 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from foon_asp.network import Network
+from foon_asp.network import Network, ObjectNode, node_at_level
 
 FORMAT = "foon-asp certificate"
 VERSION = 1
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen")
 
 _KEYS = {
-    *("format", "version", "claim", "goals", "containers", "objective", "digests", "forbidden"),
+    *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "forbidden"),
     *("not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
 }
 _RATIONAL = re.compile(r"-?(0|[1-9]\d{0,999})(/[1-9]\d{0,999})?", re.ASCII)
@@ -61,6 +61,7 @@ class Verified(NamedTuple):
     claim: str
     goals: tuple[int, ...]
     containers: str
+    level: int
     objectives: tuple[str, ...]
     motions: tuple[str, ...]
     labels: tuple[str, ...]
@@ -91,12 +92,8 @@ def digests(
     utensils: Iterable[str],
 ) -> dict[str, str]:
     """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's."""
-    nodes = [
-        (label, _sorted(states), _sorted(relations), contents)
-        for label, states, relations, contents in network.objects
-    ]
     return {
-        "network": _digest([nodes, network.motions, network.inputs, network.outputs]),
+        "network": _digest(_described(network)),
         "kitchen": _digest(sorted(kitchen)),
         "rates": _digest(rates and sorted([motion, str(rate)] for motion, rate in rates.items())),
         "utensils": _digest(sorted(utensils)),
@@ -126,6 +123,8 @@ def verify(
         _require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
         _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
         _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
+        level = certificate["level"]
+        _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
         stated = _object(certificate["digests"], ("network", "kitchen", "rates", "utensils"))
         for name, digest in digests(network, kitchen, rates, utensils).items():
             _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
@@ -210,6 +209,7 @@ class _Check:
             claim,
             self.goals,
             self.containers,
+            self.network.level,
             self.objectives,
             self.motions,
             self.labels,
@@ -312,22 +312,34 @@ class _Check:
         """Give the inputs that the container rule asks for.
 
         Under ``implied`` a utensil with exactly one ingredient is taken as given when that ingredient,
-        located in the utensil, is another input of the unit.
+        located in the utensil, is another input of the unit. Below level 3 nodes do not say what they hold:
+        a unit needs what all the units need that it stands for.
         """
         found = self.needs.get(unit)
         if found is None:
-            inputs = self.network.inputs[unit]
-            given: set[int] = set()
+            network = self.network
+            found = frozenset(network.inputs[unit])
             if self.containers == "implied":
-                nodes = {o: self.network.objects[o] for o in inputs}
-                for o, vessel in nodes.items():
-                    if vessel.label in self.utensils and len(vessel.ingredients) == 1:
-                        (held,) = vessel.ingredients
-                        others = [node for other, node in nodes.items() if other != o and node.label == held]
-                        if any(node.is_in(vessel.label) for node in others):
-                            given.add(o)
-            found = self.needs[unit] = frozenset(inputs) - given
+                whole = network.detailed or network
+                for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
+                    needed = self._needed(map(whole.objects.__getitem__, whole.inputs[detail]))
+                    found &= {network.object_id(node_at_level(node, network.level)) for node in needed}
+            self.needs[unit] = found
         return found
+
+    def _needed(self, inputs: Iterable[ObjectNode]) -> list[ObjectNode]:
+        """Leave out the inputs of a unit that the rule ``implied`` takes as given."""
+        nodes = list(inputs)
+        return [
+            vessel
+            for vessel in nodes
+            if vessel.label not in self.utensils
+            or len(vessel.ingredients) != 1
+            or not any(
+                other is not vessel and other.label == vessel.ingredients[0] and other.is_in(vessel.label)
+                for other in nodes
+            )
+        ]
 
     def _ruled_out(self) -> Iterator[int]:
         """Give the units with a forbidden motion or a node with a forbidden label."""
@@ -465,6 +477,16 @@ def _sum(amounts: Iterable[Amount]) -> Amount:
 
 def _scaled(amount: Amount, factor: int) -> Amount:
     return {key: factor * value for key, value in amount.items()}
+
+
+def _described(network: Network) -> list[Any]:
+    """List all that a claim about a network can depend on; below level 3 also what it was made from."""
+    nodes = [
+        (label, _sorted(states), _sorted(relations), contents)
+        for label, states, relations, contents in network.objects
+    ]
+    below = [] if network.detailed is None else [_described(network.detailed), network.stands_for]
+    return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
 
 
 def _sorted(values: frozenset[Any]) -> list[Any]:

@@ -29,9 +29,12 @@ def costs_json(costs: Costs | None) -> dict[str, object] | None:
 
 
 def unit_json(network: Network, unit: int) -> dict[str, object]:
-    """Give a unit with its id, motion, nodes in one-line notation and every place it was read from."""
+    """Give a unit with its id, motion, nodes in one-line notation and every place it was read from.
+
+    Below level 3 the level-3 units it stands for are listed in the same way.
+    """
     objects = network.objects
-    return {
+    given: dict[str, object] = {
         "id": unit,
         "motion": network.motions[unit],
         "inputs": [str(objects[o]) for o in network.inputs[unit]],
@@ -41,6 +44,9 @@ def unit_json(network: Network, unit: int) -> dict[str, object]:
             for source in network.sources[unit]
         ],
     }
+    if network.detailed is not None:
+        given["stands_for"] = [unit_json(network.detailed, detail) for detail in network.stands_for[unit]]
+    return given
 
 
 def outcome_json(outcome: Outcome) -> str:
@@ -55,7 +61,9 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
     return {
         "goal": " + ".join(goals),
         "goals": goals,
+        **goals_stand_for_json(problem),
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "objective": [str(objective) for objective in outcome.objectives],
         "encodings": None if outcome.encodings is None else str(outcome.encodings),
         "status": str(outcome.status),
@@ -89,9 +97,7 @@ def outcome_foon(outcome: Outcome) -> str:
 def outcome_text(outcome: Outcome) -> str:
     """Give an outcome for people: what was proved, and the steps with where each input comes from."""
     problem = outcome.problem
-    objects = problem.network.objects
-    goals = "\n".join(f"goal: {objects[o]}" for o in problem.goals)
-    lines = [goals, headline(outcome)]
+    lines = [*goal_lines(problem), headline(outcome)]
     if outcome.status is Status.FEASIBLE:
         lines.append(_bound_line(outcome))
     if outcome.units is not None:
@@ -103,9 +109,34 @@ def outcome_text(outcome: Outcome) -> str:
     return "\n".join(lines) + "\n"
 
 
+def goal_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
+    """Name the goals; below level 3 with the level-3 nodes that each stands for."""
+    network = problem.network
+    for goal in problem.goals:
+        yield f"goal: {network.objects[goal]}"
+        if network.detailed is None:
+            continue
+        details = network.objects_stand_for[goal]
+        yield f"  stands for {_count(len(details), 'object node')} at level 3:"
+        yield from (f"    {network.detailed.objects[detail]}" for detail in details[:shown])
+        if len(details) > shown:
+            yield f"    ... and {len(details) - shown} more; --format json lists all"
+
+
+def goals_stand_for_json(problem: Problem) -> dict[str, object]:
+    """Give, below level 3 alone, the level-3 nodes that each goal stands for."""
+    network = problem.network
+    if network.detailed is None:
+        return {}
+    objects = network.detailed.objects
+    return {
+        "goals_stand_for": [[str(objects[o]) for o in network.objects_stand_for[g]] for g in problem.goals]
+    }
+
+
 def headline(outcome: Outcome) -> str:
     """Say in one line what is claimed."""
-    rule = f"{outcome.problem.containers} containers"
+    rule = outcome.problem.conditions
     best = ", then ".join(outcome.objectives)
     if outcome.costs is None:
         if outcome.status is Status.INFEASIBLE:
@@ -161,6 +192,20 @@ def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
         for o in network.outputs[unit]:
             yield f"     → {network.objects[o]}"
             maker.setdefault(o, number)
+        yield from _details(network, unit)
+
+
+def _details(network: Network, unit: int, shown: int = 5) -> Iterator[str]:
+    """Say which level-3 units a step stands for: id, first place, and the whole unit."""
+    detailed = network.detailed
+    if detailed is None:
+        return
+    details = network.stands_for[unit]
+    yield f"     stands for {_count(len(details), 'unit')} at level 3:"
+    for detail in details[:shown]:
+        yield f"       {detail}    [{detailed.sources[detail][0]}]  {detailed.unit(detail)}"
+    if len(details) > shown:
+        yield f"       ... and {len(details) - shown} more; --format json lists all"
 
 
 def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> Iterator[str]:

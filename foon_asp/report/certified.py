@@ -55,7 +55,7 @@ def _success(exponents: dict[str, str]) -> float:
 def verified_text(verified: Verified, network: Network, content: dict[str, Any]) -> str:
     """Say what a verified certificate proves."""
     lines = [f"goal: {network.objects[goal]}" for goal in verified.goals]
-    rule = f"{verified.containers} containers"
+    rule = f"{verified.containers} containers" + (f", level {verified.level}" if verified.level < 3 else "")
     if verified.claim == "infeasible":
         lines.append(f"verified: there is no task tree ({rule})")
     elif verified.claim == "bound":
@@ -82,6 +82,7 @@ def verified_json(verified: Verified, network: Network) -> dict[str, object]:
         "claim": verified.claim,
         "goals": [str(network.objects[goal]) for goal in verified.goals],
         "containers": verified.containers,
+        "level": verified.level,
         "objective": list(verified.objectives),
         "costs": None
         if verified.costs is None

@@ -17,7 +17,7 @@ def comparison_chart(labels: Sequence[str], comparisons: Sequence[Comparison]) -
         BarGroup(label, (*map(_bar, comparison.judgements), _optimum(comparison)))
         for label, comparison in zip(labels, comparisons, strict=True)
     )
-    title = f"Functional units of retrieved task trees ({comparisons[0].containers} containers)"
+    title = f"Functional units of retrieved task trees ({comparisons[0].conditions})"
     return BarChart(title, groups, _OPTIMUM)
 
 

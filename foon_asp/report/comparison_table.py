@@ -30,7 +30,7 @@ _WIDTHS = {"search": 15, "units": 12, "inputs": 12, "success": 19, "executes": 1
 def print_comparisons(comparisons: Sequence[Comparison], console: Console | None = None) -> None:
     """Print one block of rows for each goal, the proved optimum first."""
     console = console or Console()
-    console.print(f"Searches and the optimum ({comparisons[0].containers} containers)", style="bold")
+    console.print(f"Searches and the optimum ({comparisons[0].conditions})", style="bold")
     for place, comparison in enumerate(comparisons):
         table = Table(
             box=SIMPLE_HEAD if place == 0 else None,
@@ -66,13 +66,14 @@ def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
-        ["goal", "containers", "search", "ending", "executes", "cycle", "missing"]
+        ["goal", "containers", "level", "search", "ending", "executes", "cycle", "missing"]
         + [f"{objective}{what}" for objective in MEASURED for what in ("", "_optimum", "_status", "_ratio")]
     )
     for comparison in comparisons:
         for judgement in comparison.judgements:
             _, missing, cycle = judgement.obstacle or ("", "", False)
-            row = [comparison.goal, comparison.containers, judgement.search, judgement.ending]
+            row = [comparison.goal, comparison.containers, str(comparison.level)]
+            row += [judgement.search, judgement.ending]
             row += [judgement.executes or "", "yes" if cycle else "no", missing or judgement.stuck_at or ""]
             for objective in MEASURED:
                 optimum = comparison.optima.get(objective, Optimum("", None))

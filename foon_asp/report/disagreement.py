@@ -30,7 +30,12 @@ def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementE
     """
     problem, answer = outcome.problem, found.answer
     network = problem.network
-    nodes = [network.objects[o] for o in sorted(problem.kitchen)]
+    # below level 3 the folder has what the network was made from; the command names the level
+    whole = network.detailed or network
+    at_hand = sorted(problem.kitchen)
+    if network.detailed is not None:
+        at_hand = sorted(detail for o in at_hand for detail in network.objects_stand_for[o])
+    nodes = [whole.objects[o] for o in at_hand]
     kitchen = [
         {
             "label": node.label,
@@ -41,7 +46,7 @@ def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementE
     ]
     goals = [str(network.objects[o]) for o in problem.goals]
     words = ["foon-asp", "solve", "--data", ".", "--containers", str(problem.containers)]
-    words += ["--objective", ",".join(outcome.objectives), "--cross-check"]
+    words += ["--level", str(network.level), "--objective", ",".join(outcome.objectives), "--cross-check"]
     for name, values in (("motion", covered.motions), ("object", covered.labels)):
         for value in values:
             words += ["--constraint", f"forbid_{name}", "-c", f"forbidden_{name}={value}"]
@@ -63,7 +68,7 @@ def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementE
         },
     }
     files = {
-        "FOON.txt": write_units(map(network.unit, range(len(network)))),
+        "FOON.txt": write_units(map(whole.unit, range(len(whole)))),
         "kitchen.json": json.dumps(kitchen, indent=1, ensure_ascii=False) + "\n",
         "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
         "report.json": json.dumps(report, indent=2, ensure_ascii=False) + "\n",

@@ -28,9 +28,8 @@ def optima_json(outcomes: Sequence[Outcome]) -> str:
 
 def print_optima(outcomes: Sequence[Outcome], console: Console | None = None) -> None:
     """Print the table; outcomes of one goal stand together, and equal trees share a row."""
-    rule = outcomes[0].problem.containers
     table = Table(
-        title=f"The best task trees ({rule} containers)",
+        title=f"The best task trees ({outcomes[0].problem.conditions})",
         caption="optimal: proved best by the objective named, whose figure is bold\n"
         "infeasible: proved that no tree exists",
         box=SIMPLE_HEAD,

@@ -4,7 +4,14 @@ import json
 
 from foon_asp.problem import Problem
 from foon_asp.proof import Simulation
-from foon_asp.report.answer import costs_json, costs_text, steps, unit_json
+from foon_asp.report.answer import (
+    costs_json,
+    costs_text,
+    goal_lines,
+    goals_stand_for_json,
+    steps,
+    unit_json,
+)
 from foon_asp.report.verdict import Listed, obstacle_json, verdict_text
 from foon_asp.search import Ending, Retrieval, Search
 from foon_asp.text import write_units
@@ -14,8 +21,7 @@ def retrieval_text(
     problem: Problem, search: Search, retrieval: Retrieval, simulation: Simulation | None
 ) -> str:
     """Say what the search promises, whether its tree executes, and list the tree as it was returned."""
-    objects = problem.network.objects
-    lines = [f"goal: {objects[goal]}" for goal in problem.goals]
+    lines = list(goal_lines(problem))
     lines.append(f"{search.name} promises {search.promise}")
     if simulation is None:
         return "\n".join([*lines, _ending(problem, retrieval)]) + "\n"
@@ -31,7 +37,9 @@ def retrieval_json(
     listed = _listed(problem, retrieval)
     result = {
         "goals": [str(objects[goal]) for goal in problem.goals],
+        **goals_stand_for_json(problem),
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "search": search.name,
         "ending": str(retrieval.ending),
         "stuck_at": None if retrieval.stuck_at is None else str(objects[retrieval.stuck_at]),
@@ -56,7 +64,7 @@ def retrieval_foon(
     goals = " + ".join(str(problem.network.objects[goal]) for goal in problem.goals)
     comments = [
         f"Task tree for: {goals}",
-        f"{search.name} ({problem.containers} containers): {simulation.verdict}, "
+        f"{search.name} ({problem.conditions}): {simulation.verdict}, "
         f"{costs_text(problem.costs(retrieval.units))}",
     ]
     return write_units(map(problem.network.unit, retrieval.units), comments)

@@ -13,8 +13,7 @@ Listed = Sequence[tuple[FunctionalUnit, Source]]
 
 def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> str:
     """Say whether the listed units execute, in which order, and what stops them."""
-    rule = f"{problem.containers} containers"
-    lines = [f"{simulation.verdict} ({rule})"]
+    lines = [f"{simulation.verdict} ({problem.conditions})"]
     if simulation.as_listed is not None:
         lines.append("as listed: " + _obstacle_text(listed, simulation.as_listed))
     if simulation.obstacle is not None:
@@ -39,6 +38,7 @@ def verdict_json(problem: Problem, listed: Listed, simulation: Simulation) -> st
     result = {
         "goals": [str(problem.network.objects[o]) for o in problem.goals],
         "containers": str(problem.containers),
+        "level": problem.network.level,
         "verdict": str(simulation.verdict),
         "as_listed": obstacle_json(listed, simulation.as_listed),
         "in_any_order": obstacle_json(listed, simulation.obstacle),

@@ -1,19 +1,24 @@
 """A folder of FOON data and the pieces it is made of."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network
+from foon_asp.network import Network, network_at_level, pattern_at_level
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 
-_KITCHEN, _RATES, _UTENSILS, _GOALS = "kitchen.json", "motion.txt", "utensils.txt", "goal_nodes.json"
+_RATES, _UTENSILS = "motion.txt", "utensils.txt"
+# In JSON or as FOON text, the first that is there.
+_KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
+_OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
+_SIDE_TABLES = {_RATES, _UTENSILS, *_KITCHENS, *_GOALS}
 
 
 class DataFiles(NamedTuple):
@@ -29,12 +34,14 @@ class DataFiles(NamedTuple):
 class Data(NamedTuple):
     """Everything read: the merged network and what stands beside it.
 
-    ``kitchen`` are object node ids. ``rates`` is ``None`` where there is no rates file.
+    ``kitchen`` are the ids of the object nodes that ``kitchen_items`` stand for. ``rates`` is ``None`` where
+    there is no rates file.
     ``warnings`` lists what was assumed while reading; ``left_out`` counts the lines dropped.
     """
 
     network: Network
     kitchen: frozenset[int]
+    kitchen_items: tuple[ListedObject, ...]
     goals: tuple[ListedObject, ...]
     rates: dict[str, Fraction] | None
     utensils: frozenset[str]
@@ -52,9 +59,9 @@ def find_data(
 ) -> DataFiles:
     """Find the files of a question: the pieces given on their own, and the folder's for all others.
 
-    A folder has its network in ``FOON.txt`` or else in its other ``*.txt`` files, and may have
-    ``kitchen.json``, ``motion.txt``, ``utensils.txt`` and ``goal_nodes.json``. Raises
-    :class:`UserError` where something named does not exist.
+    A folder has its network in ``FOON.txt`` or else in its other ``*.txt`` and ``*.json`` files, and may
+    have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``, and ``goal_nodes.json`` or
+    ``goal_nodes.txt``. Raises :class:`UserError` where something named does not exist.
     """
     for path in (folder, kitchen, rates, utensils, goals, *network):
         if path is not None and not path.exists():
@@ -62,21 +69,27 @@ def find_data(
     if folder is not None and not folder.is_dir():
         raise UserError(f"{folder}: expected a folder; a single network is given with --network")
     sources = network or ([folder] if folder else [])
-    files = tuple(file for source in sources for file in network_files(source))
+    tables = {path.resolve() for path in (kitchen, rates, utensils, goals) if path is not None}
+    files = tuple(
+        file
+        for source in sources
+        for file in network_files(source)
+        if not source.is_dir() or file.resolve() not in tables
+    )
     if not files:
         raise UserError("no network is given")
 
-    def beside(given: Path | None, name: str) -> Path | None:
-        if given is None and folder is not None and (folder / name).exists():
-            return folder / name
+    def beside(given: Path | None, *names: str) -> Path | None:
+        if given is None and folder is not None:
+            return next((folder / name for name in names if (folder / name).exists()), None)
         return given
 
     return DataFiles(
         files,
-        beside(kitchen, _KITCHEN),
+        beside(kitchen, *_KITCHENS),
         beside(rates, _RATES),
         beside(utensils, _UTENSILS),
-        beside(goals, _GOALS),
+        beside(goals, *_GOALS),
     )
 
 
@@ -86,33 +99,56 @@ def network_files(path: Path) -> list[Path]:
         return [path]
     if (path / "FOON.txt").is_file():
         return [path / "FOON.txt"]
-    files = sorted(file for file in path.glob("*.txt") if file.name not in {_RATES, _UTENSILS})
+    files = sorted(file for file in path.iterdir() if file.name not in _SIDE_TABLES and _may_be_network(file))
     if not files:
-        raise UserError(f"{path}: expected a folder with FOON.txt or other networks (*.txt), found none")
+        expected = "a folder with FOON.txt or other networks (*.txt, *.json)"
+        raise UserError(f"{path}: expected {expected}, found none")
     return files
 
 
-def read_data(files: DataFiles, lenient: bool = False) -> Data:
+def _may_be_network(file: Path) -> bool:
+    """Whether a name is that of a network; JSON is written for many things, so it has to name an object."""
+    if file.name[0] == "." or not file.is_file():
+        return False
+    if file.suffix == ".json":
+        try:
+            return _OBJECT_KEY.search(file.read_bytes()) is not None
+        except OSError as error:
+            raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+    return file.suffix == ".txt"
+
+
+def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     """Read all pieces; raises :class:`InputError` for input that is not understood.
 
-    With ``lenient`` the lines of a network that are not understood are left out with a warning.
+    With ``lenient`` the lines of a network that are not understood are left out with a warning. Below
+    ``level`` 3, network, kitchen and goals are taken at that level: an entry stands for all nodes that
+    are the same as it there.
     """
     reader = FoonReader(lenient)
-    network = reader.read_network(files.network)
+    network = network_at_level(reader.read_network(files.network), level)
     warnings = reader.diagnostics
-    kitchen: set[int] = set()
-    for item in read_object_list(files.kitchen) if files.kitchen else ():
-        found = network.find(item.pattern)
-        kitchen.update(found)
-        if not found:
+    items = tuple(read_object_list(files.kitchen, warnings)) if files.kitchen else ()
+    for item in items:
+        if not network.find(pattern_at_level(item.pattern, level)):
             message = f"the kitchen item {str(item.pattern)!r} matches no object node of the network"
             warnings.append(Diagnostic(Severity.WARNING, "kitchen-item", message, item.source))
+    goals = tuple(
+        entry._replace(pattern=pattern_at_level(entry.pattern, level))
+        for entry in (read_object_list(files.goals, warnings) if files.goals else ())
+    )
     return Data(
         network,
-        frozenset(kitchen),
-        tuple(read_object_list(files.goals)) if files.goals else (),
+        kitchen_nodes(network, items),
+        items,
+        goals,
         read_rates(files.rates) if files.rates else None,
         read_labels(files.utensils) if files.utensils else frozenset(),
         tuple(warnings),
         reader.left_out,
     )
+
+
+def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
+    """Give the object nodes that kitchen items stand for, at the level of the network."""
+    return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))

@@ -7,19 +7,26 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 
+_SHOWN = 40
+
 
 class Severity(StrEnum):
-    """How bad it is: an error stops the reading, a warning says what was assumed."""
+    """How bad it is: an error stops the reading, a warning says what was assumed.
+
+    Notes come from linting alone: what is worth a look, and may be meant.
+    """
 
     ERROR = "error"
     WARNING = "warning"
+    NOTE = "note"
 
 
 class Diagnostic(NamedTuple):
     """One remark about one place in an input file.
 
     ``code`` names the kind of remark in a few words and is the same for all remarks of that kind;
-    ``excerpt`` is the line of the file that it is about, without its end, or empty.
+    ``excerpt`` is the line of the file that it is about, without its end, or empty; ``fix`` is how that
+    line would be written without what is remarked on, where this changes nothing of what it says.
     """
 
     severity: Severity
@@ -27,6 +34,7 @@ class Diagnostic(NamedTuple):
     message: str
     source: Source
     excerpt: str = ""
+    fix: str | None = None
 
     def __str__(self) -> str:
         """Give ``file:line:column: severity: message`` and, where known, the line with a caret."""
@@ -49,10 +57,13 @@ def excerpt_with_caret(line: str, column: int, width: int = 100) -> str:
 
 
 class InputError(UserError):
-    """Input that could not be read; carries every error found, in file order."""
+    """Input that could not be read; carries every error found, in file order, and shows the first ones."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
-        super().__init__("\n".join(map(str, diagnostics)))
+        lines = [str(diagnostic) for diagnostic in diagnostics[:_SHOWN]]
+        if len(diagnostics) > _SHOWN:
+            lines.append(f"... and {len(diagnostics) - _SHOWN} more errors; foon-asp lint lists them all")
+        super().__init__("\n".join(lines))
         self.diagnostics = tuple(diagnostics)
 
 

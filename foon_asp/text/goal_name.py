@@ -5,7 +5,7 @@ import shlex
 from collections.abc import Iterable, Sequence
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network
+from foon_asp.network import Network, node_at_level
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.object_list import ListedObject
 
@@ -21,7 +21,7 @@ def find_goal(name: str, network: Network, listed: Sequence[ListedObject] = ()) 
     to paste when it is unknown or means several nodes.
     """
     try:
-        node = parse_node(name)
+        node = node_at_level(parse_node(name), network.level)
     except LineError as error:
         raise UserError(f"the goal {name!r} cannot be read: at column {error.column}, {error}") from None
     bare = ";" not in name

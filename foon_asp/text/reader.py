@@ -1,48 +1,66 @@
-"""Reading FOON text files into a network."""
+"""Reading FOON files into a network: FOON text of every dialect, and JSON."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from foon_asp.network import Contents, FunctionalUnit, Network, NetworkBuilder, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.json_units import is_json, read_json_units
 from foon_asp.text.line import (
     Line,
     LineError,
     MotionLine,
     ObjectLine,
-    Remark,
     StateLine,
     parse_line,
     parse_lines,
 )
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, node_of
 from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.provenance import is_video, read_copy, read_video
+from foon_asp.text.writer import write_line
 
-_VIDEO = "# Source:"
+_AHEAD = 65_536  # letters looked ahead for new lines, so that they go to the parser together
+_REMEMBERED = 200_000  # object blocks: what comes again mostly comes soon
+_LONGEST = 1_000_000  # letters of a line: no FOON line means more
 
 
 class ReadUnit(NamedTuple):
-    """One copy of a unit as it stands in a file, nodes in the order listed."""
+    """One copy of a unit: what makes its identity, nodes in the order listed, and where it was read.
+
+    ``sources`` has one entry, unless a merged file says from which copies the unit came.
+    """
 
     motion: str
     inputs: list[ObjectNode]
     outputs: list[ObjectNode]
-    source: Source
+    sources: tuple[Source, ...]
+
+    @property
+    def source(self) -> Source:
+        """The place of the first copy."""
+        return self.sources[0]
 
 
 class FoonReader:
-    """Reads any number of FOON text files; every distinct line and object block is parsed once.
+    """Reads any number of FOON files; every distinct line and object block is parsed once.
 
     With ``lenient``, what cannot be understood is left out with a warning, and everything else is kept;
     otherwise it is an error. Diagnostics of all files read so far are in ``diagnostics``; ``left_out``
-    counts the lines that ``lenient`` dropped.
+    counts the lines that are in no unit because they were not understood or make none.
     """
 
     def __init__(self, lenient: bool = False) -> None:
         self.lenient = lenient
         self.diagnostics: list[Diagnostic] = []
         self.left_out = 0
-        self.nodes: dict[str, ObjectNode] = {}  # by object block; only those without a remark
+        # By text without the first letter, and only what there is no remark on.
+        self.nodes: dict[str, ObjectNode] = {}
+        self.motions: dict[str, str] = {}
+        self.same_node: dict[ObjectNode, ObjectNode] = {}  # one object for each node: quick to compare
+        self.clean: dict[str, ObjectLine | str | Relation | Contents] = {}  # what state lines say
         self._lines: dict[str, Line | LineError] = {}
 
     def read_network(self, files: Iterable[Path]) -> Network:
@@ -50,8 +68,8 @@ class FoonReader:
         builder = NetworkBuilder()
         earlier = len(self.diagnostics)
         for file in files:
-            for unit in self.units(read_plain_text(file), str(file)):
-                builder.add(*unit)
+            for motion, inputs, outputs, sources in self.units(self.text(file), str(file)):
+                builder.add(motion, inputs, outputs, *sources)
         self.raise_errors(earlier)
         return builder.build()
 
@@ -60,10 +78,25 @@ class FoonReader:
         earlier = len(self.diagnostics)
         units = [
             (FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs), unit.source)
-            for unit in self.units(read_plain_text(file), str(file))
+            for unit in self.units(self.text(file), str(file))
         ]
         self.raise_errors(earlier)
         return units
+
+    def read_listed(self, file: Path) -> list[ListedUnit]:
+        """Read one file as units with their lines as written, copies kept; raises :class:`InputError`."""
+        earlier = len(self.diagnostics)
+        units = list(self.listed_units(self.text(file), str(file)))
+        self.raise_errors(earlier)
+        return units
+
+    def text(self, file: Path) -> str:
+        """Give the text of a file; one that is no text is noted as an error, and is empty."""
+        try:
+            return read_plain_text(file)
+        except InputError as error:
+            self.diagnostics += error.diagnostics
+            return ""
 
     def raise_errors(self, earlier: int = 0) -> None:
         """Raise :class:`InputError` if anything but the ``earlier`` diagnostics was an error."""
@@ -73,21 +106,47 @@ class FoonReader:
 
     def units(self, text: str, file: str) -> Iterator[ReadUnit]:
         """Give the units of a text in order; ``file`` is the name used in messages and sources."""
+        if is_json(text):
+            return map(_identity, self._json_units(text, file))
         return _FileReading(self, text, file).units()
 
-    def parse_new(self, lines: Sequence[str]) -> None:
-        """Parse the lines not met before together; if one is at fault, each is parsed in its turn."""
+    def listed_units(self, text: str, file: str) -> Iterator[ListedUnit]:
+        """Give the units of a text in order, with their lines as written."""
+        if is_json(text):
+            return self._json_units(text, file)
+        return _FileReading(self, text, file).listed_units()
+
+    def object_blocks(self, text: str, file: str) -> list[ObjectBlock]:
+        """Give the object nodes of a text that lists them without motions: a kitchen, or goals."""
+        return _FileReading(self, text, file).object_blocks()
+
+    def _json_units(self, text: str, file: str) -> Iterator[ListedUnit]:
+        return read_json_units(text, file, self.diagnostics, self.lenient)
+
+    def parse_new(self, lines: Iterable[str]) -> None:
+        """Parse the lines not met before together, which is faster than each in its turn."""
         known = self._lines
-        new = [line for line in dict.fromkeys(lines) if line[:1] in {"O", "S", "M"} and line not in known]
-        parsed = parse_lines(new)
-        if parsed is not None:
-            known.update(zip(new, parsed, strict=True))
+        new = [
+            line
+            for line in dict.fromkeys(lines)
+            if line[:1] in {"O", "S", "M"} and line not in known and len(line) <= _LONGEST
+        ]
+        for line, parsed in zip(new, parse_lines(new), strict=True):
+            known[line] = parsed
+            if isinstance(parsed, StateLine):
+                if not parsed.remarks:
+                    self.clean[line] = parsed.attribute
+            elif isinstance(parsed, ObjectLine) and not parsed.remarks:
+                self.clean[line] = parsed
 
     def parse(self, line: str) -> Line | LineError:
         """Parse a line, or remember what came of it."""
         parsed = self._lines.get(line)
         if parsed is None:
             try:
+                if len(line) > _LONGEST:
+                    found = f"a line of {len(line)} letters"
+                    raise LineError(_LONGEST + 1, found, (f"at most {_LONGEST}",))
                 parsed = parse_line(line)
             except LineError as error:
                 parsed = error
@@ -95,190 +154,286 @@ class FoonReader:
         return parsed
 
 
+def _identity(unit: ListedUnit) -> ReadUnit:
+    inputs, outputs = ([block.node for block in side] for side in (unit.inputs, unit.outputs))
+    return ReadUnit(unit.motion.motion, inputs, outputs, unit.sources)
+
+
 class _FileReading:
-    """One pass over the lines of one file."""
+    """One pass over the text of one file.
+
+    A unit whose object blocks were all met before, with nothing in it to remark on, is read by looking
+    the blocks up; every other one is read line by line.
+    """
 
     def __init__(self, reader: FoonReader, text: str, file: str) -> None:
         self.reader = reader
         self.file = file
-        self.lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        self.text = text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
         self.videos: tuple[str, ...] = ()
+        self.header_open = True  # further "# Source:" lines add to the videos until a unit comes between
         self.rejected = 0  # how often something was, so far
-        reader.parse_new(self.lines)
+        self.start = 0  # of the piece being read, in the text
+        self.looked_ahead = 0  # how far new lines have been parsed
+        self.lines: list[str] = []  # of that piece, when it is read line by line
+        self.number = 1  # of its first line
+        self.objects: list[ObjectBlock] = []  # of units without a motion
+        self.is_object_list = False
+        self.pieces = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
-        lines = self.lines
-        header_open = True  # further "# Source:" lines add to the videos until a unit comes between
+        for chunk, number, last in self._chunks():
+            unit = None if last else self._look_up(chunk, number)
+            if unit:
+                self.header_open = False
+                self.pieces += 1
+                yield unit
+            else:
+                yield from map(_identity, self._line_by_line(chunk, number, last))
+
+    def listed_units(self) -> Iterator[ListedUnit]:
+        for chunk, number, last in self._chunks():
+            yield from self._line_by_line(chunk, number, last)
+
+    def object_blocks(self) -> list[ObjectBlock]:
+        self.is_object_list = True
+        for _ in self.listed_units():
+            pass
+        return self.objects
+
+    def _chunks(self) -> Iterator[tuple[str, int, bool]]:
+        """Cut the text at the separators; give each piece, its line number, and whether it is the last."""
+        text = self.text
+        number = 1
+        while (end := text.find("\n//\n", self.start)) >= 0:
+            chunk = text[self.start : end]
+            yield chunk, number, False
+            number += chunk.count("\n") + 2
+            self.start = end + 4
+        yield text[self.start :], number, True
+
+    def _look_ahead(self, length: int) -> None:
+        """Parse the new lines of the piece at hand, of that length, and of those that follow."""
+        if self.start + length > self.looked_ahead:
+            end = self.text.find("\n", self.start + max(length, _AHEAD))
+            self.looked_ahead = len(self.text) if end < 0 else end
+            self.reader.parse_new(self.text[self.start : self.looked_ahead].split("\n"))
+
+    def _look_up(self, chunk: str, number: int) -> ReadUnit | None:
+        """Read a unit by its object blocks; ``None`` when one of them cannot be taken as it is."""
+        first, sources = number, []
+        while chunk[:1] == "#":
+            comment, line_end, chunk = chunk.partition("\n")
+            copy = read_copy(comment)
+            if not copy or not line_end:
+                return None
+            sources.append(copy)
+            first += 1
+        if chunk[:1] != "O":
+            return None
+        head, _, tail = chunk.partition("\nM")
+        motion_line, _, tail = tail.partition("\nO")
+        known, learn = self.reader.nodes.get, self._learn
+        motion = self.reader.motions.get(motion_line) or self._learn_motion(motion_line, len(chunk))
+        inputs = [known(block) or learn(block, len(chunk)) for block in head[1:].split("\nO")]
+        outputs = [known(block) or learn(block, len(chunk)) for block in tail.split("\nO")]
+        if not (motion and all(inputs) and all(outputs)):
+            return None
+        nodes = cast(tuple[list[ObjectNode], list[ObjectNode]], (inputs, outputs))
+        return ReadUnit(motion, *nodes, tuple(sources) or (Source(self.file, first, 1, self.videos),))
+
+    def _learn(self, block: str, length: int) -> ObjectNode | None:
+        """Build the node of a block not met before, and remember it; ``None`` if there is anything to say."""
+        self._look_ahead(length)
+        reader = self.reader
+        clean = reader.clean
+        first, *rest = block.split("\n")
+        try:
+            label = clean["O" + first]
+            attributes = [clean[line] for line in rest]
+        except KeyError:
+            return None
+        if type(label) is not ObjectLine or ObjectLine in map(type, attributes):
+            return None
+        node = node_of(label.label, cast(list[str | Relation | Contents], attributes))
+        if len(reader.nodes) >= _REMEMBERED:
+            reader.nodes.clear()
+        node = reader.nodes[block] = reader.same_node.setdefault(node, node)
+        return node
+
+    def _learn_motion(self, text: str, length: int) -> str | None:
+        if "\n" in text:  # what stands between the motion and the outputs
+            return None
+        self._look_ahead(length)
+        parsed = self.reader.parse("M" + text)
+        if not isinstance(parsed, MotionLine) or parsed.remarks:
+            return None
+        self.reader.motions[text] = parsed.motion
+        return parsed.motion
+
+    def _line_by_line(self, chunk: str, number: int, last: bool) -> Iterator[ListedUnit]:
+        """Read a piece of the text that may hold anything, separators with blanks behind them included."""
+        self._look_ahead(len(chunk))
+        self.lines = lines = chunk.split("\n")
+        self.number = number
         start = 0
         for index, line in enumerate(lines):
             first = line[:1]
-            if first == "#":
-                if line.startswith(_VIDEO):
-                    video = line[len(_VIDEO) :].strip()
-                    self.videos = (*(self.videos if header_open else ()), *([video] if video else []))
-                    header_open = True
+            if first == "#" and is_video(line):
+                video = read_video(line)
+                self.videos = (*(self.videos if self.header_open else ()), *([video] if video else []))
+                self.header_open = True
             elif first == "/" and line.rstrip(" \t") == "//":
-                unit = self._unit(start, index)
+                unit = self._unit(start, index, closed=True)
+                if line != "//":
+                    self._warn("outer-space", "blanks after // left out", index, 3, "//")
                 if unit:
-                    header_open = False
+                    self.header_open = False
                     yield unit
                 start = index + 1
-        unit = self._unit(start, len(lines))
+        unit = self._unit(start, len(lines), closed=not last)
         if unit:
-            last = next(i for i in reversed(range(len(lines))) if lines[i].strip())
-            self._warn("missing-separator", "the last unit is not closed by //", last, len(lines[last]) + 1)
+            self.header_open = False
+            if last:
+                end = next(i for i in reversed(range(len(lines))) if lines[i].strip())
+                message = "the last unit is not closed by //"
+                self._warn("missing-separator", message, end, len(lines[end]) + 1)
             yield unit
 
-    def _unit(self, start: int, end: int) -> ReadUnit | None:
+    def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
         """Read the lines between two separators; ``None`` when they hold no unit."""
-        lines = self.lines
-        motion: str | None = None
-        inputs: list[ObjectNode] = []
-        outputs: list[ObjectNode] = []
-        side = inputs
-        block: list[str] = []  # the open object block, which began on line block_start
-        block_start = first_line = -1
-        rejected_before = self.rejected, self.reader.left_out
+        piece = _Piece(end, closed, self.rejected, self.reader.left_out)
         for index in range(start, end):
-            line = lines[index]
+            line = self.lines[index]
             letter = line[:1]
-            if letter == "S" and block:
-                block.append(line)
-                continue
-            if letter == "#" or not letter or line.isspace():
-                continue
-            if first_line < 0:
-                first_line = index
-            if block:
-                self._close(block, block_start, side)
-            if letter == "O":
-                block.append(line)
-                block_start = index
-            elif letter == "M" and motion is None:
-                motion = self._motion(index)
-                side = outputs
+            if letter == "#":
+                copy = read_copy(line)
+                piece.copies += [copy] if copy else []
+            elif letter and not line.isspace():
+                if piece.first < 0:
+                    piece.first = index
+                self._line(piece, index)
+        if piece.first < 0:
+            return None
+        self.pieces += 1
+        if self.is_object_list:
+            self.objects += _settled(piece.inputs + piece.outputs)
+            return None
+        if len(piece.motions) != 1 or not piece.inputs:
+            self._no_unit(piece)
+            return None
+        index, motion = piece.motions[0]
+        if not piece.outputs:
+            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", piece.first)
+        sources = tuple(piece.copies) or (self._place(piece.first)._replace(videos=self.videos),)
+        return ListedUnit(
+            motion, _settled(piece.inputs), _settled(piece.outputs), sources, self._place(index)
+        )
+
+    def _line(self, piece: "_Piece", index: int) -> None:
+        """Put a line where it belongs, or say why it belongs nowhere."""
+        parsed = self.reader.parse(self.lines[index])
+        if isinstance(parsed, LineError):
+            self._reject("syntax", str(parsed), index, parsed.column)
+            piece.lost = piece.lost or self.lines[index][0] == "O"
+            return
+        self._remark(parsed, index)
+        if isinstance(parsed, StateLine):
+            if piece.lost:
+                self.reader.left_out += self.reader.lenient
+            elif piece.states is None:
+                message = "found a state line, expected an object line before it"
+                self._reject("state-without-object", message, index)
             else:
-                self._misplaced(index)
-        if block:
-            self._close(block, block_start, side)
-        if first_line < 0:
-            return None
-        if motion is None or not inputs:
-            self._drop(first_line, end, motion is not None, rejected_before)
-            return None
-        if not outputs:
-            self._warn("no-outputs", f"the unit {motion!r} has no output objects", first_line)
-        return ReadUnit(motion, inputs, outputs, Source(self.file, first_line + 1, 1, self.videos))
-
-    def _drop(self, first_line: int, end: int, has_motion: bool, before: tuple[int, int]) -> None:
-        """Reject the lines of a unit that is none; where a line of it was, that already says why."""
-        meaningful = [i for i in range(first_line, end) if self.lines[i].strip() and self.lines[i][0] != "#"]
-        rejected, left_out = before
-        if self.rejected == rejected or self.reader.lenient:
-            at_end = end == len(self.lines)
-            found = "the file ends" if at_end else "found //"
-            code, expected, lacks = "no-motion", "a motion line", "has no motion"
-            if has_motion:
-                code, expected, lacks = (
-                    "no-inputs",
-                    "an object line before the motion",
-                    "has no input objects",
-                )
-            message = f"{found}, expected {expected}: the unit of line {first_line + 1} {lacks}"
-            count = len(meaningful) - (self.reader.left_out - left_out)
-            self._reject(code, message, meaningful[-1] if at_end else end, count=count)
-
-    def _motion(self, index: int) -> str | None:
-        parsed = self.reader.parse(self.lines[index])
-        if isinstance(parsed, MotionLine):
-            self._remark(parsed.remarks, index)
-            return parsed.motion
-        if isinstance(parsed, LineError):
-            self._reject("syntax", str(parsed), index, parsed.column)
-        return None
-
-    def _misplaced(self, index: int) -> None:
-        """Reject a line that is not understood or cannot stand where it does."""
-        parsed = self.reader.parse(self.lines[index])
-        if isinstance(parsed, LineError):
-            self._reject("syntax", str(parsed), index, parsed.column)
-        elif isinstance(parsed, StateLine):
-            message = "found a state line, expected an object line before it"
-            self._reject("state-without-object", message, index)
-        else:
+                piece.states.append(parsed)
+            return
+        piece.lost = False
+        if isinstance(parsed, ObjectLine):
+            piece.states = []
+            side = piece.outputs if piece.motions else piece.inputs
+            side.append(ObjectBlock(parsed, cast(tuple[StateLine, ...], piece.states), self._place(index)))
+            return
+        piece.states = None
+        piece.motions.append((index, parsed))
+        if self.is_object_list:
+            message = "found a motion, expected a list of objects without motions"
+            self._reject("motion-in-list", message, index)
+        elif len(piece.motions) > 1:
             message = "found a second motion in one unit, expected an object line or //"
             self._reject("second-motion", message, index)
 
-    def _close(self, block: list[str], start: int, side: list[ObjectNode]) -> None:
-        node = self.reader.nodes.get("\n".join(block)) or self._node(block, start)
-        if node:
-            side.append(node)
-        block.clear()
+    def _no_unit(self, piece: "_Piece") -> None:
+        """Say that lines are no unit, unless an error among them already says why."""
+        if self.rejected > piece.rejected and not self.reader.lenient:
+            return
+        lines, first = self.lines, piece.first
+        meaningful = [i for i in range(first, piece.end) if lines[i].strip() and lines[i][0] != "#"]
+        self.reader.left_out = piece.left_out + len(meaningful)
+        unit = f"the unit of line {self.number + first}"
+        if len(piece.motions) > 1:
+            self._warn("second-motion", f"{unit} has {len(piece.motions)} motions; left out", first)
+        elif piece.motions:
+            message = f"found a motion, expected an object line before it: {unit} has no input objects"
+            self._warn("no-inputs", message + "; left out", piece.motions[0][0])
+        elif not piece.closed and self.pieces == 1:
+            listed = "one object" if len(piece.inputs) == 1 else f"{len(piece.inputs)} objects"
+            message = f"{listed} and no motion: a list such as a kitchen or goals, without units"
+            self._warn("no-motion", message, first)
+        else:
+            found = "found //" if piece.closed else "the file ends"
+            message = f"{found}, expected a motion line: {unit} has no motion; left out"
+            self._warn("no-motion", message, piece.end if piece.closed else meaningful[-1])
 
-    def _node(self, block: list[str], start: int) -> ObjectNode | None:
-        """Build the node of an object line and the state lines under it, and remember it.
+    def _place(self, index: int, column: int = 1) -> Source:
+        return Source(self.file, self.number + index, column)
 
-        ``None`` when the object line cannot be read; the state lines under it are then lost with it.
-        """
-        label = ""
-        states: list[str] = []
-        relations: list[Relation] = []
-        contents: list[Contents] = []
-        clean = True
-        for line in block:
-            parsed = self.reader.parse(line)
-            if isinstance(parsed, StateLine):
-                attribute = parsed.attribute
-                if isinstance(attribute, str):
-                    states.append(attribute)
-                elif isinstance(attribute, Relation):
-                    relations.append(attribute)
-                else:
-                    contents.append(attribute)
-            elif isinstance(parsed, ObjectLine):
-                label = parsed.label
-            if isinstance(parsed, LineError) or parsed.remarks:
-                clean = False
-        if not clean:
-            self._explain(block, start)
-            if not label:
-                return None
-        contents.sort()
-        node = ObjectNode(label, frozenset(states), frozenset(relations), tuple(contents))
-        if clean:
-            self.reader.nodes["\n".join(block)] = node
-        return node
+    def _remark(self, line: Line, index: int) -> None:
+        if line.remarks:
+            mended = write_line(line)
+            fix = mended if mended != self.lines[index] else None
+            for column, code, message in line.remarks:
+                self._warn(code, message, index, column, fix)
 
-    def _explain(self, block: list[str], start: int) -> None:
-        """Say what is wrong with the lines of a block; comments may stand between them."""
-        index = start - 1
-        for line in block:
-            index = self.lines.index(line, index + 1)
-            parsed = self.reader.parse(line)
-            if not isinstance(parsed, LineError):
-                self._remark(parsed.remarks, index)
-            elif index == start:
-                self._reject("syntax", str(parsed), index, parsed.column, count=len(block))
-                return
-            else:
-                self._reject("syntax", str(parsed), index, parsed.column)
+    def _warn(self, code: str, message: str, index: int, column: int = 1, fix: str | None = None) -> None:
+        line = self.lines[index] if index < len(self.lines) else "//"
+        self.reader.diagnostics.append(
+            Diagnostic(Severity.WARNING, code, message, self._place(index, column), line, fix)
+        )
 
-    def _remark(self, remarks: tuple[Remark, ...], index: int) -> None:
-        for column, code, message in remarks:
-            self._warn(code, message, index, column)
-
-    def _warn(self, code: str, message: str, index: int, column: int = 1) -> None:
-        source = Source(self.file, index + 1, column)
-        self.reader.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, self.lines[index]))
-
-    def _reject(self, code: str, message: str, index: int, column: int = 1, count: int = 1) -> None:
-        """Note an error, or under ``lenient`` a warning that ``count`` lines were left out."""
+    def _reject(self, code: str, message: str, index: int, column: int = 1) -> None:
+        """Note an error, or under ``lenient`` a warning that the line was left out."""
         reader = self.reader
         self.rejected += 1
         severity = Severity.ERROR
         if reader.lenient:
             severity = Severity.WARNING
             message += "; left out"
-            reader.left_out += count
-        source = Source(self.file, index + 1, column)
-        reader.diagnostics.append(Diagnostic(severity, code, message, source, self.lines[index]))
+            reader.left_out += 1
+        place = self._place(index, column)
+        reader.diagnostics.append(Diagnostic(severity, code, message, place, self.lines[index]))
+
+
+@dataclass
+class _Piece:
+    """The lines between two separators, while they are read one by one; places are indices of lines.
+
+    ``states`` are those under the object line at hand, ``None`` before the first; ``lost`` says that this
+    object line cannot be read, and that the states under it go with it. ``rejected`` and ``left_out`` are
+    the counts of before.
+    """
+
+    end: int
+    closed: bool
+    rejected: int
+    left_out: int
+    first: int = -1
+    motions: list[tuple[int, MotionLine]] = field(default_factory=list)
+    inputs: list[ObjectBlock] = field(default_factory=list)
+    outputs: list[ObjectBlock] = field(default_factory=list)
+    copies: list[Source] = field(default_factory=list)
+    states: list[StateLine] | None = None
+    lost: bool = False
+
+
+def _settled(blocks: list[ObjectBlock]) -> tuple[ObjectBlock, ...]:
+    return tuple(block._replace(states=tuple(block.states)) for block in blocks)

@@ -1,8 +1,26 @@
-"""Writing FOON text in its canonical form (no ids, flags or times)."""
+"""Writing FOON text: lines as they were read, and units without ids, flags or times."""
 
 from collections.abc import Iterable
 
-from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
+from foon_asp.text.line import Line, MotionLine, ObjectLine
+
+
+def write_line(line: Line) -> str:
+    """Give the canonical text of a line: a line read without a remark comes out as it was.
+
+    Ids, fields and the order of ingredients are kept, and what a remark said was left out is not there.
+    """
+    if isinstance(line, ObjectLine):
+        return "\t".join((f"O{line.id}", line.label, *line.fields))
+    if isinstance(line, MotionLine):
+        return "\t".join((f"M{line.id}", line.motion + "*" * line.composite, *line.fields))
+    attribute = line.attribute
+    if isinstance(attribute, Relation):
+        return f"S{line.id}\t{attribute.word}\t[{attribute.object}]"
+    if isinstance(attribute, Contents):
+        return f"S{line.id}\t{attribute.word}\t{{{','.join(line.listed)}}}"
+    return f"S{line.id}\t{attribute}"
 
 
 def write_node(node: ObjectNode) -> str:

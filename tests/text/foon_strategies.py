@@ -3,7 +3,10 @@
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
+from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
+from foon_asp.text.motion_times import is_time
+from foon_asp.text.writer import write_line
 
 # The same examples in every run, and no time limit on a single one: the machine may be busy.
 steady = settings(deadline=None, derandomize=True, max_examples=100)
@@ -54,6 +57,102 @@ def units(most: int = 4) -> st.SearchStrategy[list[FunctionalUnit]]:
     return st.lists(nodes(), min_size=1, max_size=4).flatmap(of_nodes)
 
 
+_IDS = st.just("") | st.integers(0, 999).map(str) | st.sampled_from(["00", "007"])
+_TIMES = st.sampled_from(
+    [
+        "1:10",
+        "12:59",
+        "0:02:50",
+        "Assumed",
+        "assumed",
+        "<Assumed>",
+        "<Assumed,Assumed>",
+        "<0:01, 0:09>",
+        "<0:12-0:34,0:40-0:44>",
+    ]
+)
+
+
+def object_lines() -> st.SearchStrategy[ObjectLine]:
+    """Draw object lines without dirt: with and without id, flag, category and goal mark."""
+    tags = st.sampled_from([(), ("0",), ("1",), ("1", "15"), ("0", "!"), ("!",)])
+    return st.builds(ObjectLine, names(), _IDS, tags, st.just(()))
+
+
+def state_lines() -> st.SearchStrategy[StateLine]:
+    """Draw state lines without dirt: states, relations, contents in any order."""
+    name, item = names(), names(without=",")
+    relation = st.builds(Relation, name.filter(lambda word: word != "contains"), item)
+    listed = st.lists(item, min_size=1, max_size=4, unique=True).map(tuple)
+    holding = st.builds(
+        lambda word, items, id_: StateLine(Contents(word, tuple(sorted(items))), id_, items),
+        st.just("contains") | name,
+        listed,
+        _IDS,
+    )
+    return st.builds(StateLine, name | relation, _IDS, st.just(()), st.just(())) | holding
+
+
+def motion_lines() -> st.SearchStrategy[MotionLine]:
+    """Draw motion lines without dirt: with and without id, ``*``, times, entity and success rate."""
+    motion = names().filter(lambda name: name[-1] != "*")
+    entity = names().filter(lambda name: not is_time(name))
+    rate = st.sampled_from(["0.85", ".5", "1", "1.0", "0", "1."])
+    times = st.lists(_TIMES, max_size=2).map(tuple)
+    fields = times | st.builds(lambda when, who, how: (*when, who, how), times, entity, rate)
+    return st.builds(MotionLine, motion, _IDS, st.booleans(), fields, st.just(()))
+
+
+def lines() -> st.SearchStrategy[Line]:
+    """Draw lines of any kind without dirt."""
+    return st.one_of(object_lines(), state_lines(), motion_lines())
+
+
+# What annotators do to a line: a piece of it, and what they write instead.
+_SLIPS = [
+    ("\t", " "),
+    ("\t", "\t\t"),
+    ("\t", "\t "),
+    ("\t", " \t"),
+    ("\t", ""),
+    ("]", ""),
+    ("}", ""),
+    ("[", ""),
+    ("{", ""),
+    ("]", "}"),
+    ("{", "["),
+    ("}", "]"),
+    (",", ", "),
+    (",", ",,"),
+    (">", ""),
+    ("<", ""),
+    ("d", ""),
+    ("1", "01"),
+    ("0", "00"),
+    (":", ""),
+]
+
+
+def dirty_lines() -> st.SearchStrategy[str]:
+    """Draw lines with up to three slips in them: some are read with remarks, some not at all."""
+
+    def slip(text: str, at: int, kind: tuple[str, str]) -> str:
+        places = [i for i in range(len(text)) if text.startswith(kind[0], i)]
+        if not places:
+            return text
+        place = places[at % len(places)]
+        return text[:place] + kind[1] + text[place + len(kind[0]) :]
+
+    def slips(text: str, kinds: list[tuple[int, tuple[str, str]]], end: str) -> str:
+        for at, kind in kinds:
+            text = slip(text, at, kind)
+        return text + end
+
+    some = st.lists(st.tuples(st.integers(0, 9), st.sampled_from(_SLIPS)), max_size=3)
+    ends = st.sampled_from(["", "", " ", "\t", "]", "\t\t ", " \t"])
+    return st.builds(slips, lines().map(write_line), some, ends)
+
+
 # Each of these means something where it stands, or is a comment, or is empty.
 _WHOLE_LINES = [
     "O\ttea",
@@ -63,12 +162,29 @@ _WHOLE_LINES = [
     "S\tcontains\t{tea,milk}",
     "M\tpour",
     "M4\tpour\t1:10\tAssumed",
+    "M4\tpour*\t<0:01,0:09>\tRobot\t0.85",
+    "O12\ttea pot\t0\t15",
+    "O\ttea\t0\t!",
     "//",
     "",
     "# note",
+    "# From:\ta.txt:3\tv",
     "# Source:\thttps://example.org/tea",
 ]
 _DIRTY_LINES = [
+    "O tea",
+    "O9\t\ttea\t0\t!",
+    "O\ttea\t",
+    "O\ttea\t0\tx",
+    "S\tin\t[pot",
+    "S\tin\t[pot}",
+    "S\tin\tpot",
+    "S\ton\t[]",
+    "S\thot \t",
+    "S\tcontains\t{a, a, b,,}",
+    "M pour",
+    "M4\tpour*\tAssume",
+    "M\tpour\t<Assumed\t1:35]",
     "S\tunder [pan]",
     "S\tcontains\t{a,}",
     "S\tcoated\t[a,b]",
@@ -79,9 +195,7 @@ _DIRTY_LINES = [
 _BROKEN_LINES = [
     "O",
     "O\t",
-    "O tea",
     "S\t",
-    "S\tin\t[pot",
     "S\tin\t[pot]]",
     "M",
     "M\t",
@@ -97,9 +211,33 @@ _BROKEN_LINES = [
     "\u2028O\ta",
 ]
 _WHOLE_UNITS = [
+    "# From:\ta.txt:3\tv\tw\n# From:\tb.txt:9\n"
+    "O7\twater\t0\nS\tin\t[kettle]\nM9\tboil*\nO\twater\t1\t4\nS\thot\n//",
     "O\twater\nS\tin\t[kettle]\nM\tboil\nO\twater\nS\thot\n//",
     "O7\tkettle\t0\nS8\tcontains\t{water}\nM9\ttip\t<0:10>\t0:20\nO7\tkettle\t1\nO1\ttea\t0\n//",
 ]
+
+
+def unit_texts() -> st.SearchStrategy[str]:
+    """Draw one unit as text, closed: as it should be, or with one line in it that is dirty."""
+    clean, dirty = (
+        {letter: st.sampled_from([line for line in some if line[:1] == letter]) for letter in "OSM"}
+        for some in (_WHOLE_LINES, _DIRTY_LINES)
+    )
+    block = st.builds(lambda first, rest: [first, *rest], clean["O"], st.lists(clean["S"], max_size=2))
+    side = st.lists(block, min_size=1, max_size=2).map(lambda blocks: [x for block in blocks for x in block])
+    unit = st.builds(lambda first, motion, last: [*first, motion, *last], side, clean["M"], side)
+
+    def with_dirt(lines: list[str]) -> st.SearchStrategy[list[str]]:
+        def at(index: int) -> st.SearchStrategy[list[str]]:
+            return dirty[lines[index][0]].map(lambda line: [*lines[:index], line, *lines[index + 1 :]])
+
+        motion = next(index for index, line in enumerate(lines) if line[0] == "M")
+        return st.just(lines) | st.integers(0, len(lines) - 1).flatmap(at) | at(motion)
+
+    above = st.sampled_from(["", "", "# From:\ta.txt:3\tv\n", "# Source:\tv\n", "# note\n"])
+    end = st.sampled_from(["//", "//", "//", "// "])
+    return st.builds("{}{}\n{}".format, above, unit.flatmap(with_dirt).map("\n".join), end)
 
 
 def texts() -> st.SearchStrategy[str]:
@@ -107,6 +245,7 @@ def texts() -> st.SearchStrategy[str]:
     anything = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\r\n"), max_size=5)
     piece = (
         st.sampled_from(_WHOLE_UNITS)
+        | unit_texts()
         | st.sampled_from(_WHOLE_LINES)
         | st.sampled_from(_WHOLE_LINES + _DIRTY_LINES + _BROKEN_LINES)
         | anything

@@ -76,6 +76,24 @@ def test_an_input_error_is_the_users_and_carries_all_diagnostics() -> None:
     assert str(error) == f"{found[0]}\n{found[1]}"
 
 
+@pytest.mark.parametrize(("count", "shown", "rest"), [(1, 1, 0), (40, 40, 0), (41, 40, 1), (1000, 40, 960)])
+def test_an_input_error_shows_the_first_errors_and_counts_the_rest(count: int, shown: int, rest: int) -> None:
+    found = [warning(line) for line in range(1, count + 1)]
+    error = InputError(found)
+    assert error.diagnostics == tuple(found)
+    lines = str(error).split("\n")
+    assert lines[:shown] == [str(d) for d in found[:shown]]
+    assert len(lines) == shown + bool(rest)
+    if rest:
+        assert lines[-1].startswith(f"... and {rest} more errors")
+
+
+def test_a_fix_is_no_part_of_what_is_shown() -> None:
+    plain = warning(4, excerpt="O tea")
+    assert plain.fix is None
+    assert str(plain._replace(fix="O\ttea")) == str(plain)
+
+
 def test_one_of_a_kind_is_told_in_full() -> None:
     assert summarize([]) == []
     found = [warning(1, "time"), warning(2, "motion-flag", excerpt="O\ta\t7")]

@@ -1,4 +1,4 @@
-"""Kitchens and goals in JSON: what entries stand for, where each stands, and what is wrong in place."""
+"""Kitchens and goals, in JSON and as FOON text: what entries stand for, where each stands, what is wrong."""
 
 import json
 from pathlib import Path
@@ -9,8 +9,13 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text import Diagnostic, InputError, ListedObject, read_object_list
+from foon_asp.text import Diagnostic, InputError, ListedObject, Severity, read_object_list, write_node
 from tests.text.foon_strategies import nodes, steady
+
+KEYS = (
+    "container, has_portions, ingredients, label, object_id, object_in_motion, object_label, "
+    "object_states, recipe_category, states"
+)
 
 
 def listed(tmp_path: Path, text: str) -> list[ListedObject]:
@@ -96,7 +101,6 @@ def test_only_what_foon_text_leaves_out_is_left_out(tmp_path: Path) -> None:
     assert pattern.matches(ObjectNode.of("onion\xa0"))
 
 
-@pytest.mark.xfail(strict=True, reason="FOON text reads these as contents, JSON as relations")
 @pytest.mark.parametrize(
     ("state", "node"),
     [
@@ -158,19 +162,23 @@ def test_only_line_feeds_count_lines(tmp_path: Path) -> None:
         ('{"label": 7}', 'found 7 as "label", expected a name'),
         ('{"label": ["a"]}', 'found ["a"] as "label", expected a name'),
         ('{"label": "a", "states": "raw"}', 'found "raw" as "states", expected a list of names'),
-        ('{"label": "a", "states": [1]}', 'found [1] as "states", expected a list of names'),
-        ('{"label": "a", "states": ["x", null]}', 'found ["x", null] as "states", expected a list of names'),
-        ('{"label": "a", "states": {"x": 1}}', 'found {"x": 1} as "states", expected a list of names'),
+        ('{"label": "a", "states": [1]}', 'found 1 as "states", expected a name'),
+        ('{"label": "a", "states": ["x", null]}', 'found null as "states", expected a name'),
+        (
+            '{"label": "a", "states": ["in [b]]"]}',
+            "found the state \"in [b]]\": at its column 7, found ']', ex",
+        ),
+        ('{"label": "a", "states": [{"state": "x"}]}', "found the key 'state', expected one of label, rel"),
+        ('{"label": "a", "states": [{"state_id": 3}]}', 'found null as "state_label", expected a name'),
+        ('{"label": "a", "object_id": "x"}', 'found "x" as "object_id", expected a number'),
+        ('{"label": "a", "states": {"x": "y"}}', 'found {"x": "y"} as "states", expected a list of names'),
         ('{"label": "a", "ingredients": "b"}', 'found "b" as "ingredients", expected a list of names'),
-        ('{"label": "a", "ingredients": [["b"]]}', 'found [["b"]] as "ingredients", expected a list of'),
+        ('{"label": "a", "ingredients": [["b"]]}', 'found ["b"] as "ingredients", expected a name'),
         ('{"label": "a", "container": ["b"]}', 'found ["b"] as "container", expected a name or null'),
         ('{"label": "a", "container": 0}', 'found 0 as "container", expected a name or null'),
         ('{"label": "a", "container": false}', 'found false as "container", expected a name or null'),
-        (
-            '{"label": "a", "contianer": "b"}',
-            "found the key 'contianer', expected one of container, ingredients, label, states",
-        ),
-        ('{"Label": "a"}', "found the key 'Label', expected one of container, ingredients, label, states"),
+        ('{"label": "a", "contianer": "b"}', f"found the key 'contianer', expected one of {KEYS}"),
+        ('{"Label": "a"}', f"found the key 'Label', expected one of {KEYS}"),
     ],
 )
 def test_an_entry_of_another_form_is_named_in_place(tmp_path: Path, entry: str, message: str) -> None:
@@ -192,11 +200,10 @@ def test_a_value_of_another_type_is_an_error_even_if_empty(tmp_path: Path, key: 
     assert f'as "{key}", expected a list of names' in error.message
 
 
-@pytest.mark.xfail(strict=True, reason="of a key given twice the first value is lost without a word")
 def test_a_key_given_twice_is_an_error(tmp_path: Path) -> None:
     (error,) = errors(tmp_path, '[\n{"label": "a", "states": ["x"], "states": ["y"]}]')
     assert (error.source.line, error.source.column) == (2, 1)
-    assert "states" in error.message
+    assert error.message == "found the key 'states' twice in one object"
 
 
 # --- not a JSON list at all
@@ -253,9 +260,6 @@ def test_json_that_is_no_list_is_not_called_no_json(tmp_path: Path, text: str) -
     assert error.message.startswith("found ")
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the place is the first letter of the file, wherever the number stands"
-)
 def test_a_number_of_very_many_digits_is_located(tmp_path: Path) -> None:
     (error,) = errors(tmp_path, '[{"label": "a"},\n {"label": ' + "1" * 5000 + "}]")
     assert error.source.line == 2
@@ -297,6 +301,221 @@ def test_any_json_is_read_or_refused_in_place(
 ) -> None:
     entries, diagnostics = outcome(tmp_path_factory.getbasetemp(), json.dumps(value, indent=1))
     assert diagnostics or (isinstance(value, list) and len(entries) == len(value))
+
+
+# --- the same as FOON text
+
+
+def blocks(
+    tmp_path: Path, text: str, name: str = "kitchen.txt"
+) -> tuple[list[ListedObject], list[Diagnostic]]:
+    """Read object blocks; the warnings come along."""
+    file = tmp_path / name
+    file.write_text(text, "utf-8", newline="")
+    warnings: list[Diagnostic] = []
+    return read_object_list(file, warnings), warnings
+
+
+@pytest.mark.parametrize("name", ["kitchen.txt", "goals", "kitchen.foon"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("start", ["", "\N{BYTE ORDER MARK}"])
+def test_object_blocks_are_entries(tmp_path: Path, name: str, end: str, start: str) -> None:
+    text = (
+        "# what is there\n//\nO5\tegg\t0\t15\nS\twhole\nS65\tin\t[bowl]\n//\n\n"
+        "O\tbowl\nS\tcontains\t{b,a}\nS\tcoated\t{c}\nO\tsalt\t1"
+    )
+    entries, warnings = blocks(tmp_path, start + text.replace("\n", end), name)
+    assert [entry.pattern for entry in entries] == [
+        NodePattern("egg", frozenset({"whole"}), relations=frozenset({Relation("in", "bowl")})),
+        NodePattern("bowl", ingredients=("a", "b", "c")),
+        NodePattern("salt"),
+    ]
+    assert [entry.source for entry in entries] == [Source(str(tmp_path / name), line) for line in (3, 8, 11)]
+    assert warnings == []
+
+
+def test_a_relation_in_a_text_is_by_word(tmp_path: Path) -> None:
+    ((pattern, _),), _ = blocks(tmp_path, "O\ta\nS\tin\t[b]\n")
+    assert pattern.matches(ObjectNode.of("a", [], [("in", "b")]))
+    assert not pattern.matches(ObjectNode.of("a", [], [("on", "b")]))
+
+
+@pytest.mark.parametrize("text", ["", "\n", "# nothing\n", "//\n//\n"])
+def test_a_text_without_objects_has_no_entries(tmp_path: Path, text: str) -> None:
+    assert blocks(tmp_path, text) == ([], [])
+
+
+def test_dirt_in_a_list_of_objects_is_remarked_on(tmp_path: Path) -> None:
+    entries, warnings = blocks(tmp_path, "O egg\nS\tin [bowl]\n")
+    assert [str(entry.pattern) for entry in entries] == ["egg; in [bowl]"]
+    assert [(d.code, d.source.line, d.source.column, d.fix) for d in warnings] == [
+        ("space-for-tab", 1, 2, "O\tegg"),
+        ("space-for-tab", 2, 5, "S\tin\t[bowl]"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("O\ta\nx\nO\tb\n", ("syntax", 2, 1)),
+        ("O\ta\nS\tin\t[b]]\n", ("syntax", 2, 9)),
+        ("O\tb\n//\nS\tx\nO\ta\n", ("state-without-object", 3, 1)),
+        ("O\tb\n//\nO\ta\nM\tmix\nO\tb\n//\n", ("motion-in-list", 4, 1)),
+        ("O\ta\nM\tmix", ("motion-in-list", 2, 1)),
+        # objects are not needed for a motion to be one too many
+        ("M\tmix\nO\tb\n//\n", ("motion-in-list", 1, 1)),
+        # the line is shown as it stands in the file
+        ("O\ta\nM mix\nO\tb\n//\n", ("motion-in-list", 2, 1)),
+    ],
+)
+def test_what_is_no_list_of_objects_is_refused_in_place(
+    tmp_path: Path, text: str, place: tuple[str, int, int]
+) -> None:
+    with pytest.raises(InputError) as caught:
+        blocks(tmp_path, text)
+    (error,) = caught.value.diagnostics
+    assert (error.code, error.source.line, error.source.column) == place
+    assert error.excerpt == text.split("\n")[place[1] - 1]
+
+
+def test_every_motion_in_a_list_of_objects_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError) as caught:
+        blocks(tmp_path, "O\ta\nM\tmix\nM\tcut\nO\tb\n//\nM\tmix\n")
+    assert [(d.code, d.source.line, d.excerpt) for d in caught.value.diagnostics] == [
+        ("motion-in-list", 2, "M\tmix"),
+        ("motion-in-list", 3, "M\tcut"),
+        ("motion-in-list", 6, "M\tmix"),
+    ]
+
+
+def test_json_is_known_by_its_name_or_its_first_letter(tmp_path: Path) -> None:
+    entries, _ = blocks(tmp_path, '\n [{"label": "a"}]')
+    assert [(str(e.pattern), e.source.line, e.source.column) for e in entries] == [("a", 2, 3)]
+    with pytest.raises(InputError, match=r"kitchen\.json:1:1: error: .*expected a list"):
+        blocks(tmp_path, "O\ta\n", "kitchen.json")
+    with pytest.raises(InputError, match=r"kitchen\.txt:1:1: error: .*expected a list"):
+        blocks(tmp_path, '{"label": "a"}')
+
+
+@steady
+@given(st.lists(nodes(), max_size=4))
+def test_a_written_node_is_an_entry_that_stands_for_it(
+    tmp_path_factory: pytest.TempPathFactory, some: list[ObjectNode]
+) -> None:
+    entries, warnings = blocks(tmp_path_factory.getbasetemp(), "".join(map(write_node, some)))
+    assert [entry.pattern.label for entry in entries] == [node.label for node in some]
+    assert all(entry.pattern.matches(node) for entry, node in zip(entries, some, strict=True))
+    assert {d.code for d in warnings} <= {"repeated-ingredient", "empty-ingredient"}
+
+
+# --- states and names in either form of JSON
+
+
+@pytest.mark.parametrize(
+    ("state", "line"),
+    [
+        ("whole", "S\twhole"),
+        ("on", "S\ton"),
+        ("on []", "S\ton\t[]"),
+        ("in [bowl]", "S\tin\t[bowl]"),
+        ("in  [ bowl ]", "S\tin\t[ bowl ]"),
+        ("contains [egg]", "S\tcontains\t[egg]"),
+        ("coated {b,a}", "S\tcoated\t{b,a}"),
+    ],
+)
+def test_a_state_says_the_same_in_json_and_in_foon_text(tmp_path: Path, state: str, line: str) -> None:
+    (by_json,) = patterns(tmp_path, {"label": "a", "states": [state]})
+    ((by_text, _),), _ = blocks(tmp_path, f"O\ta\n{line}\n")
+    assert by_json == by_text
+
+
+def test_an_entry_may_have_the_names_of_the_other_form(tmp_path: Path) -> None:
+    assert patterns(
+        tmp_path,
+        {
+            "object_id": 5,
+            "object_label": "egg",
+            "object_states": [
+                {"state_id": 1, "state_label": "whole", "relative_object": None},
+                {"state_id": 65, "state_label": "in", "relative_object": "bowl"},
+                {"label": "on", "related_object": "None"},
+                {"state_label": "contains"},
+            ],
+            "ingredients": [{"label": "b", "states": []}, "a"],
+            "object_in_motion": 1,
+        },
+    ) == [
+        NodePattern(
+            "egg", frozenset({"whole", "on"}), ("a", "b"), relations=frozenset({Relation("in", "bowl")})
+        )
+    ]
+
+
+@pytest.mark.parametrize("none", ["None", "", "  ", None])
+def test_a_container_that_is_none_is_none(tmp_path: Path, none: str | None) -> None:
+    assert patterns(tmp_path, {"label": "a", "container": none}) == [NodePattern("a")]
+
+
+def test_a_value_is_shown_as_it_stands(tmp_path: Path) -> None:
+    (error,) = errors(tmp_path, '[{"label": "a", "states": {"x": 1}}]')
+    assert error.message.startswith('found {"x": 1} as "states"')
+
+
+@pytest.mark.parametrize(
+    ("entry", "pattern"),
+    [
+        ({"label": "a\tb"}, NodePattern("a\tb")),
+        ({"label": "a[b"}, NodePattern("a[b")),
+        ({"label": "a", "ingredients": ["x,y", "z}"]}, NodePattern("a", ingredients=("x,y", "z}"))),
+        ({"label": "a", "container": "p]"}, NodePattern("a", container="p]")),
+        (
+            {"label": "a", "states": [{"state_label": "in", "relative_object": "p,q"}]},
+            NodePattern("a", relations=frozenset({Relation("in", "p,q")})),
+        ),
+    ],
+)
+def test_names_in_json_may_hold_what_ends_a_name_in_foon_text(
+    tmp_path: Path, entry: object, pattern: NodePattern
+) -> None:
+    assert patterns(tmp_path, entry) == [pattern]
+
+
+@pytest.mark.parametrize(("state", "column"), [("[pot]", 1), ("in  [pot] x", 10), ("in[pot] x", 8)])
+def test_a_state_at_fault_is_located_in_itself(tmp_path: Path, state: str, column: int) -> None:
+    (error,) = errors(tmp_path, json.dumps([{"label": "a", "states": [state]}]))
+    assert f"at its column {column}, " in error.message
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"label": "a", "object_label": "b"}, "found both 'label' and 'object_label', expected one of them"),
+        (
+            {"label": "a", "states": [{"state_label": "in [p]", "relative_object": "q"}]},
+            "found the related object 'q' besides the one in \"in [p]\"",
+        ),
+    ],
+)
+def test_what_an_entry_says_twice_is_refused(tmp_path: Path, entry: object, message: str) -> None:
+    (error,) = errors(tmp_path, json.dumps([entry]))
+    assert error.message == message
+
+
+def test_what_an_entry_has_mended_is_a_warning(tmp_path: Path) -> None:
+    file = tmp_path / "kitchen.json"
+    file.write_text('[{"label": "a"},\n {"label": "b", "states": ["in [p", "hot"], "has_portions": true}]')
+    warnings: list[Diagnostic] = []
+    entries = read_object_list(file, warnings)
+    assert [str(entry.pattern) for entry in entries] == ["a", "b; hot; in [p]"]
+    assert [(d.severity, d.code, d.source, d.message) for d in warnings] == [
+        (Severity.WARNING, "json-value", Source(str(file), 2, 2), "[p is not closed; read as [p]"),
+        (
+            Severity.WARNING,
+            "json-value",
+            Source(str(file), 2, 2),
+            "has_portions left out: FOON text has no place for it",
+        ),
+    ]
 
 
 # --- which nodes an entry stands for

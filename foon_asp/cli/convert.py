@@ -1,0 +1,158 @@
+"""``foon-asp convert``: FOON files in another dialect, and what it cannot hold."""
+
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.errors import UserError
+from foon_asp.report.whole_file import write_whole
+from foon_asp.text import (
+    Converted,
+    Converter,
+    Diagnostic,
+    Dialect,
+    FolderFile,
+    InputError,
+    foon_files,
+    summarize,
+)
+from foon_asp.text.plain_file import read_plain_text
+
+
+class _Task(NamedTuple):
+    """A file to convert, and where to; ``None`` is stdout."""
+
+    file: Path
+    to: Path | None
+
+
+@click.command("convert")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE|DIR...")
+@click.option(
+    "--to",
+    "target",
+    required=True,
+    type=click.Choice([str(dialect) for dialect in Dialect]),
+    help="The dialect to write.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, allow_dash=True),
+    metavar="FILE|DIR",
+    help="Where to write one file (stdout, if not given), or the folder for several.",
+)
+@click.option("--lenient", is_flag=True, help="Leave out what is not understood, with a warning.")
+@options.debug_option
+def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: bool) -> ExitCode:
+    """Write FOON files in another dialect, and list what it cannot hold.
+
+    \b
+    foon-asp convert recipe.txt --to json               print one file in another dialect
+    foon-asp convert recipe.txt --to plain -o out.txt   or write it
+    foon-asp convert recipes/ --to ids -o numbered/     convert all files of a folder
+    foon-asp convert kitchen.json --to plain            kitchens and goals, too
+
+    \b
+    plain       O→onion           M→chop                 names only, as in a universal FOON
+    no-ids      O→onion→1         M→chop→<0:14,0:20>     motion flags and times
+    ids         O294→onion→1      M12→chop→0:14→0:20     ids, flags and times in two fields
+    json        {"functional_units": [{"input_nodes": [{"object_id": 294, "object_label": "onion", ...
+    json-list   [{"input_nodes": [{"label": "onion", "states": [], ...}], "motion_node": "chop", ...
+
+    The dialect of the input is found out. From text to text, comments, blank lines and the order of lines
+    stay. ids keeps the ids that are there and numbers what has none: objects by label, states by word,
+    motions by label, the same in all files of one call. What the target has no place for is listed on
+    stderr, each kind with how often and where first; everything else is read back from the result.
+    docs/formats.md has the dialects in full.
+
+    Exits with 0 when all files are written; with 2, before anything is written, when something is not
+    understood or a name would mean something else in the target.
+    """
+    dialect = Dialect(target)
+    tasks = _tasks(foon_files(paths), any(path.is_dir() for path in paths), output, dialect)
+    texts: list[str] = []
+    errors: list[Diagnostic] = []
+    converter = Converter(dialect, lenient)
+    for task in tasks:
+        try:
+            texts.append(read_plain_text(task.file))
+            converter.learn(texts[-1])
+        except InputError as error:
+            errors += error.diagnostics
+            texts.append("")
+    results: list[Converted] = []
+    for task, text in zip(tasks, texts, strict=True):
+        try:
+            results.append(converter.convert(text, str(task.file)))
+        except InputError as error:
+            errors += error.diagnostics
+    if errors:
+        raise InputError(errors)
+    for warning in summarize(converter.diagnostics):
+        click.echo(warning, err=True)
+    for task, result in zip(tasks, results, strict=True):
+        content = result.text.encode()
+        if task.to is None:
+            click.echo(content, nl=False)
+        else:
+            _make_folder(task.to.parent)
+            write_whole(task.to, content)
+    click.echo(_summary(tasks, results, dialect, converter.left_out), err=True)
+    return ExitCode.DONE
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be made a folder: {error.strerror or error}") from None
+
+
+def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target: Dialect) -> list[_Task]:
+    """Say where each file goes; no two to the same place, and none of a folder onto what is read."""
+    if len(files) == 1 and not is_folder:
+        file = files[0].file
+        if output is None or str(output) == "-":
+            return [_Task(file, None)]
+        return [_Task(file, output / file.with_suffix(target.suffix).name if output.is_dir() else output)]
+    if output is None or str(output) == "-":
+        raise UserError(f"{len(files)} files need a folder to go to: name one with -o")
+    if output.exists() and not output.is_dir():
+        raise UserError(f"{output}: expected a folder for {len(files)} files, found a file")
+    tasks = [_Task(file, output / within.with_suffix(target.suffix)) for file, within in files]
+    sources = {task.file.resolve() for task in tasks}
+    seen: dict[Path | None, Path] = {}
+    for file, to in tasks:
+        if to in seen:
+            raise UserError(f"{seen[to]} and {file} would both be written to {to}")
+        if to is not None and to.resolve() in sources:
+            raise UserError(f"{to} would be overwritten: name another folder with -o")
+        seen[to] = file
+    return tasks
+
+
+def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:
+    """Say from what to what, and what of it is lost."""
+    dialects = Counter(result.dialect for result in results)
+    if len(tasks) == 1:
+        head = f"{tasks[0].file}: {results[0].dialect} → {target}"
+    else:
+        read = ", ".join(f"{count} {dialect}" for dialect, count in dialects.items())
+        head = f"{len(tasks)} files ({read}) → {target}"
+    found = [(loss, lost) for result in results for loss, lost in result.lost.items()]
+    rows = []
+    for kind in dict.fromkeys(loss for loss, _ in found):
+        lost = [of_kind for loss, of_kind in found if loss is kind]
+        rows.append((sum(of_kind.occurrences for of_kind in lost), f"{kind}; first at {lost[0].first}"))
+    if left_out:
+        rows.append((left_out, "lines that are in no unit; see the warnings"))
+    if not rows:
+        return f"{head}; nothing is lost"
+    rows.sort(key=lambda row: -row[0])
+    width = len(f"{rows[0][0]:,}")
+    return "\n".join([f"{head}; not in the result:", *(f"  {n:>{width},}  {text}" for n, text in rows)])

@@ -1,0 +1,88 @@
+"""``foon-asp lint``: what is wrong with FOON files, or worth a look."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.errors import UserError
+from foon_asp.lint import CATALOG, lint, mended
+from foon_asp.report.lint_annotations import lint_annotations
+from foon_asp.report.lint_json import lint_json
+from foon_asp.report.lint_text import lint_text
+from foon_asp.report.whole_file import write_whole
+from foon_asp.text import Diagnostic, Severity, foon_files
+
+_CODE = click.Choice(list(CATALOG))
+
+
+@click.command("lint")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE|DIR...")
+@click.option("--fix", is_flag=True, help="Mend what is beyond doubt, each file in its place.")
+@click.option(
+    "--select", multiple=True, type=_CODE, metavar="CODE", help="Report this kind only; repeatable."
+)
+@click.option("--ignore", multiple=True, type=_CODE, metavar="CODE", help="Leave this kind out; repeatable.")
+@options.format_option("text", "json", "github")
+@options.debug_option
+def command(
+    paths: tuple[Path, ...], fix: bool, select: tuple[str, ...], ignore: tuple[str, ...], format_: str
+) -> ExitCode:
+    """Find what is wrong with networks, kitchens and lists of goals.
+
+    \b
+    foon-asp lint recipe.txt                    one file
+    foon-asp lint recipes/ kitchen.json         files that belong together
+    foon-asp lint --fix recipes/                mend what can be mended safely
+    foon-asp lint --ignore shared-unit recipes/
+
+    Files are linted together: names are compared over all of them, and their units are one network. Every
+    finding has a code, which docs/lint.md explains with an example. In text, many findings of one kind in a
+    file are folded into one; json and github have all of them.
+
+    --fix writes lines that were understood all the same as they should have been: nothing of what the file
+    says changes, and no other byte of it.
+
+    Exits with 0 when there is nothing to report but notes, with 1 when there are errors or warnings (that
+    --fix did not mend), and with 2 when a file could not be opened.
+    """
+    files = [file for file, _ in foon_files(paths)]
+    wanted = {code for code in select or CATALOG if code not in ignore}
+    findings = _findings(files, wanted)
+    count = 0
+    if fix:
+        count = _mend(files, findings)
+        if count:
+            findings = _findings(files, wanted)
+    if format_ == "github":
+        click.echo(lint_annotations(findings), nl=False)
+    else:
+        render = {"text": lint_text, "json": lint_json}[format_]
+        click.echo(render(findings, len(files), count), nl=False)
+    bad = any(finding.severity is not Severity.NOTE for finding in findings)
+    return ExitCode.NEGATIVE if bad else ExitCode.DONE
+
+
+def _findings(files: Sequence[Path], wanted: set[str]) -> list[Diagnostic]:
+    return [finding for finding in lint(files) if finding.code in wanted]
+
+
+def _mend(files: Sequence[Path], findings: Sequence[Diagnostic]) -> int:
+    """Write the files anew that something is mended in, and count the findings that were."""
+    fixable: dict[str, list[Diagnostic]] = {}
+    for finding in findings:
+        if finding.fix is not None:
+            fixable.setdefault(finding.source.file, []).append(finding)
+    for file in files:
+        if str(file) not in fixable:
+            continue
+        if not file.is_file():
+            raise UserError(f"{file}: no file that could be written; --fix mends files in their place")
+        content = file.read_bytes()
+        new = mended(content, fixable[str(file)])
+        if new != content:
+            write_whole(file, new)
+            click.echo(f"wrote {file}", err=True)
+    return sum(map(len, fixable.values()))

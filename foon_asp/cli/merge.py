@@ -1,0 +1,89 @@
+"""``foon-asp merge``: many FOONs in one, every unit with the places it comes from."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.errors import UserError
+from foon_asp.network import Network, NetworkBuilder
+from foon_asp.report.whole_file import write_whole
+from foon_asp.text import FoonReader, merged_text, network_files, summarize
+
+
+@click.command("merge")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE|DIR...")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path, allow_dash=True),
+    metavar="FILE",
+    help="Where to write the merged network; stdout, if not given.",
+)
+@click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning.")
+@options.debug_option
+def command(paths: tuple[Path, ...], output: Path | None, lenient: bool) -> ExitCode:
+    """Merge FOONs into a universal FOON: every distinct functional unit once.
+
+    \b
+    foon-asp merge recipes/ -o FOON.txt          all networks of a folder
+    foon-asp merge FOON.txt new.txt -o out.txt   one more into a merged one
+    foon-asp merge recipes/*.json -o FOON.txt    JSON, too
+
+    Units are the same when they have the same motion, inputs and outputs; ids, motion flags and times are
+    no part of that and are not written. Above each unit there is a line for every copy of it:
+
+    \b
+    # From:→recipes/salad.txt:12→https://example.org/salad.mp4
+
+    with the file, the line, and the videos that the file names. Merging again keeps these places, and every
+    answer on the merged network shows them. Of a folder the networks are its FOON.txt, or else its *.txt
+    and *.json, without kitchen, goals and tables; a list of objects by another name has no units, which is
+    said.
+
+    The summary goes to stderr. Exits with 0, or with 2 when something is not understood.
+    """
+    for path in paths:
+        if not path.exists():
+            raise UserError(f"{path}: no such file or folder")
+    files = list(dict.fromkeys(file for path in paths for file in network_files(path)))
+    to_stdout = output is None or str(output) == "-"
+    if output is not None and not to_stdout and output.resolve() in {file.resolve() for file in files}:
+        raise UserError(f"{output} is one of the files to merge: write to another")
+    reader = FoonReader(lenient)
+    builder = NetworkBuilder()
+    copies = 0
+    for file in files:
+        for motion, inputs, outputs, sources in reader.units(reader.text(file), str(file)):
+            builder.add(motion, inputs, outputs, *sources)
+            copies += 1
+    for warning in summarize(reader.diagnostics):
+        click.echo(warning, err=True)
+    reader.raise_errors()
+    network = builder.build()
+    if not len(network):
+        raise UserError("there is no functional unit in these files")
+    comment = f"Universal FOON: {_count(len(network), 'functional unit')} from {_count(len(files), 'file')}"
+    content = "".join(merged_text(network, comment)).encode()
+    if output is None or to_stdout:
+        click.echo(content, nl=False)
+    else:
+        write_whole(output, content)
+    click.echo("\n".join(_summary(len(files), copies, network, reader.left_out)), err=True)
+    return ExitCode.DONE
+
+
+def _summary(files: int, copies: int, network: Network, left_out: int) -> Iterator[str]:
+    yield f"{files:>8,}  {'file' if files == 1 else 'files'}"
+    yield f"{copies:>8,}  units read"
+    yield f"{copies - len(network):>8,}  of them duplicates"
+    yield f"{len(network):>8,}  distinct units"
+    yield f"{len(network.objects):>8,}  object nodes"
+    if left_out:
+        yield f"{left_out:>8,}  lines that are in no unit"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"

@@ -1,0 +1,48 @@
+"""``foon-asp stats``: what is in a network."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.network import LEVELS, network_at_level
+from foon_asp.network.statistics import count
+from foon_asp.report.statistics_table import statistics_json, statistics_text
+from foon_asp.text import kitchen_nodes
+
+
+@click.command("stats")
+@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|DIR]...")
+@options.format_option("text", "json")
+@options.network_options
+def command(
+    paths: tuple[Path, ...], format_: str, folder: Path | None, network: tuple[Path, ...], **data: Any
+) -> ExitCode:
+    """Count what is in a network, at the levels 1 to 3 of detail.
+
+    \b
+    foon-asp stats                           the bundled kitchen
+    foon-asp stats my_foon                   a folder of data, or of recipes
+    foon-asp stats one.txt two.json more/    networks, together
+
+    Units, object nodes, motions, states; how many units make each node; cycles, parts, depth, and what is
+    out of reach from the kitchen (or, without one, from all that no unit makes); the most connected objects.
+    Level 2 leaves contents away, level 1 keeps labels. docs/levels.md says exactly what is counted.
+
+    A folder that is all that is named is read as with --data: with its kitchen, if it has one.
+    """
+    networks = (*paths, *network)
+    if len(paths) == 1 and paths[0].is_dir() and folder is None and not network:
+        folder, networks = paths[0], ()
+    question = options.read_question(folder=folder, network=networks, level=3, kitchen_expected=False, **data)
+    read = question.data
+    levels = []
+    for level in LEVELS:
+        at_level = network_at_level(read.network, level)
+        kitchen = kitchen_nodes(at_level, read.kitchen_items) if read.kitchen_items else None
+        levels.append(count(at_level, kitchen))
+    render = {"text": statistics_text, "json": statistics_json}[format_]
+    click.echo(render(read.network, levels, bool(read.kitchen_items)), nl=False)
+    return ExitCode.DONE

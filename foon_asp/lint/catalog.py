@@ -1,0 +1,63 @@
+"""Everything that linting can say: one entry for each code."""
+
+from typing import NamedTuple
+
+from foon_asp.text import Severity
+
+ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
+
+
+class Rule(NamedTuple):
+    """What a code means, in one line, and how bad it is; ``docs/lint.md`` has an example of each."""
+
+    code: str
+    severity: Severity
+    meaning: str
+
+
+_RULES = (
+    # The file and its lines: what the reader remarks on.
+    Rule("encoding", ERROR, "the file is not UTF-8 text"),
+    Rule("json", ERROR, "JSON that is no network, kitchen or list of goals"),
+    Rule("json-value", WARNING, "a value in JSON that units have no place for"),
+    Rule("syntax", ERROR, "a line that is not understood"),
+    Rule("state-without-object", ERROR, "a state line with no object line above it"),
+    Rule("second-motion", ERROR, "two motions in one unit"),
+    Rule("no-motion", ERROR, "a unit without a motion"),
+    Rule("no-inputs", ERROR, "a unit without input objects"),
+    Rule("no-outputs", ERROR, "a unit without output objects"),
+    Rule("missing-separator", WARNING, "the last unit is not closed by //"),
+    Rule("space-for-tab", WARNING, "a space where a tab belongs"),
+    Rule("outer-space", WARNING, "blanks around a name or at the end of a line"),
+    Rule("bracket", WARNING, "a bracket that is missing, open, or closed by one of the other kind"),
+    Rule("contents-bracket", WARNING, "contents in [ ] instead of { }"),
+    Rule("empty-relation", WARNING, "nothing in [ ]"),
+    Rule("empty-ingredient", WARNING, "a comma with no ingredient before or after it"),
+    Rule("repeated-ingredient", WARNING, "an ingredient listed twice in one { }"),
+    Rule("empty-field", WARNING, "a tab with nothing after it"),
+    Rule("motion-flag", WARNING, "a motion flag that is not 0 or 1"),
+    Rule("unknown-field", WARNING, "something behind a motion flag that is no category and no !"),
+    Rule("time", WARNING, "a time that is none"),
+    # Object nodes.
+    Rule("missing-flag", NOTE, "no motion flag on an object line, in a file where most have one"),
+    Rule("second-contents", NOTE, "two { } lines under one object"),
+    Rule("second-relation", NOTE, "two [ ] lines under one object"),
+    Rule("repeated-state", WARNING, "the same state line twice under one object"),
+    # Names and ids.
+    Rule("near-name", WARNING, "two names that differ by a slip of the pen"),
+    Rule("unknown-container", NOTE, "an object in [ ] that is never an object line"),
+    Rule("unknown-ingredient", WARNING, "an ingredient in { } that is never an object line"),
+    Rule("id-of-two-names", WARNING, "one id for two names"),
+    Rule("name-of-two-ids", WARNING, "one name with two ids"),
+    # Units and what they make.
+    Rule("repeated-object", WARNING, "an object node listed twice on one side of a unit"),
+    Rule("no-effect", WARNING, "a unit whose outputs are its inputs"),
+    Rule("duplicate-unit", WARNING, "a unit that stands in the file already"),
+    Rule("shared-unit", NOTE, "a unit that stands in another file too"),
+    Rule("dead-cycle", NOTE, "objects that are made only by units that need them"),
+    Rule("unmade-goal", WARNING, "a goal that no unit makes"),
+    Rule("unknown-item", NOTE, "an entry of a kitchen that is no object node of the network"),
+)
+
+CATALOG = {rule.code: rule for rule in _RULES}
+"""By code, in the order in which they are documented."""

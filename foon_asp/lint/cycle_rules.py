@@ -1,0 +1,47 @@
+"""What there is to say of dead cycles."""
+
+from collections.abc import Iterator
+
+from foon_asp.lint.dead_cycles import DeadCycle, dead_cycles
+from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.text import Diagnostic
+
+_SHOWN = 4  # steps of a cycle
+
+
+def cycle_findings(files: LintedFiles) -> Iterator[Diagnostic]:
+    """Give a finding for each dead cycle, where the cycle is entered; kitchens among the files break some."""
+    network = files.network
+    at_hand = {
+        node
+        for sheet in files.sheets
+        if sheet.entries is not None and not sheet.lists_goals
+        for entry in sheet.entries
+        for node in network.find(entry.pattern)
+    }
+    for cycle in dead_cycles(network, at_hand):
+        yield _finding(files, cycle)
+
+
+def _finding(files: LintedFiles, cycle: DeadCycle) -> Diagnostic:
+    network = files.network
+    start, first_unit = cycle.steps[0]
+    copy = files.copies[first_unit][0]
+    sheet = files.sheets[copy.sheet]
+    ways = []
+    for (_, unit), (node, _) in zip(cycle.steps, (*cycle.steps[1:], cycle.steps[0]), strict=True):
+        place = files.copies[unit][0]
+        where = files.sheets[place.sheet].where(place.at, sheet)
+        ways.append(f"{network.motions[unit]!r} ({where}) makes {str(network.objects[node])!r}")
+    if len(ways) > _SHOWN:
+        left_out = len(ways) - _SHOWN
+        ways[_SHOWN - 1 : -1] = [f"{left_out} more steps" if left_out > 1 else "1 more step"]
+    name = str(network.objects[start])
+    others = (
+        f"; {len(cycle.nodes)} objects wait for each other" if len(cycle.nodes) > len(cycle.steps) else ""
+    )
+    message = (
+        f"only units that need {name!r} make it: from it {', from that '.join(ways)}{others}; "
+        "it has to be at hand, or made in another way"
+    )
+    return sheet.finding("dead-cycle", message, sheet.line_of(network.objects[start], copy.at))

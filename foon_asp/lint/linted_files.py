@@ -1,0 +1,152 @@
+"""The files that are linted together, read as far as they can be read."""
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.lint.catalog import CATALOG
+from foon_asp.lint.sheet import Entry, Sheet
+from foon_asp.network import Network, NetworkBuilder, NodePattern, ObjectNode, Source
+from foon_asp.text import Diagnostic, FoonReader, LineError
+from foon_asp.text.dialect import is_object_list
+from foon_asp.text.json_list import JsonList
+from foon_asp.text.json_object import read_object
+from foon_asp.text.json_units import is_json
+from foon_asp.text.line import Line
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.writer import write_line
+
+_LINE_END = re.compile(r"\r\n?")
+_LINE_BREAK = re.compile(r"[\r\n]")
+
+
+class Copy(NamedTuple):
+    """One copy of a unit: the number of its sheet, the index of its first line, and the nodes it lists."""
+
+    sheet: int
+    at: int
+    inputs: int
+    outputs: int
+
+
+class LintedFiles:
+    """All sheets, the network that their units make up, and what the reader remarked on.
+
+    ``copies[u]`` are the places where unit ``u`` of the network stands, in the order read. Files are read
+    independently of errors in them: what cannot be understood is left out.
+    """
+
+    def __init__(self, files: Iterable[Path]) -> None:
+        self.reader = FoonReader()
+        self.sheets: list[Sheet] = []
+        self.copies: list[list[Copy]] = []
+        self._remarks: list[Diagnostic] = []
+        self._builder = NetworkBuilder()
+        for file in files:
+            self._read(file)
+        self.network: Network = self._builder.build()
+        self._remarks += self.reader.diagnostics
+
+    def remarks(self) -> list[Diagnostic]:
+        """Give what the reader has to say, with the severity of the catalog and only fixes that mend."""
+        return [
+            remark._replace(severity=CATALOG[remark.code].severity, fix=self._fix(remark))
+            for remark in self._remarks
+        ]
+
+    def _fix(self, remark: Diagnostic) -> str | None:
+        """Give the mended line; a line is written anew as a whole, which need not mend every remark on it."""
+        if remark.code == "missing-separator":
+            return f"{remark.excerpt}\n//"
+        if remark.fix is None or remark.fix == "//":
+            return remark.fix
+        mended = self.reader.parse(remark.fix)
+        left = [] if isinstance(mended, LineError) else [message for _, _, message in mended.remarks]
+        return remark.fix if remark.message not in left else None
+
+    def _read(self, file: Path) -> None:
+        text = self.reader.text(file)
+        if is_json(text):
+            self._read_json(text, file)
+            return
+        lines = _LINE_END.sub("\n", text).split("\n") if "\r" in text else text.split("\n")
+        sheet = Sheet(str(file), lines, self.reader)
+        self.sheets.append(sheet)
+        if is_object_list(text):
+            sheet.entries = [
+                Entry(_pattern(block, None), block.source.line - 1)
+                for block in self.reader.object_blocks(text, str(file))
+            ]
+        elif "# From:" in text:  # units of a merged file name the places that they come from
+            for unit in self.reader.listed_units(text, str(file)):
+                self._add(unit, unit.inputs[0].source.line - 1)
+        else:
+            for motion, inputs, outputs, sources in self.reader.units(text, str(file)):
+                self._add_nodes(motion, inputs, outputs, sources[0].line - 1)
+
+    def _read_json(self, text: str, file: Path) -> None:
+        lines: list[str] = []
+        places: list[Source] = []
+        written = _LINE_END.sub("\n", text).split("\n")
+        sheet = Sheet(str(file), lines, self.reader, places, source_lines=written)
+        self.sheets.append(sheet)
+        if is_object_list(text):
+            sheet.entries = self._read_json_list(text, file, lines, places)
+            return
+        for unit in self.reader.listed_units(text, str(file)):
+            self._add(unit, len(lines))
+            new = [*_lines(unit.inputs), unit.motion, *_lines(unit.outputs)]
+            lines += [*map(_written, new), "//"]
+            places += [unit.motion_source] * (len(new) + 1)
+
+    def _read_json_list(self, text: str, file: Path, lines: list[str], places: list[Source]) -> list[Entry]:
+        elements = JsonList(text, file)
+        entries = []
+        for value, source in elements:
+            try:
+                line, states, container, left_out = read_object(value)
+            except ValueError as problem:
+                elements.error(source, str(problem))
+                continue
+            self._remarks += [
+                Diagnostic(CATALOG["json-value"].severity, "json-value", message, source)
+                for message in left_out
+            ]
+            block = ObjectBlock(line, states, source)
+            entries.append(Entry(_pattern(block, container), len(lines)))
+            written = [*map(_written, _lines([block]))]
+            written += [f"S\tin\t[{container}]"] if container is not None else []
+            lines += written
+            places += [source] * len(written)
+        self._remarks += elements.errors
+        return entries
+
+    def _add(self, unit: ListedUnit, index: int) -> None:
+        inputs, outputs = ([block.node for block in side] for side in (unit.inputs, unit.outputs))
+        self._add_nodes(unit.motion.motion, inputs, outputs, index)
+
+    def _add_nodes(
+        self, motion: str, inputs: list[ObjectNode], outputs: list[ObjectNode], index: int
+    ) -> None:
+        unit = self._builder.add(motion, inputs, outputs)
+        if unit == len(self.copies):
+            self.copies.append([])
+        self.copies[unit].append(Copy(len(self.sheets) - 1, index, len(inputs), len(outputs)))
+
+
+def _written(line: Line) -> str:
+    """Write a line of JSON as one; names there may hold anything."""
+    return _LINE_BREAK.sub(" ", write_line(line))
+
+
+def _lines(blocks: Iterable[ObjectBlock]) -> list[Line]:
+    lines: list[Line] = []
+    for block in blocks:
+        lines += (block.object, *block.states)
+    return lines
+
+
+def _pattern(block: ObjectBlock, container: str | None) -> NodePattern:
+    node = block.node
+    return NodePattern(node.label, node.states, node.ingredients, container, node.relations)

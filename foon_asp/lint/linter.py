@@ -1,0 +1,48 @@
+"""All findings about files that belong together."""
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+from pathlib import Path
+
+from foon_asp.lint.block_rules import block_findings
+from foon_asp.lint.cycle_rules import cycle_findings
+from foon_asp.lint.flag_rules import flag_findings
+from foon_asp.lint.goal_rules import goal_findings
+from foon_asp.lint.id_rules import id_findings
+from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.lint.name_rules import name_findings
+from foon_asp.lint.names import Names
+from foon_asp.lint.unit_rules import unit_findings
+from foon_asp.text import Diagnostic
+
+
+def lint(files: Iterable[Path]) -> list[Diagnostic]:
+    """Lint networks, kitchens and lists of goals together; findings by file, line and column.
+
+    Names are compared over all files, and the units of all are one network. The severity of a finding is that
+    of its code in the catalog; ``fix`` is the mended line where mending changes nothing of what is
+    understood. Raises :class:`foon_asp.errors.UserError` for a file that cannot be opened.
+    """
+    linted = LintedFiles(files)
+    findings = linted.remarks()
+    for rule in _RULES:
+        findings += rule(linted)
+    order = {sheet.file: number for number, sheet in enumerate(linted.sheets)}
+    return sorted(
+        findings, key=lambda f: (order.get(f.source.file, 0), f.source.line, f.source.column, f.code)
+    )
+
+
+def _sheet_by_sheet(files: LintedFiles) -> Iterator[Diagnostic]:
+    for sheet in files.sheets:
+        yield from flag_findings(sheet)
+        yield from block_findings(sheet)
+        yield from id_findings(sheet)
+
+
+_RULES: Collection[Callable[[LintedFiles], Iterator[Diagnostic]]] = (
+    _sheet_by_sheet,
+    lambda files: name_findings(Names(files)),
+    unit_findings,
+    cycle_findings,
+    goal_findings,
+)

@@ -1,0 +1,62 @@
+"""What there is to say of names: slips of the pen, and objects that are never there."""
+
+from collections.abc import Iterator
+
+from foon_asp.lint.names import Kind, Names, times
+from foon_asp.lint.near_names import near_names
+from foon_asp.network import Contents, Relation
+from foon_asp.text import Diagnostic
+from foon_asp.text.line import StateLine
+
+
+def name_findings(names: Names) -> Iterator[Diagnostic]:
+    """Give the findings about near names, and about containers and ingredients that are no object."""
+    said = set()
+    for kind in Kind:
+        for name, meant in near_names(names.counts[kind], verbs=kind is not Kind.OBJECT):
+            said.add((kind, name))
+            yield from _near(names, kind, name, meant)
+    if names.has_network:
+        for name in names.mentions[Kind.OBJECT]:
+            if name not in names.objects and (Kind.OBJECT, name) not in said:
+                yield from _unknown(names, name)
+
+
+def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
+    counts = names.counts[kind]
+    roles = ""
+    if kind is Kind.OBJECT and (name in names.objects) != (meant in names.objects):
+        only = name if meant in names.objects else meant
+        roles = f", and {only!r} is never an object of its own"
+    for sheet, index, here in names.by_sheet(kind, name):
+        others = "" if here == counts[name] else f" ({times(here)} in this file)"
+        message = (
+            f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
+            f"{roles}: if they are one, write the same in both"
+        )
+        yield names.sheets[sheet].finding("near-name", message, index, name)
+
+
+def _unknown(names: Names, name: str) -> Iterator[Diagnostic]:
+    """Say once of a name that no file has it as an object: as a container, and as an ingredient."""
+    alike = " or ".join(map(repr, names.objects_alike(name)))
+    for code, part in (("unknown-container", Relation), ("unknown-ingredient", Contents)):
+        found = [
+            mention
+            for mention in names.mentions[Kind.OBJECT][name]
+            if isinstance(mention.line, StateLine) and isinstance(mention.line.attribute, part)
+        ]
+        if not found:
+            continue
+        first = min(found, key=lambda mention: (mention.sheet, mention.first))
+        often = times(sum(mention.often for mention in found))
+        sheets = len({mention.sheet for mention in found})
+        often += f" in {sheets} files" if sheets > 1 else ""
+        if part is Relation:
+            message = f"{name!r} stands in [ ] {often}, and is never an object"
+            advice = "no unit takes or makes it"
+        else:
+            message = f"{name!r} is an ingredient {often}, and is never an object"
+            advice = "no unit adds it"
+        message += f"; is it {alike}?" if alike else f"; {advice}"
+        yield names.sheets[first.sheet].finding(code, message, first.first, name)

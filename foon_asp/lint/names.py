@@ -1,0 +1,113 @@
+"""The names in the files that are linted together, and where each stands."""
+
+from collections.abc import Iterator
+from enum import StrEnum
+from functools import cached_property
+from typing import NamedTuple
+
+from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.network import Contents, Relation
+from foon_asp.text.line import Line, MotionLine, ObjectLine
+
+_ALIKE = 3  # labels that are named where another may be meant
+_WORDS = 4  # of their ends are compared
+
+
+class Kind(StrEnum):
+    """What a name is for; an object is named by its label, as a container and as an ingredient."""
+
+    OBJECT = "object"
+    STATE = "state"
+    WORD = "relation"
+    MOTION = "motion"
+
+
+class Mention(NamedTuple):
+    """A distinct line of a sheet that has a name in it: the index where it stands first, and how often."""
+
+    sheet: int
+    line: Line
+    first: int
+    often: int
+
+
+class Names:
+    """Every name of every kind with its mentions, in order."""
+
+    def __init__(self, files: LintedFiles) -> None:
+        self.sheets = files.sheets
+        self.has_network = any(sheet.entries is None for sheet in files.sheets)
+        self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
+        for number, sheet in enumerate(files.sheets):
+            for line, index, count in sheet.distinct_lines:
+                mention = Mention(number, line, index, count)
+                for kind, name in _names(line):
+                    self.mentions[kind].setdefault(name, []).append(mention)
+        self.counts: dict[Kind, dict[str, int]] = {
+            kind: {name: sum(m.often for m in mentions) for name, mentions in names.items()}
+            for kind, names in self.mentions.items()
+        }
+        self.objects = {
+            name: count
+            for name, mentions in self.mentions[Kind.OBJECT].items()
+            if (count := sum(m.often for m in mentions if isinstance(m.line, ObjectLine)))
+        }
+        """How often each label stands on an object line."""
+
+    def objects_alike(self, name: str) -> list[str]:
+        """Give labels on object lines that may be meant, the most frequent first.
+
+        That is the name in singular or plural, or else a few labels that end with its words.
+        """
+        same, longer = self._alike
+        wanted = _singular(name)
+        return same.get(wanted) or longer.get(wanted, [])
+
+    @cached_property
+    def _alike(self) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
+        """Labels in the singular, and by their last words, a few of each."""
+        same: dict[str, list[str]] = {}
+        longer: dict[str, list[str]] = {}
+        for label in sorted(self.objects, key=lambda label: (-self.objects[label], label)):
+            singular = _singular(label)
+            same.setdefault(singular, []).append(label)
+            words = singular.split(" ")
+            for start in range(max(1, len(words) - _WORDS), len(words)):
+                ending = longer.setdefault(" ".join(words[start:]), [])
+                if len(ending) < _ALIKE:
+                    ending.append(label)
+        return same, longer
+
+    def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[int, int, int]]:
+        """Give the number of each sheet with a name, the index of its first line, and its mentions there."""
+        found: dict[int, tuple[int, int]] = {}
+        for sheet, _, index, count in self.mentions[kind][name]:
+            first, total = found.get(sheet, (index, 0))
+            found[sheet] = min(first, index), total + count
+        for sheet, (index, count) in found.items():
+            yield sheet, index, count
+
+
+def times(count: int) -> str:
+    """Say how often."""
+    return "once" if count == 1 else "twice" if count == 2 else f"{count} times"
+
+
+def _singular(name: str) -> str:
+    return name[:-1] if name[-1:] == "s" and name[-2:] != "ss" else name
+
+
+def _names(line: Line) -> Iterator[tuple[Kind, str]]:
+    if isinstance(line, ObjectLine):
+        yield Kind.OBJECT, line.label
+    elif isinstance(line, MotionLine):
+        yield Kind.MOTION, line.motion
+    elif isinstance(line.attribute, Relation):
+        yield Kind.WORD, line.attribute.word
+        yield Kind.OBJECT, line.attribute.object
+    elif isinstance(line.attribute, Contents):
+        yield Kind.WORD, line.attribute.word
+        for ingredient in dict.fromkeys(line.attribute.ingredients):
+            yield Kind.OBJECT, ingredient
+    else:
+        yield Kind.STATE, line.attribute

@@ -1,0 +1,113 @@
+"""The network as a graph: layers, cycles and parts, each in linear time and without recursion."""
+
+from collections.abc import Iterable
+
+from foon_asp.network.network import Network
+
+UNREACHED = -1
+
+
+def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]]:
+    """Give the layer of every object node and of every unit, or ``UNREACHED``, when ``start`` is at hand.
+
+    A node of ``start`` is in layer 0; a unit is one layer above the highest of its inputs, and a node in the
+    layer of the lowest unit that makes it. A unit without inputs is in layer 1.
+    """
+    node_layer = [UNREACHED] * len(network.objects)
+    unit_layer = [UNREACHED] * len(network)
+    waiting = [len(inputs) for inputs in network.inputs]
+    frontier = list(dict.fromkeys(start))
+    for node in frontier:
+        node_layer[node] = 0
+    ready = [unit for unit, inputs in enumerate(waiting) if not inputs]
+    layer = 0
+    while frontier or ready:
+        for node in frontier:
+            for unit in network.consumers[node]:
+                waiting[unit] -= 1
+                if not waiting[unit]:
+                    ready.append(unit)
+        layer += 1
+        frontier = []
+        for unit in ready:
+            unit_layer[unit] = layer
+            for node in network.outputs[unit]:
+                if node_layer[node] == UNREACHED:
+                    node_layer[node] = layer
+                    frontier.append(node)
+        ready = []
+    return node_layer, unit_layer
+
+
+def cycles(network: Network) -> list[list[int]]:
+    """Give the sets of object nodes that need each other: strongly connected components with a cycle.
+
+    There is an edge from each input of a unit to each of its outputs. A node that a unit both needs and gives
+    is a cycle by itself. (Tarjan, SIAM J. Comput. 1, 1972; units are vertices too, so that a unit with many
+    inputs and outputs does not have the product of them as edges.)
+    """
+    size = len(network.objects)
+    index = [0] * (size + len(network))  # 0: not met
+    low = [0] * len(index)
+    on_stack = bytearray(len(index))
+    stack: list[int] = []
+    found: list[list[int]] = []
+    counter = 0
+    for root in range(size):
+        if index[root]:
+            continue
+        work = [(root, iter(network.consumers[root]))]
+        counter += 1
+        index[root] = low[root] = counter
+        stack.append(root)
+        on_stack[root] = 1
+        while work:
+            vertex, edges = work[-1]
+            for edge in edges:
+                target = edge + size if vertex < size else edge
+                if not index[target]:
+                    counter += 1
+                    index[target] = low[target] = counter
+                    stack.append(target)
+                    on_stack[target] = 1
+                    targets = network.consumers[target] if target < size else network.outputs[target - size]
+                    work.append((target, iter(targets)))
+                    break
+                if on_stack[target]:
+                    low[vertex] = min(low[vertex], index[target])
+            else:
+                work.pop()
+                if work:
+                    low[work[-1][0]] = min(low[work[-1][0]], low[vertex])
+                if low[vertex] == index[vertex]:
+                    component: list[int] = []
+                    while True:
+                        member = stack.pop()
+                        on_stack[member] = 0
+                        component.append(member)
+                        if member == vertex:
+                            break
+                    if len(component) > 1:  # a node and a unit at least
+                        found.append(sorted(node for node in component if node < size))
+    return found
+
+
+def parts(network: Network) -> list[int]:
+    """Give the number of units in each part that shares no object node with another, largest first."""
+    parent = list(range(len(network.objects)))
+
+    def root(node: int) -> int:
+        while parent[node] != node:
+            parent[node] = parent[parent[node]]
+            node = parent[node]
+        return node
+
+    nodes = [(*inputs, *outputs) for inputs, outputs in zip(network.inputs, network.outputs, strict=True)]
+    for of_unit in nodes:
+        for node in of_unit[1:]:
+            parent[root(node)] = root(of_unit[0])
+    sizes: dict[int, int] = {}
+    for of_unit in nodes:
+        owner = root(of_unit[0])
+        sizes[owner] = sizes.get(owner, 0) + 1
+    return sorted(sizes.values(), reverse=True)

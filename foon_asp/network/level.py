@@ -1,0 +1,71 @@
+"""Levels of FOON: how much of an object node counts.
+
+At level 3 all of it does. Level 2 drops contents, level 1 keeps the label alone. Units whose motion, inputs
+and outputs then are the same are one unit, which stands for all of them.
+"""
+
+from dataclasses import replace
+
+from foon_asp.network.functional_unit import FunctionalUnit
+from foon_asp.network.network import Network, NetworkBuilder
+from foon_asp.network.node_pattern import NodePattern
+from foon_asp.network.object_node import ObjectNode
+
+LEVELS = (1, 2, 3)
+
+
+def node_at_level(node: ObjectNode, level: int) -> ObjectNode:
+    """Give what counts of a node at a level."""
+    if level == 3:
+        return node
+    return ObjectNode(node.label) if level == 1 else ObjectNode(node.label, node.states, node.relations)
+
+
+def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
+    """Give what counts of a unit at a level; nodes that have become one are listed once."""
+    if level == 3:
+        return unit
+    inputs, outputs = ([node_at_level(node, level) for node in side] for side in (unit.inputs, unit.outputs))
+    return FunctionalUnit.of(unit.motion, inputs, outputs)
+
+
+def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
+    """Give what counts of a kitchen or goals entry at a level."""
+    if level == 3:
+        return pattern
+    return NodePattern(pattern.label) if level == 1 else pattern._replace(ingredients=())
+
+
+def network_at_level(network: Network, level: int) -> Network:
+    """Give a level-3 network at a level: numbered anew, and knowing what its units and nodes stand for.
+
+    Sources of all units that have become one are kept. Raises :class:`ValueError` when the network is not
+    of level 3 or there is no such level.
+    """
+    if level not in LEVELS or network.level != 3:
+        raise ValueError(f"no way from level {network.level} to level {level}")
+    if level == 3:
+        return network
+    nodes = [node_at_level(node, level) for node in network.objects]
+    builder = NetworkBuilder()
+    stands_for: list[list[int]] = []
+    for unit, (motion, inputs, outputs) in enumerate(
+        zip(network.motions, network.inputs, network.outputs, strict=True)
+    ):
+        merged = builder.add(
+            motion, [nodes[o] for o in inputs], [nodes[o] for o in outputs], *network.sources[unit]
+        )
+        if merged == len(stands_for):
+            stands_for.append([])
+        stands_for[merged].append(unit)
+    merged_network = builder.build()
+    objects: dict[ObjectNode, list[int]] = {node: [] for node in merged_network.objects}
+    for o, node in enumerate(nodes):
+        objects[node].append(o)
+    return replace(
+        merged_network,
+        level=level,
+        detailed=network,
+        stands_for=tuple(map(tuple, stands_for)),
+        objects_stand_for=tuple(map(tuple, objects.values())),
+    )

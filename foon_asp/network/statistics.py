@@ -1,0 +1,121 @@
+"""What there is in a network, counted."""
+
+import statistics
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from foon_asp.network.graph import UNREACHED, cycles, layers, parts
+from foon_asp.network.network import Network
+
+MANY = 4  # producers: counted together from here on
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """The counts of a network at one level; every mean is over units.
+
+    ``producers[n]`` counts the object nodes that ``n`` units make, the last entry those that ``MANY`` or more
+    do. A cycle is a set of object nodes that need each other; ``in_cycles`` counts the nodes in any,
+    ``largest_cycle`` those in the largest. ``depth`` is the highest layer reached from what is at hand, and
+    ``median_depth`` the median layer of the units reached. ``parts`` are pieces of the network that have no
+    object node in common, and ``largest_part`` counts the units of the largest.
+    """
+
+    level: int
+    units: int
+    objects: int
+    labels: int
+    motions: int
+    states: int
+    relations: int
+    contents: int
+    mean_inputs: float
+    most_inputs: int
+    mean_outputs: float
+    most_outputs: int
+    producers: tuple[int, ...]
+    most_producers: int
+    unused: int
+    unchanged: int
+    cycles: int
+    in_cycles: int
+    largest_cycle: int
+    at_hand: int
+    depth: int
+    median_depth: float
+    unreached_objects: int
+    unreached_units: int
+    parts: int
+    largest_part: int
+
+
+def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
+    """Count a network, reached from the object nodes ``at_hand``, or else from all that no unit makes."""
+    if at_hand is None:
+        at_hand = [node for node, makers in enumerate(network.producers) if not makers]
+    start = list(at_hand)
+    node_layer, unit_layer = layers(network, start)
+    circles = cycles(network)
+    pieces = parts(network)
+    producers = [len(makers) for makers in network.producers]
+    objects = network.objects
+    inputs, outputs = ([len(side) for side in sides] for sides in (network.inputs, network.outputs))
+    reached = [layer for layer in unit_layer if layer != UNREACHED]
+    return Statistics(
+        level=network.level,
+        units=len(network),
+        objects=len(objects),
+        labels=len(network.by_label),
+        motions=len(set(network.motions)),
+        states=len({state for node in objects for state in node.states}),
+        relations=len({relation for node in objects for relation in node.relations}),
+        contents=len({contents for node in objects for contents in node.contents}),
+        mean_inputs=statistics.fmean(inputs) if inputs else 0.0,
+        most_inputs=max(inputs, default=0),
+        mean_outputs=statistics.fmean(outputs) if outputs else 0.0,
+        most_outputs=max(outputs, default=0),
+        producers=tuple(
+            sum(1 for number in producers if min(number, MANY) == wanted) for wanted in range(MANY + 1)
+        ),
+        most_producers=max(producers, default=0),
+        unused=sum(1 for users in network.consumers if not users),
+        unchanged=sum(
+            1 for i, o in zip(network.inputs, network.outputs, strict=True) if frozenset(i) == frozenset(o)
+        ),
+        cycles=len(circles),
+        in_cycles=sum(map(len, circles)),
+        largest_cycle=max(map(len, circles), default=0),
+        at_hand=len(start),
+        depth=max(reached, default=0),
+        median_depth=statistics.median(reached) if reached else 0.0,
+        unreached_objects=node_layer.count(UNREACHED),
+        unreached_units=unit_layer.count(UNREACHED),
+        parts=len(pieces),
+        largest_part=pieces[0] if pieces else 0,
+    )
+
+
+def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
+    """Give the labels that most units have among their inputs and outputs, with the number of such units.
+
+    Of labels with as many units the first in the alphabet comes first.
+    """
+    found: Counter[str] = Counter()
+    objects = network.objects
+    for inputs, outputs in zip(network.inputs, network.outputs, strict=True):
+        found.update({objects[node].label for node in (*inputs, *outputs)})
+    return sorted(found.items(), key=lambda label: (-label[1], label[0]))[:shown]
+
+
+def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:
+    """Give the object nodes that most units touch: id, units that need it, units that make it.
+
+    Of nodes with as many units the one that was read first comes first.
+    """
+    sizes = [
+        (len({*users, *makers}), -node)
+        for node, (users, makers) in enumerate(zip(network.consumers, network.producers, strict=True))
+    ]
+    top = (-node for _, node in sorted(sizes, reverse=True)[:shown])
+    return [(node, len(network.consumers[node]), len(network.producers[node])) for node in top]

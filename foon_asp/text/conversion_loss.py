@@ -1,0 +1,141 @@
+"""What a conversion cannot keep: a line or object as it was read, against what is read from the result."""
+
+from collections import Counter
+from collections.abc import Iterator
+from enum import StrEnum
+
+from foon_asp.network import Contents, Relation
+from foon_asp.text.conversion_times import MotionFields, in_two_fields
+from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine, is_number
+
+
+class Loss(StrEnum):
+    """A kind of thing that some dialect cannot hold, in the words of the message."""
+
+    IDS = "ids"
+    MOTION_FLAGS = "motion flags"
+    CATEGORIES = "recipe categories"
+    GOAL_MARKS = "goal marks !"
+    FIELDS = "further fields"
+    TIMES = "times"
+    RATES = "entities and their success rates"
+    COMPOSITE = "composite marks *"
+    RELATION_WORDS = "relation words: read back as in [...] or any place"
+    RELATIONS = "further relations of an object"
+    CONTAINERS = "containers without a word, which is any: written as in [...]"
+    CONTENTS_WORDS = "words of contents: read back as contains {...}"
+    CONTENTS_LISTS = "contents in several lists: joined"
+    NO_CONTENTS = "empty contents {}"
+    ORDER = "the order of state lines"
+    COMMENTS = "comments"
+    VIDEOS = "source videos"
+    COPIES = "files and lines that units were merged from"
+
+
+class CannotHoldError(Exception):
+    """A name that would mean something else in another dialect, and what it would mean."""
+
+
+def lost_in_line(before: Line, after: Line) -> list[Loss]:
+    """Name what one line had that another has not, once for each time.
+
+    Raises :class:`CannotHoldError` when they do not say the same.
+    """
+    lost = [Loss.IDS] if before.id and not after.id else []
+    if isinstance(before, ObjectLine) and isinstance(after, ObjectLine):
+        if before.label != after.label:
+            raise CannotHoldError(f"the label {before.label!r} would be read as {after.label!r}")
+        lost += _lost_fields(before.fields, after.fields)
+    elif isinstance(before, MotionLine) and isinstance(after, MotionLine):
+        if before.motion != after.motion:
+            raise CannotHoldError(f"the motion {before.motion!r} would be read as {after.motion!r}")
+        lost += [Loss.COMPOSITE] if before.composite and not after.composite else []
+        lost += _lost_times(MotionFields.of(before.fields), MotionFields.of(after.fields))
+    elif isinstance(before, StateLine) and isinstance(after, StateLine):
+        lost += _lost_attributes((before,), (after,))
+    else:
+        raise CannotHoldError("one kind of line would be read as another")
+    return lost
+
+
+def lost_in_states(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
+    """Name what the state lines of one object had that those of another have not, once for each time.
+
+    A relation without a word is a container that matches any. Raises :class:`CannotHoldError` when the two
+    objects differ in what is no known loss.
+    """
+    ids = Counter(s.id for s in before if s.id) - Counter(s.id for s in after)
+    return [Loss.IDS] * ids.total() + _lost_attributes(before, after)
+
+
+def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Loss]:
+    missing = Counter(before) - Counter(after)
+    for index, field in enumerate(before):
+        if not missing[field]:
+            continue
+        missing[field] -= 1
+        if index == 0 and field in {"0", "1"}:
+            yield Loss.MOTION_FLAGS
+        elif field == "!":
+            yield Loss.GOAL_MARKS
+        else:
+            yield Loss.CATEGORIES if index and is_number(field) else Loss.FIELDS
+
+
+def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:
+    if in_two_fields(before.times) != in_two_fields(after.times):
+        yield Loss.TIMES
+    if before[1:] != after[1:]:
+        yield Loss.RATES
+
+
+def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
+    was, became = [s.attribute for s in before], [s.attribute for s in after]
+    missing, extra = Counter(was) - Counter(became), Counter(became) - Counter(was)
+    kept = Counter(was) - missing
+    lost: list[Loss] = []
+    for said in missing.elements():
+        if isinstance(said, Relation):
+            lost.append(_lost_relation(said, extra))
+        elif isinstance(said, str):
+            if said not in kept:
+                raise CannotHoldError(f"the state {said!r} would be lost")
+        elif not said.ingredients:
+            lost.append(Loss.NO_CONTENTS)
+        elif said.word != "contains":
+            lost.append(Loss.CONTENTS_WORDS)
+    contents = [said for said in was if isinstance(said, Contents) and said.ingredients]
+    if len(contents) > 1 and any(isinstance(said, Contents) for said in missing):
+        lost.append(Loss.CONTENTS_LISTS)
+    if _ingredients(was) != _ingredients(became):
+        raise CannotHoldError(f"{_shown(was)} would be read as {_shown(became)}")
+    left = [said for said in extra.elements() if not isinstance(said, Contents)]
+    if left:
+        raise CannotHoldError(f"{_shown(was)} would be read as {_shown(became)}")
+    if _in_order(before, kept) != _in_order(after, kept):
+        lost.append(Loss.ORDER)
+    return lost
+
+
+def _lost_relation(said: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
+    """Tell what became of a relation, and take that from ``extra``."""
+    for other in list(extra):
+        if isinstance(other, Relation) and other.object == said.object:
+            extra[other] -= 1
+            extra += Counter()  # only what is left
+            return Loss.RELATION_WORDS if said.word else Loss.CONTAINERS
+    return Loss.RELATIONS
+
+
+def _ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
+    return sorted(i for said in attributes if isinstance(said, Contents) for i in said.ingredients)
+
+
+def _in_order(
+    states: tuple[StateLine, ...], kept: Counter[str | Relation | Contents]
+) -> list[tuple[object, tuple[str, ...]]]:
+    return [(state.attribute, state.listed) for state in states if state.attribute in kept]
+
+
+def _shown(attributes: list[str | Relation | Contents]) -> str:
+    return "; ".join(map(str, attributes)) or "nothing"

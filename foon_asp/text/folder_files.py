@@ -1,0 +1,53 @@
+"""The FOON files of a folder, wherever in it they stand."""
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+
+_LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
+
+
+class FolderFile(NamedTuple):
+    """A file, and its path within the folder that was named, or its name."""
+
+    file: Path
+    within: Path
+
+
+def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
+    """Give the files that are named, and those of folders, sub-folders included, in order of name.
+
+    Of a folder these are the ``*.txt`` and ``*.json`` in which there is anything of FOON, networks and lists
+    of objects alike. Raises :class:`UserError` where nothing is found.
+    """
+    found: dict[Path, FolderFile] = {}
+    for path in paths:
+        if not path.exists():
+            raise UserError(f"{path}: no such file or folder")
+        if not path.is_dir():
+            found.setdefault(path, FolderFile(path, Path(path.name)))
+            continue
+        files = [FolderFile(file, file.relative_to(path)) for file in sorted(path.rglob("*"))]
+        files = [file for file in files if _is_foon(*file)]
+        if not files:
+            raise UserError(f"{path}: expected a folder with FOON files (*.txt, *.json), found none")
+        for file in files:
+            found.setdefault(file.file, file)
+    return list(found.values())
+
+
+def _is_foon(file: Path, within: Path) -> bool:
+    if any(part[:1] == "." for part in within.parts) or not file.is_file():
+        return False
+    sign = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
+    try:
+        content = file.read_bytes() if sign else b""
+    except OSError as error:
+        raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+    # one in UTF-16 is not read, but whoever reads the folder has to be told
+    return sign is not None and (sign.search(content) is not None or content[:2] in _UTF_16)

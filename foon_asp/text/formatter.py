@@ -1,0 +1,159 @@
+"""The canonical form of FOON files: what ``foon-asp fmt`` writes."""
+
+import re
+from collections.abc import Callable, Iterable
+from itertools import takewhile
+from typing import NamedTuple
+
+from foon_asp.network import Source
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.json_layout import check_json, lay_out
+from foon_asp.text.json_units import is_json
+from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.writer import write_line
+
+_LINE_END = re.compile(r"\r\n|\r|\n")
+_MARK = "\ufeff"
+_BLANKS = {"outer-space", "space-for-tab"}
+
+Rewrite = Callable[[Line, str], str]
+"""What becomes of a line, given what it says and how it is written."""
+
+
+class Change(NamedTuple):
+    """One line that is written otherwise; ``before`` and ``after`` are equal where only its end changes."""
+
+    line: int
+    before: str
+    after: str
+
+
+class Formatted(NamedTuple):
+    """A text in canonical form, and which of its lines were not."""
+
+    text: str
+    changes: tuple[Change, ...]
+
+    @property
+    def content(self) -> bytes:
+        """Give the bytes of the file."""
+        # A first line that begins with the mark would lose it to the next reader, and mean something else.
+        return (_MARK + self.text if self.text.startswith(_MARK) else self.text).encode()
+
+
+def mend(line: Line, written: str) -> str:
+    """Give the canonical form of a line: itself, unless there is a remark on more than blanks in it.
+
+    Blanks within a line stay, as the published universal FOON has them: ``{jelly, peanut butter}``, and a
+    space for the tab before a bracket. Linting remarks on them.
+    """
+    if all(remark.code in _BLANKS for remark in line.remarks):
+        return written.rstrip(" \t")
+    return write_line(line)
+
+
+def format_text(
+    text: str, file: str, lenient: bool = False, rewrite: Rewrite = mend, reader: FoonReader | None = None
+) -> Formatted:
+    """Bring a text into canonical form, line by line; it means the same before and after.
+
+    Blanks at the end of lines go, every line ends in the way that most do, a last unit is closed by ``//``.
+    Comments, blank lines and the order of everything stay, whether or not the lines make up units. In JSON
+    only the layout changes. Raises :class:`InputError` with every line that cannot be understood; with
+    ``lenient`` those stay as they are. ``rewrite`` says what becomes of the others; ``reader`` remembers
+    lines from one text to the next.
+    """
+    if is_json(text):
+        return _format_json(text, file, lenient)
+    ends = _LINE_END.findall(text)
+    end = max(("\n", "\r\n", "\r"), key=ends.count)
+    lines = _LINE_END.sub("\n", text).split("\n") if "\r" in text else text.split("\n")
+    reader = reader or FoonReader()
+    reader.parse_new(lines)
+    errors: list[Diagnostic] = []
+    written: dict[str, str] = {}
+    new: list[str] = []
+    for number, line in enumerate(lines, 1):
+        found = written.get(line)
+        if found is None:
+            found, error = _format_line(line, reader, rewrite)
+            if error and not lenient:
+                place = Source(file, number, error.column)
+                errors.append(Diagnostic(Severity.ERROR, "syntax", str(error), place, line))
+            else:
+                written[line] = found
+        new.append(found)
+    if errors:
+        raise InputError(errors)
+    changes = [
+        Change(number, before, after)
+        for number, (before, after, its_end) in enumerate(zip(lines, new, [*ends, end], strict=True), 1)
+        if before != after or its_end != end
+    ]
+    last = len(new) - 1
+    while last >= 0 and not new[last]:
+        last -= 1
+    if _is_open_unit(lines, reader):
+        changes.append(Change(last + 1, new[last], new[last] + "\n//"))
+        new.insert(last + 1, "//")
+    if new[-1]:
+        if len(changes) == 0 or changes[-1].line != len(lines):
+            changes.append(Change(len(lines), lines[-1], lines[-1]))
+        new.append("")
+    return Formatted(end.join(new), tuple(changes))
+
+
+def _format_line(line: str, reader: FoonReader, rewrite: Rewrite) -> tuple[str, LineError | None]:
+    if line[:1] == "#":
+        return line, None
+    if not line or line.isspace():
+        return "", None
+    if line.rstrip(" \t") == "//":
+        return "//", None
+    parsed = reader.parse(line)
+    if isinstance(parsed, LineError):
+        return line, parsed
+    return rewrite(parsed, line), None
+
+
+def _is_open_unit(lines: list[str], reader: FoonReader) -> bool:
+    """Whether the lines after the last separator are a whole unit: inputs, and one motion."""
+    start = len(lines)
+    while start > 0 and not (lines[start - 1][:1] == "/" and lines[start - 1].rstrip(" \t") == "//"):
+        start -= 1
+    rest = [reader.parse(line) for line in lines[start:] if line[:1] in {"O", "M"}]
+    motions = [index for index, line in enumerate(rest) if isinstance(line, MotionLine)]
+    return len(motions) == 1 and any(isinstance(line, ObjectLine) for line in rest[: motions[0]])
+
+
+def _format_json(text: str, file: str, lenient: bool) -> Formatted:
+    """Lay out JSON anew; the line end behind the last bracket is there or not, as before."""
+    try:
+        check_json(text, file)
+    except InputError:
+        if not lenient:
+            raise
+        return Formatted(text, ())
+    ends = _LINE_END.findall(text)
+    end = max(("\n", "\r\n", "\r"), key=ends.count)
+    laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
+    before, after = _LINE_END.sub("\n", text).split("\n"), laid_out.split("\n")
+    new_text = laid_out.replace("\n", end)
+    if new_text == text:
+        return Formatted(text, ())
+    same = _same(zip(before, after, strict=False))
+    most = min(len(before), len(after)) - same
+    same_at_end = min(most, _same(zip(reversed(before), reversed(after), strict=False)))
+    last = max(same + 1, len(before) - same_at_end)
+    changes = [
+        Change(index + 1, old, after[index] if index < len(after) else "")
+        for index, old in enumerate(before)
+        if min(same, len(before) - 1) <= index < last
+    ]
+    return Formatted(new_text, tuple(changes))
+
+
+def _same(pairs: Iterable[tuple[str, str]]) -> int:
+    """Count the pairs of equal lines before the first that are not."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))

@@ -1,0 +1,46 @@
+"""How a JSON text is laid out: four spaces for each level, as the FOON files in JSON have it."""
+
+import json
+import re
+
+from foon_asp.network import Source
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+
+STEP = "    "
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
+
+
+def lay_out(text: str, level: int = 0) -> str:
+    """Give a JSON text with one value a line; only the blanks between the values change.
+
+    Strings and numbers stay as they are written. ``level`` is how deep the text will stand. The text has to
+    be JSON: see :func:`check_json`.
+    """
+    parts: list[str] = []
+    before = ""
+    for token in _TOKEN.findall(text):
+        if token in {"]", "}"}:
+            level -= 1
+            if before not in {"[", "{"}:
+                parts.append("\n" + STEP * level)
+        elif before in {"[", "{", ","}:
+            parts.append("\n" + STEP * level)
+        parts.append(": " if token == ":" else token)
+        level += token in {"[", "{"}
+        before = token
+    return "".join(parts)
+
+
+def check_json(text: str, file: str) -> None:
+    """Raise :class:`InputError` with the place where a text is not JSON."""
+    try:
+        json.loads(text, parse_int=str, parse_float=str)
+    except json.JSONDecodeError as problem:
+        line = text.split("\n")[problem.lineno - 1].rstrip("\r")
+        message = f"not JSON: {problem.msg}"
+        source = Source(file, problem.lineno, problem.colno)
+    except RecursionError:
+        line, message, source = "", "found lists within lists without end", Source(file, 1)
+    else:
+        return
+    raise InputError([Diagnostic(Severity.ERROR, "json", message, source, line)])

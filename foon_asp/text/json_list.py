@@ -1,0 +1,157 @@
+"""A JSON list with the place of every element."""
+
+import json
+import re
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.network import Source
+from foon_asp.text.diagnostics import Diagnostic, Severity
+
+_SPACE = re.compile(r"[ \t\r\n]*")
+
+
+class JsonElement(NamedTuple):
+    """One element of a list and the place where it begins."""
+
+    value: object
+    source: Source
+
+
+class JsonList:
+    """The elements of a list, read one by one; what is wrong is collected in ``errors``.
+
+    The list is the file's only value, or with ``key`` the value of that key of an object, whose other
+    values are in ``others`` when all has been read.
+    """
+
+    def __init__(self, text: str, file: Path, key: str | None = None) -> None:
+        self.errors: list[Diagnostic] = []
+        self.others: dict[str, object] = {}
+        self._text = text
+        self._file = str(file)
+        self._key = key
+        self._line, self._counted = 1, 0  # the line at an offset before, so that lines are counted once
+
+    def __iter__(self) -> Iterator[JsonElement]:
+        try:
+            for offset, value in self._elements():
+                yield JsonElement(value, self.place(offset))
+        except json.JSONDecodeError as problem:
+            self.error(self.place(problem.pos), f"not the JSON that is read here: {problem.msg}")
+        except _RepeatedKeyError as problem:
+            self.error(self.place(problem.start), f"found the key {problem.key!r} twice in one object")
+        except RecursionError:
+            self.error(self.place(0), "found lists within lists without end, expected a list of objects")
+
+    def error(self, source: Source, message: str) -> None:
+        """Note an error at a place of the file."""
+        excerpt = self._text.split("\n", source.line)[source.line - 1].rstrip("\r")
+        self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
+
+    def place(self, offset: int) -> Source:
+        """Give the line and column of an offset; offsets that only grow are the fast way to ask."""
+        if offset < self._counted:
+            self._line, self._counted = 1, 0
+        self._line += self._text.count("\n", self._counted, offset)
+        self._counted = offset
+        return Source(self._file, self._line, offset - self._text.rfind("\n", 0, offset))
+
+    def _elements(self) -> Iterator[tuple[int, object]]:
+        start = self._skip(0)
+        if self._key is not None and self._text[start : start + 1] == "{":
+            yield from self._in_object(start + 1)
+            return
+        end = yield from self._in_list(start)
+        self._nothing_after(end)
+
+    def _in_object(self, position: int) -> Iterator[tuple[int, object]]:
+        """Give the elements of the list under the key; the values of other keys are kept aside."""
+        seen: set[str] = set()
+        position = self._skip(position)
+        while self._text[position : position + 1] != "}":
+            start = position
+            key, position = self._value(position)
+            if not isinstance(key, str):
+                raise json.JSONDecodeError("expected a key in quotes", self._text, start)
+            if key in seen:
+                raise _RepeatedKeyError(key, start)
+            seen.add(key)
+            position = self._expect(":", self._skip(position))
+            if key == self._key:
+                position = yield from self._in_list(position)
+            else:
+                self.others[key], position = self._value(position)
+            position = self._skip(position)
+            if self._text[position : position + 1] != "}":
+                position = self._expect(",", position, "a comma or }")
+                if self._text[position : position + 1] == "}":
+                    raise json.JSONDecodeError("expected a key in quotes", self._text, position)
+        if self._key not in seen:
+            raise json.JSONDecodeError(
+                f"expected a list, or an object with the key {self._key!r}", self._text, 0
+            )
+        self._nothing_after(position + 1)
+
+    def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
+        """Give the elements of the list that begins there, and return where it ends."""
+        position = self._expect("[", position, "a list, [ ... ]")
+        first = True
+        while self._text[position : position + 1] != "]":
+            if not first:
+                position = self._expect(",", position, "a comma or ]")
+            first = False
+            value, end = self._value(position)
+            yield position, value
+            position = self._skip(end)
+        return position + 1
+
+    def _value(self, position: int) -> tuple[object, int]:
+        try:
+            return _DECODER.raw_decode(self._text, position)
+        except _RepeatedKeyError as problem:
+            problem.start = position
+            raise
+
+    def _expect(self, character: str, position: int, what: str = "") -> int:
+        if self._text[position : position + 1] != character:
+            raise json.JSONDecodeError(f"expected {what or character}", self._text, position)
+        return self._skip(position + 1)
+
+    def _nothing_after(self, end: int) -> None:
+        rest = self._skip(end)
+        if rest != len(self._text):
+            raise json.JSONDecodeError("expected the end of the file after the list", self._text, rest)
+
+    def _skip(self, position: int) -> int:
+        match = _SPACE.match(self._text, position)
+        return match.end() if match else position
+
+
+@dataclass(frozen=True)
+class JsonNumber:
+    """A number as it is written: none is calculated with, and ids and rates are kept to the letter."""
+
+    text: str
+
+
+class _RepeatedKeyError(Exception):
+    def __init__(self, key: str, start: int = 0) -> None:
+        super().__init__(key)
+        self.key = key
+        self.start = start
+
+
+def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    value = dict(pairs)
+    if len(value) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise _RepeatedKeyError(next(key for key in value if keys.count(key) > 1))
+    return value
+
+
+_DECODER = json.JSONDecoder(
+    object_pairs_hook=_object, parse_int=JsonNumber, parse_float=JsonNumber, parse_constant=JsonNumber
+)

@@ -1,0 +1,164 @@
+"""One object node in JSON, in either of the forms that are about."""
+
+import json
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from foon_asp.network import Contents, Relation
+from foon_asp.text.json_list import JsonNumber
+from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number, read_state
+
+# The names that say the same, and which of them are read at all.
+_LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
+_STATE_LABEL, _RELATED = ("state_label", "label"), ("relative_object", "related_object")
+_OTHERS = {"ingredients", "container", "object_id", "object_in_motion", "has_portions", "recipe_category"}
+KEYS = {*_LABEL, *_STATES, *_OTHERS}
+_STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
+
+
+class JsonObject(NamedTuple):
+    """An object node as an object line and state lines, and the container that is named without a word.
+
+    ``remarks`` say in words what was mended, and what the node has that lines have no place for.
+    """
+
+    line: ObjectLine
+    states: tuple[StateLine, ...]
+    container: str | None
+    remarks: tuple[str, ...] = ()
+
+
+def read_object(value: object) -> JsonObject:
+    """Read a node from ``{"label", "states", "ingredients", "container"}`` or the names of the other form.
+
+    States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. The
+    ingredients are those of a state that says ``contains``, which need not be there. What is missing,
+    null, empty or ``"None"`` is none. Raises :class:`ValueError` for a value of another form.
+    """
+    if not isinstance(value, dict):
+        raise ValueError(f'found {_shown(value)}, expected an object {{"label": ..., "states": [...]}}')
+    if unknown := sorted(value.keys() - KEYS):
+        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(KEYS))}")
+    key, found = first_of(value, _LABEL)
+    label = _name(found, key).strip(" ")
+    if not label:
+        raise ValueError(f'found {_shown(found)} as "{key}", expected a name')
+    states = [_state(state) for state in _list(value, *first_of(value, _STATES))]
+    ingredients = tuple(
+        item for item in map(_ingredient, _list(value, "ingredients", value.get("ingredients"))) if item
+    )
+    if ingredients:
+        states = _with_contents(states, ingredients)
+    container = optional_name(value.get("container"), "container")
+    line = ObjectLine(label, number(value, "object_id"), _fields(value))
+    remarks = (remark.message for state in states for remark in state.remarks)
+    plain = tuple(state._replace(remarks=()) for state in states)
+    return JsonObject(line, plain, container, (*remarks, *_left_out(value)))
+
+
+def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
+    """Give the one of several keys that an object has, and its value; else the first key and ``None``.
+
+    Raises :class:`ValueError` when it has two of them.
+    """
+    here = [key for key in keys if key in value] or [keys[0]]
+    if len(here) > 1:
+        raise ValueError(f"found both {here[0]!r} and {here[1]!r}, expected one of them")
+    return here[0], value.get(here[0])
+
+
+def optional_name(value: object, key: str) -> str | None:
+    """Give a name; ``None`` for what is null, empty or ``"None"``."""
+    if value is None:
+        return None
+    name = _name(value, key, "a name or null").strip(" ")
+    return name if name not in {"", "None"} else None
+
+
+def number(value: dict[str, object], key: str) -> str:
+    """Give the digits of a number, which may be written as text; empty where there is none."""
+    found = value.get(key)
+    written = found.text if isinstance(found, JsonNumber) else found
+    if isinstance(written, str) and is_number(written):
+        return written
+    if found in (None, "", "None"):
+        return ""
+    raise ValueError(f'found {_shown(found)} as "{key}", expected a number')
+
+
+def _fields(value: dict[str, object]) -> tuple[str, ...]:
+    flag = number(value, "object_in_motion")
+    category = number(value, "recipe_category")
+    return tuple(field for field in (flag, category) if field)
+
+
+def _state(value: object) -> StateLine:
+    if isinstance(value, dict):
+        if unknown := sorted(value.keys() - _STATE_KEYS):
+            raise ValueError(
+                f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(_STATE_KEYS))}"
+            )
+        key, found = first_of(value, _STATE_LABEL)
+        state = _state(_name(found, key))
+        related = optional_name(first_of(value, _RELATED)[1], _RELATED[0])
+        if related:
+            if not isinstance(state.attribute, str):
+                raise ValueError(f"found the related object {related!r} besides the one in {_shown(found)}")
+            state = state._replace(attribute=Relation(state.attribute, related))
+        return state._replace(id=number(value, "state_id"))
+    name = _name(value, "states", "a name").strip(" ")
+    try:
+        return read_state(name)
+    except LineError as error:
+        raise ValueError(f"found the state {_shown(name)}: at its column {error.column}, {error}") from None
+
+
+def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
+    """Put the ingredients where a state says ``contains``, or behind all states."""
+    contents = Contents("contains", tuple(sorted(ingredients)))
+    for index, state in enumerate(states):
+        if state.attribute == contents.word:
+            return [*states[:index], StateLine(contents, state.id, ingredients), *states[index + 1 :]]
+    return [*states, StateLine(contents, "", ingredients)]
+
+
+def _left_out(value: dict[str, object]) -> Iterator[str]:
+    flag = number(value, "object_in_motion")
+    if flag not in {"", *MOTION_FLAGS}:
+        yield f"the motion flag {flag!r} is not 0 or 1"
+    if value.get("has_portions") not in (None, False, "False", ""):
+        yield "has_portions left out: FOON text has no place for it"
+    for ingredient in _list(value, "ingredients", value.get("ingredients")):
+        if isinstance(ingredient, dict) and any(read_object(ingredient)[1:3]):
+            yield "states and containers of ingredients left out: only their labels count"
+
+
+def _ingredient(value: object) -> str:
+    """An ingredient is a name; where it is a whole object, its label."""
+    if isinstance(value, dict):
+        return read_object(value).line.label
+    return _name(value, "ingredients").strip(" ")
+
+
+def _list(value: dict[str, object], key: str, found: object) -> list[object]:
+    if found is None:
+        return []
+    if not isinstance(found, list):
+        raise ValueError(f'found {_shown(found)} as "{key}", expected a list of names')
+    return found
+
+
+def _name(value: object, key: str, expected: str = "a name") -> str:
+    if not isinstance(value, str):
+        raise ValueError(f'found {_shown(value)} as "{key}", expected {expected}')
+    return value
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, JsonNumber):
+        return value.text[:40]
+    return json.dumps(value, default=_plain_number)[:40]
+
+
+def _plain_number(value: JsonNumber) -> object:
+    return json.loads(value.text) if len(value.text) < 20 else value.text

@@ -1,0 +1,132 @@
+"""FOON units in JSON, in the two forms that are about.
+
+The one is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states`` and ids;
+the other a bare list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``.
+Both are read into the lines that FOON text would have, so that nothing after the reading knows which it was.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from foon_asp.network import Relation, Source
+from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
+from foon_asp.text.json_object import number, optional_name, read_object
+from foon_asp.text.line import MotionLine, StateLine, is_rate
+from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+
+_KEYS = {"input_nodes", "motion_node", "output_nodes"}
+_LABELS = {"label", "object_label"}
+_MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_type", "weight_success"}
+
+
+def is_json(text: str) -> bool:
+    """Whether a text is JSON; no line of FOON text begins with a bracket."""
+    return text[:1_000].lstrip(" \t\r\n")[:1] in {"{", "["}
+
+
+def read_json_units(
+    text: str, file: str, diagnostics: list[Diagnostic], lenient: bool
+) -> Iterator[ListedUnit]:
+    """Give the units in order; what is wrong goes to ``diagnostics``, under ``lenient`` as warnings.
+
+    An object whose ``container`` is named without a word is ``in`` it.
+    """
+    elements = JsonList(text, Path(file), "functional_units")
+    listed = list(elements)
+    videos = _videos(elements.others.get("source"))
+    if listed and not elements.errors and all(_is_object(element.value) for element in listed):
+        message = f"{len(listed)} objects and no motion: a list such as a kitchen or goals, without units"
+        diagnostics.append(Diagnostic(Severity.WARNING, "no-motion", message, listed[0].source))
+        return
+    for element in listed:
+        try:
+            unit, remarks = _unit(element, videos)
+        except ValueError as problem:
+            elements.error(element.source, str(problem))
+            continue
+        diagnostics += [Diagnostic(Severity.WARNING, "json-value", text, element.source) for text in remarks]
+        if not unit.inputs:
+            message = f"the unit {unit.motion.motion!r} has no input objects; left out"
+            diagnostics.append(Diagnostic(Severity.WARNING, "no-inputs", message, element.source))
+            continue
+        if not unit.outputs:
+            message = f"the unit {unit.motion.motion!r} has no output objects"
+            diagnostics.append(Diagnostic(Severity.WARNING, "no-outputs", message, element.source))
+        yield unit
+    if lenient:
+        diagnostics += [
+            error._replace(severity=Severity.WARNING, message=f"{error.message}; left out")
+            for error in elements.errors
+        ]
+    else:
+        diagnostics += elements.errors
+
+
+def _is_object(value: object) -> bool:
+    return isinstance(value, dict) and not value.keys() & _KEYS and bool(value.keys() & _LABELS)
+
+
+def _videos(value: object) -> tuple[str, ...]:
+    """The videos that were annotated: one address, or a list."""
+    found = value if isinstance(value, list) else [value]
+    return tuple(video.strip() for video in found if isinstance(video, str) and video.strip())
+
+
+def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, list[str]]:
+    """Read a unit; what of it had to be left out or assumed is said in words beside it."""
+    value, source = element
+    if not isinstance(value, dict) or not value.keys() >= _KEYS:
+        raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_KEYS))}")
+    if unknown := sorted(value.keys() - _KEYS):
+        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(_KEYS))}")
+    remarks: list[str] = []
+    inputs, outputs = (_side(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
+    motion = _motion(value["motion_node"], remarks)
+    unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source)
+    return unit, list(dict.fromkeys(remarks))
+
+
+def _side(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:
+    objects = unit[key]
+    if not isinstance(objects, list):
+        raise ValueError(f'found no list as "{key}", expected a list of objects')
+    blocks = []
+    for value in objects:
+        line, states, container, said = read_object(value)
+        remarks += said
+        if container is not None and not any(_names(state, container) for state in states):
+            states = (*states, StateLine(Relation("in", container)))
+        blocks.append(ObjectBlock(line, states, source))
+    return tuple(blocks)
+
+
+def _names(state: StateLine, container: str) -> bool:
+    return isinstance(state.attribute, Relation) and state.attribute.object == container
+
+
+def _motion(value: object, remarks: list[str]) -> MotionLine:
+    if not isinstance(value, dict):
+        value = {"motion_label": value}
+    if unknown := sorted(value.keys() - _MOTION_KEYS):
+        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(_MOTION_KEYS))}")
+    label = optional_name(value.get("motion_label"), "motion_label")
+    if label is None:
+        raise ValueError("found a motion without a label, expected a name")
+    composite = label.endswith("*") and label.strip("* ") != ""
+    start, end = (optional_name(value.get(key), key) for key in ("start_time", "end_time"))
+    fields = [time for time in (start or (end and "Assumed"), end) if time]
+    rate = value.get("weight_success")
+    rate = rate.text if isinstance(rate, JsonNumber) else optional_name(rate, "weight_success")
+    entity = optional_name(value.get("robot_type"), "robot_type")
+    if rate is not None:
+        if not is_rate(rate):
+            raise ValueError(f'found {rate[:40]!r} as "weight_success", expected a rate from 0 to 1')
+        if entity is None:
+            remarks.append(f"the success rate {rate} is of no robot_type; read as that of Robot")
+        fields += [entity or "Robot", rate]
+    elif entity is not None:
+        remarks.append(f"the robot_type {entity!r} has no weight_success; left out")
+    return MotionLine(
+        label.rstrip("* ") if composite else label, number(value, "motion_id"), composite, tuple(fields)
+    )

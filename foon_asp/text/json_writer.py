@@ -1,0 +1,135 @@
+"""Writing units and objects in JSON, in the two forms that are about.
+
+What is written is laid out like the files in these forms, and read by :mod:`foon_asp.text.json_units`.
+"""
+
+import json
+import re
+from collections.abc import Sequence
+
+from foon_asp.network import Contents, Relation
+from foon_asp.text.conversion_times import MotionFields, in_two_fields
+from foon_asp.text.json_layout import STEP
+from foon_asp.text.json_list import JsonNumber
+from foon_asp.text.line import MotionLine, ObjectLine, StateLine
+
+# What a JSON number may look like; other digits, such as 007, are written as text.
+_NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
+
+
+def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
+    """Write an object with its ids and flag, every state line as a state.
+
+    A relation without a word is a ``container``; contents under another word than ``contains``, and those
+    after the first, are a state such as ``coated {salt}``.
+    """
+    ingredients: tuple[str, ...] = ()
+    container = None
+    written: list[dict[str, object]] = []
+    for state in states:
+        said = state.attribute
+        label, related = str(said), None
+        if isinstance(said, Relation):
+            if not said.word:
+                container = said.object
+                continue
+            label, related = said
+        elif isinstance(said, Contents):
+            bare = any(other["state_label"] == "contains" for other in written)
+            if said.word == "contains" and state.listed and not bare:
+                label, ingredients = "contains", state.listed
+            else:
+                label = f"{said.word} {{{','.join(state.listed)}}}"
+        written.append({"state_id": _number(state.id), "state_label": label, "relative_object": related})
+    value: dict[str, object] = {
+        "object_id": _number(line.id),
+        "object_label": line.label,
+        "object_states": written,
+        "ingredients": list(ingredients),
+        "object_in_motion": _number(line.motion_flag or ""),
+    }
+    if line.category and line.motion_flag:  # behind no flag it would be read as one
+        value["recipe_category"] = _number(line.category)
+    if container is not None:
+        value["container"] = container
+    return _text(value)
+
+
+def json_motion(line: MotionLine) -> str:
+    """Write a motion with its id, its times, who moves and the success rate."""
+    times, entity, rate = MotionFields.of(line.fields)
+    begin, end, *_ = (*in_two_fields(times), None, None)
+    return _text(
+        {
+            "motion_id": _number(line.id),
+            "motion_label": line.motion + "*" * line.composite,
+            "start_time": begin,
+            "end_time": end,
+            "robot_type": entity,
+            "weight_success": _number(rate or ""),
+        }
+    )
+
+
+def list_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
+    """Write an object with label, states, ingredients and one container, by ``in`` if it has such a one."""
+    said = [state.attribute for state in states]
+    places = sorted((place for place in said if isinstance(place, Relation)), key=lambda p: p.word != "in")
+    return _text(
+        {
+            "label": line.label,
+            "states": [state for state in said if isinstance(state, str)],
+            "ingredients": [item for state in states for item in state.listed],
+            "container": places[0].object if places else None,
+        }
+    )
+
+
+def list_motion(line: MotionLine) -> str:
+    """Write a motion as its name alone."""
+    return _text(line.motion)
+
+
+def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], level: int) -> str:
+    """Put a unit together from the texts of its parts, laid out for a unit that stands at that level.
+
+    Its motion then stands one level deeper, and its objects two.
+    """
+    key = "\n" + STEP * (level + 1)
+    sides = (written_list(side, level + 1) for side in (inputs, outputs))
+    return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}}}'.format(
+        key, *sides, motion, "\n" + STEP * level
+    )
+
+
+def written_network(videos: Sequence[str], units: Sequence[str]) -> str:
+    """Put a whole file together from the texts of its units, laid out for their level 2."""
+    source = f'    "source": {written_list(list(map(_text, videos)), 1)},\n' if videos else ""
+    return f'{{\n{source}    "functional_units": {written_list(units, 1)}\n}}\n'
+
+
+def written_list(values: Sequence[str], level: int) -> str:
+    """Put a list together from the texts of its values, laid out for one level deeper than its own."""
+    if not values:
+        return "[]"
+    start = "\n" + STEP * (level + 1)
+    return "[" + ",".join(start + value for value in values) + "\n" + STEP * level + "]"
+
+
+def _number(digits: str) -> object:
+    if not digits:
+        return None
+    return JsonNumber(digits) if _NUMBER.fullmatch(digits) else digits
+
+
+def _text(value: object) -> str:
+    if isinstance(value, JsonNumber):
+        return value.text
+    if isinstance(value, dict):
+        return "{" + ",".join(f"{_text(key)}:{_text(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ",".join(map(_text, value)) + "]"
+    if isinstance(value, str):
+        lone = any("\ud800" <= c <= "\udfff" for c in value)  # half a pair, which is no text in UTF-8
+        return json.dumps(value, ensure_ascii=lone)
+    return json.dumps(value)

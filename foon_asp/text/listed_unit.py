@@ -1,0 +1,51 @@
+"""Object blocks and functional units as they stand in a file, with all that is no part of their identity."""
+
+from collections.abc import Iterable
+from typing import NamedTuple, cast
+
+from foon_asp.network import Contents, ObjectNode, Relation, Source
+from foon_asp.text.line import MotionLine, ObjectLine, StateLine
+
+
+class ObjectBlock(NamedTuple):
+    """One mention of an object node: its object line, the state lines under it, and where it begins."""
+
+    object: ObjectLine
+    states: tuple[StateLine, ...]
+    source: Source
+
+    @property
+    def node(self) -> ObjectNode:
+        """The object node that is mentioned; order, ids and fields are no part of it."""
+        return node_of(self.object.label, (state.attribute for state in self.states))
+
+
+class ListedUnit(NamedTuple):
+    """One copy of a functional unit with its lines as read, nodes in the order listed.
+
+    ``sources`` has one entry, unless a merged file says from which copies the unit came;
+    ``motion_source`` is the place of its motion.
+    """
+
+    motion: MotionLine
+    inputs: tuple[ObjectBlock, ...]
+    outputs: tuple[ObjectBlock, ...]
+    sources: tuple[Source, ...]
+    motion_source: Source
+
+
+def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:
+    """Build the node of a label and what the state lines under it say."""
+    states: list[str] = []
+    relations: list[Relation] = []
+    contents: list[Contents] = []
+    for attribute in attributes:
+        kind = type(attribute)
+        if kind is Relation:
+            relations.append(cast(Relation, attribute))
+        elif kind is Contents:
+            contents.append(cast(Contents, attribute))
+        else:
+            states.append(cast(str, attribute))
+    contents.sort()
+    return ObjectNode(label, frozenset(states), frozenset(relations), tuple(contents))

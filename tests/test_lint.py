@@ -1,0 +1,552 @@
+"""``foon-asp lint``: what is found, where, and what mending changes."""
+
+import json
+from itertools import product
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from foon_asp.lint import CATALOG, lint, mended
+from foon_asp.lint.dead_cycles import dead_cycles
+from foon_asp.lint.near_names import near_names
+from foon_asp.network import Network, NetworkBuilder, ObjectNode
+from foon_asp.report.lint_text import lint_text
+from foon_asp.text import Diagnostic, FoonReader, Severity
+from tests.conftest import CORPUS, Cli
+from tests.text.foon_strategies import steady, texts
+
+CHOP = "O\tonion\nS\twhole\nM\tchop\nO\tonion\nS\tchopped\n//\n"
+
+
+def written(folder: Path, *texts: str, names: tuple[str, ...] = ()) -> list[Path]:
+    """Write texts into files: ``0.txt``, ``1.txt``, ... or with names."""
+    files = []
+    for number, text in enumerate(texts):
+        file = folder / (names[number] if names else f"{number}.txt")
+        file.write_bytes(text.encode())
+        files.append(file)
+    return files
+
+
+def found(folder: Path, *texts: str, names: tuple[str, ...] = ()) -> list[Diagnostic]:
+    return lint(written(folder, *texts, names=names))
+
+
+def codes(findings: list[Diagnostic]) -> list[str]:
+    return [finding.code for finding in findings]
+
+
+def test_clean_text_has_no_findings(tmp_path: Path) -> None:
+    assert found(tmp_path, "# soup\n" + CHOP, names=("soup.txt",)) == []
+    assert found(tmp_path, "") == []
+
+
+def test_linting_goes_on_after_errors(tmp_path: Path) -> None:
+    text = "zzz\n" + CHOP + "S\tlost\n//\n" + CHOP + "O\ttea\nM\tstir\nO\ttea\n//\n"
+    findings = found(tmp_path, text, CHOP)
+    assert codes(findings) == [
+        "syntax",
+        "state-without-object",
+        "duplicate-unit",
+        "no-effect",
+        "shared-unit",
+    ]
+    assert [finding.source.line for finding in findings] == [1, 8, 10, 16, 1]
+
+
+def test_findings_are_sorted_by_file_line_and_column(tmp_path: Path) -> None:
+    text = "O\tb\nS\tin\t[ x]\nS\tcontains\t{a, a,}\nM\tput\nO\tb\n//\n"
+    findings = found(tmp_path, text, text)
+    places = [(f.source.file, f.source.line, f.source.column) for f in findings]
+    assert places == sorted(places)
+    assert len({file for file, _, _ in places}) == 2
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_line_ends_do_not_matter(tmp_path: Path, end: str) -> None:
+    text = "O\tonion\nS\tpeeled\nS\tpeeled\nM\tchop\nO\tonion\nS\tin [bowl]\n"
+    here = [(f.source.line, f.source.column, f.code, f.excerpt) for f in found(tmp_path, text)]
+    there = [
+        (f.source.line, f.source.column, f.code, f.excerpt) for f in found(tmp_path, text.replace("\n", end))
+    ]
+    assert here == there
+    assert [code for _, _, code, _ in here] == [
+        "repeated-state",
+        "space-for-tab",
+        "unknown-container",
+        "missing-separator",
+    ]
+
+
+# Names
+
+
+@pytest.mark.parametrize(
+    ("counts", "pair"),
+    [
+        ({"choppped": 1, "chopped": 3}, ("choppped", "chopped")),
+        ({"drinking glas": 30, "drinking glass": 25}, ("drinking glass", "drinking glas")),
+        ({"hashbrown": 9, "hash brown": 2}, ("hash brown", "hashbrown")),
+        ({"cinammon": 1, "cinnamon": 1}, ("cinnamon", "cinammon")),
+        ({"Bowl": 1, "bowl": 9}, ("Bowl", "bowl")),
+        ({"baking try": 1, "baking tray": 400}, ("baking try", "baking tray")),
+        ({"onoin": 1, "onion": 6}, ("onoin", "onion")),
+        ({"tomto": 1, "tomato": 4}, ("tomto", "tomato")),
+        ({"tometo": 1, "tomato": 40}, ("tometo", "tomato")),
+        ({"bow": 1, "bowl": 900}, ("bow", "bowl")),
+        ({"bow": 3, "bowl": 900}, ("bow", "bowl")),  # the same slip in the copies of a file
+    ],
+)
+def test_slips_of_the_pen(counts: dict[str, int], pair: tuple[str, str]) -> None:
+    (rare, meant) = pair
+    assert list(near_names(counts)) in ([pair], [(meant, rare)] if len(set(counts.values())) == 1 else [pair])
+
+
+@pytest.mark.parametrize(
+    "counts",
+    [
+        {"egg": 400, "eggs": 1},
+        {"potato": 400, "potatoes": 1},
+        {"pig in a blanket": 90, "pigs in a blanket": 2},
+        {"pan": 900, "can": 2},
+        {"butter": 700, "cutter": 1},
+        {"butter": 700, "batter": 11},
+        {"item 1": 400, "item 2": 1},
+        {"item 1": 400, "item 11": 1},
+        {"of": 1, "off": 900},
+        {"dip": 7, "drip": 1},
+        {"fried": 60, "dried": 78},
+        {"cup": 300, "cap": 2},
+        {"x" * 100: 100, "x" * 101: 1},
+    ],
+)
+def test_words_of_their_own(counts: dict[str, int]) -> None:
+    assert list(near_names(counts)) == []
+
+
+def test_endings_of_states_are_grammar() -> None:
+    for rare, frequent in (("cube", "cubed"), ("juiced", "juice"), ("flakes", "flaked"), ("mixer", "mixed")):
+        assert list(near_names({rare: 1, frequent: 200}, verbs=True)) == []
+
+
+def test_names_are_compared_over_all_files_and_kinds_of_mention(tmp_path: Path) -> None:
+    glas = "O\tdrinking glas\nM\tfill\nO\tice\nS\tin\t[drinking glass]\n//\n"
+    (finding,) = [f for f in found(tmp_path, CHOP, glas) if f.code == "near-name"]
+    assert (finding.source.line, finding.source.column) in {(1, 3), (4, 7)}
+    assert "'drinking glass' is never an object" in finding.message
+    separate = CHOP.replace("chopped", "choppped"), CHOP.replace("whole", "peeled")
+    findings = [f for f in found(tmp_path, *separate) if f.code == "near-name"]
+    assert len(findings) == 1
+
+
+def test_what_is_never_an_object(tmp_path: Path) -> None:
+    text = (
+        "O\twhite rice\nM\tput\nO\tcup\nS\tin\t[sink]\nS\tcontains\t{rice,salt}\nO\tcup\nS\tin\t[sink]\n//\n"
+    )
+    findings = found(tmp_path, text)
+    assert [(f.code, f.source.line, f.source.column) for f in findings] == [
+        ("unknown-container", 4, 7),
+        ("unknown-ingredient", 5, 13),
+        ("unknown-ingredient", 5, 18),
+    ]
+    assert "'sink' stands in [ ] twice" in findings[0].message
+    assert "is it 'white rice'?" in findings[1].message
+    assert "no unit adds it" in findings[2].message
+    known = "O\tsink\nO\trice\nO\tsalt\nM\tuse\nO\tdone\n//\n"
+    assert found(tmp_path, text, known) == []
+
+
+def test_the_caret_stands_under_the_whole_name(tmp_path: Path) -> None:
+    text = "O\tbowl\nS\tcontains\t{rice vinegar,rice, rice wine}\nM\tinstall\nO\tbowl\nS\tin [stall]\n//\n"
+    findings = [f for f in found(tmp_path, text) if f.code.startswith("unknown")]
+    carets = [(f.excerpt[f.source.column - 1 :], f.message.split("'")[1]) for f in findings]
+    assert carets == [
+        ("rice vinegar,rice, rice wine}", "rice vinegar"),
+        ("rice, rice wine}", "rice"),
+        ("rice wine}", "rice wine"),
+        ("stall]", "stall"),
+    ]
+
+
+def test_ids_are_those_of_one_file_and_kind(tmp_path: Path) -> None:
+    one = "O1\tonion\t1\nS1\twhole\nM1\tchop\nO1\tonion\t0\nS2\tchopped\n//\n"
+    assert found(tmp_path, one) == []
+    other = one.replace("onion", "garlic")
+    assert found(tmp_path, one, other) == []
+    findings = found(tmp_path, one + other)
+    assert codes(findings) == ["id-of-two-names"]
+    assert "'garlic' (twice) and of 'onion' (twice, first on line 1)" in findings[0].message
+    findings = found(tmp_path, one + one.replace("O1", "O7").replace("chop\n", "cut\n").replace("M1", "M2"))
+    assert codes(findings) == ["name-of-two-ids"]
+
+
+def test_ids_that_mean_nothing_are_told_of_once(tmp_path: Path) -> None:
+    text = "".join(f"O1\t{label}\n" for label in ("salt", "flour", "milk", "eggs", "butter"))
+    (finding,) = [f for f in found(tmp_path, f"{text}M\tmix\nO\tdough\n//\n") if f.code == "id-of-two-names"]
+    assert "that of 5 names" in finding.message
+
+
+# Units
+
+
+def test_the_order_of_lines_ids_and_times_do_not_make_another_unit(tmp_path: Path) -> None:
+    one = "O1\ta\t1\nS\tx\nS\ty\nO\tb\nM\tmix\t0:01\t0:02\nO\tc\n//\n"
+    other = "O\tb\nO1\ta\nS\ty\nS\tx\nM\tmix\nO\tc\n//\n"
+    (finding,) = found(tmp_path, one + other)
+    assert (finding.code, finding.source.line) == ("duplicate-unit", 8)
+    assert "line 1" in finding.message
+
+
+def test_copies_in_other_files_name_the_first(tmp_path: Path) -> None:
+    findings = found(tmp_path, "\n" + CHOP, CHOP, CHOP + CHOP)
+    assert [(f.code, Path(f.source.file).name, f.source.line) for f in findings] == [
+        ("shared-unit", "1.txt", 1),
+        ("shared-unit", "2.txt", 1),
+        ("duplicate-unit", "2.txt", 7),
+    ]
+    assert all("0.txt:2" in finding.message for finding in findings[:2])
+
+
+def test_a_merged_file_is_spoken_of_by_its_own_lines(tmp_path: Path) -> None:
+    text = f"# From:\tsoup.txt:40\n{CHOP}# From:\tsoup.txt:90\n{CHOP}"
+    (finding,) = found(tmp_path, text)
+    assert (finding.code, finding.source.line) == ("duplicate-unit", 9)
+    assert "line 2 " in finding.message
+
+
+# Dead cycles
+
+
+def network(*units: tuple[str, str]) -> Network:
+    """Build a network of nodes with one letter."""
+    builder = NetworkBuilder()
+    for inputs, outputs in units:
+        builder.add("go", map(ObjectNode.of, inputs), map(ObjectNode.of, outputs))
+    return builder.build()
+
+
+def cycle_labels(found: Network) -> list[str]:
+    return ["".join(found.objects[node].label for node, _ in cycle.steps) for cycle in dead_cycles(found)]
+
+
+def test_dead_cycles() -> None:
+    assert cycle_labels(network(("a", "b"), ("b", "a"))) == ["ab"]
+    assert cycle_labels(network(("a", "b"), ("b", "a"), ("c", "a"))) == []
+    assert cycle_labels(network(("a", "b"), ("b", "a"), ("cb", "a"))) == ["ab"]
+    assert cycle_labels(network(("a", "b"), ("b", "c"), ("c", "a"), ("a", "d"), ("d", "e"))) == ["abc"]
+    # What a unit hands on it does not make.
+    assert cycle_labels(network(("ak", "bk"))) == []
+    assert cycle_labels(network(("a", "a"))) == []
+    # Two cycles, of which one waits for the other.
+    assert sorted(cycle_labels(network(("a", "b"), ("b", "a"), ("c", "d"), ("db", "c")))) == ["ab", "cd"]
+    # A shortest way around a larger set.
+    (cycle,) = dead_cycles(network(("a", "b"), ("b", "c"), ("c", "d"), ("d", "a"), ("b", "a")))
+    assert (len(cycle.steps), len(cycle.nodes)) == (2, 4)
+
+
+def test_a_kitchen_breaks_a_cycle(tmp_path: Path) -> None:
+    text = "O\ttap\nS\toff\nM\topen\nO\ttap\nS\ton\n//\nO\ttap\nS\ton\nM\tshut\nO\ttap\nS\toff\n//\n"
+    assert codes(found(tmp_path, text)) == ["dead-cycle"]
+    for name, kitchen in (("k.txt", "O\ttap\nS\toff\n"), ("k.json", '[{"label": "tap", "states": ["off"]}]')):
+        assert found(tmp_path, text, kitchen, names=("a.txt", name)) == []
+
+
+@given(st.lists(st.tuples(st.text("abcdef", max_size=3), st.text("abcdef", max_size=2)), max_size=9))
+def test_without_a_dead_cycle_everything_can_be_made(units: list[tuple[str, str]]) -> None:
+    found = network(*units)
+    makers = {
+        node: [unit for unit in units_ if node not in found.inputs[unit]]
+        for node, units_ in enumerate(found.producers)
+    }
+    there = {node for node, units_ in makers.items() if not units_}
+    for _ in found.objects:
+        for unit, inputs in enumerate(found.inputs):
+            if there.issuperset(inputs):
+                there.update(found.outputs[unit])
+    cycles = dead_cycles(found)
+    assert (not cycles) == (len(there) == len(found.objects))
+    for steps, nodes in cycles:
+        assert not nodes & there
+        # Each is made, and only by units that need one of them.
+        assert all(makers[node] for node in nodes)
+        assert all(nodes & set(found.inputs[unit]) for node in nodes for unit in makers[node])
+        for (node, unit), (following, _) in zip(steps, (*steps[1:], steps[0]), strict=True):
+            assert node in found.inputs[unit]
+            assert unit in makers[following]
+            assert {node, following} <= nodes
+
+
+# Motion flags
+
+
+def test_a_few_missing_flags_are_told_of_once(tmp_path: Path) -> None:
+    flagged = "O\tonion\t0\nM\tchop\nO\tonion\t0\nS\tchopped\n//\n"
+    bare = "O\ttea\nM\tstir\nO\ttea\nS\thot\n//\n"
+    (finding,) = found(tmp_path, flagged + bare + flagged.replace("chop", "dic"))
+    assert (finding.code, finding.source.line, finding.source.column) == ("missing-flag", 6, 3)
+    assert finding.message.startswith("2 of 6 object lines have no motion flag")
+    assert found(tmp_path, bare + flagged) == []  # as many with as without
+    assert found(tmp_path, "O\ta\t0\nO\tb\t0\nO\tc\n") == []  # a kitchen
+
+
+# Goals and kitchens
+
+
+def test_tagged_goals(tmp_path: Path) -> None:
+    made = "O\tonion\nM\tchop\nO\tonion\t0\t12\nS\tchopped\n//\n"
+    assert found(tmp_path, made) == []
+    for tag in ("12", "!"):
+        handed_on = f"O\tonion\t0\t{tag}\nO\tpan\nM\tserve\nO\tonion\t0\t{tag}\nO\tplate\n//\n"
+        findings = found(tmp_path, handed_on)
+        assert [(f.code, f.source.line) for f in findings] == [("unmade-goal", 1)]
+    assert (
+        found(tmp_path, handed_on, made.replace("\nS\tchopped", "").replace("O\tonion\nM", "O\tpeel\nM"))
+        == []
+    )
+
+
+def test_lists_are_compared_with_networks_only(tmp_path: Path) -> None:
+    fried = "O\tonion\nS\tfried\n"
+    assert found(tmp_path, fried, names=("goals.txt",)) == []
+    assert codes(found(tmp_path, CHOP, fried, names=("a.txt", "goals.txt"))) == ["unmade-goal"]
+    assert codes(found(tmp_path, CHOP, fried, names=("a.txt", "kitchen.txt"))) == ["unknown-item"]
+    whole = "O\tonion\nS\twhole\n"  # is a node, and made by nothing
+    assert codes(found(tmp_path, CHOP, whole, names=("a.txt", "goals.txt"))) == ["unmade-goal"]
+    assert found(tmp_path, CHOP, whole, names=("a.txt", "kitchen.txt")) == []
+
+
+def test_a_kitchen_of_another_network_is_told_of_once(tmp_path: Path) -> None:
+    kitchen = "".join(f"O\titem {letter}\n" for letter in "abcdefghijklm")
+    (finding,) = found(tmp_path, CHOP, kitchen, names=("a.txt", "kitchen.txt"))
+    assert finding.code == "unknown-item"
+    assert "13 of the 13 entries" in finding.message
+
+
+# JSON
+
+
+def test_json_is_linted_like_text(tmp_path: Path) -> None:
+    unit = {
+        "input_nodes": [{"label": "caf\u00e9", "states": ["hot"]}],
+        "motion_node": "pour",
+        "output_nodes": [{"label": "cup", "ingredients": ["caff\u00e8"]}],
+    }
+    text = json.dumps([unit, unit], indent=1)
+    findings = found(tmp_path, text, names=("a.json",))
+    assert codes(findings) == ["unknown-ingredient", "duplicate-unit"]
+    line = text.split("\n")[findings[0].source.line - 1]
+    assert (line, line[findings[0].source.column - 1 :]) == (findings[0].excerpt, '"caff\\u00e8"'[1:])
+
+
+def test_names_in_json_may_hold_anything(tmp_path: Path) -> None:
+    node = {"label": 'a"b\\c', "states": ["tall"], "ingredients": ["x\\", "\ud800"], "container": "in {x}"}
+    for value in ([node], [{"input_nodes": [node], "motion_node": "go", "output_nodes": [node]}]):
+        findings = found(tmp_path, json.dumps(value), names=("a.json",))
+        assert lint_text(findings, 1, 0)
+
+
+# Mending
+
+SLIPS = (
+    "\ufeff# tea\r\n//\r\nO\ttea\t00\r\nS\tin [cup]\r\nS\tcontains\t{milk, sugar,}\n"
+    "M\tstir\tAssume\t3:0s7\r\n"
+    "O\ttea\t\nS\ton\t[]\rS\tcoated\t[a,b]\r\n// \r\n\r\nzzz \n  \nO\ttea\nM\tdrink\nO\tcup\n# end"
+)
+MENDED = (
+    "\ufeff# tea\r\n//\r\nO\ttea\t0\r\nS\tin\t[cup]\r\nS\tcontains\t{milk,sugar}\nM\tstir\tAssumed\t3:0s7\r\n"
+    "O\ttea\nS\ton\rS\tcoated\t{a,b}\r\n//\r\n\r\nzzz \n  \nO\ttea\nM\tdrink\nO\tcup\n# end\r\n//\r\n"
+)
+
+
+def test_mending_leaves_every_other_byte(tmp_path: Path, cli: Cli) -> None:
+    (file,) = written(tmp_path, SLIPS)
+    ran = cli("lint", "--fix", file)
+    assert file.read_bytes().decode() == MENDED
+    assert ran.code == 1  # the syntax error stays, and the time
+    assert "error" in ran.out
+    assert "10 mended" in ran.out.split("\n")[-2]
+    again = cli("lint", "--fix", "--format", "json", file)
+    assert file.read_bytes().decode() == MENDED
+    assert again.json["mended"] == 0
+    assert not any(finding["fix"] for finding in again.json["findings"])
+
+
+def test_mending_only_what_is_selected(tmp_path: Path, cli: Cli) -> None:
+    (file,) = written(tmp_path, "O\ttea\t00\nS\tin [cup]\nM\tstir\nO\ttea\n//\n")
+    assert cli("lint", "--fix", "--select", "motion-flag", file).code == 0
+    assert file.read_text() == "O\ttea\t0\nS\tin [cup]\nM\tstir\nO\ttea\n//\n"
+    assert cli("lint", "--fix", "--ignore", "space-for-tab", "--ignore", "unknown-container", file).code == 0
+    assert "in [cup]" in file.read_text()
+
+
+def test_a_line_that_has_changed_since_is_left_alone(tmp_path: Path) -> None:
+    (file,) = written(tmp_path, "O\ttea\t00\nM\tstir\nO\ttea\n//\n")
+    findings = lint([file])
+    assert mended(b"O\tcoffee\t1\nM\tstir\n", findings) == b"O\tcoffee\t1\nM\tstir\n"
+
+
+@pytest.mark.parametrize(
+    "text", ["O\ta\nM\tb\nO\tc", "O\ta\nM\tb\nO\tc\n", "O\ta\r\nM\tb\r\nO\tc", "O\ta\nM\tb\nO\tc \n\n"]
+)
+def test_a_missing_separator(tmp_path: Path, cli: Cli, text: str) -> None:
+    (file,) = written(tmp_path, text)
+    assert cli("lint", "--fix", file).code == 0
+    assert found(tmp_path, file.read_bytes().decode()) == []
+    end = "\r\n" if "\r" in text else "\n"
+    assert f"c{end}//{end}" in file.read_bytes().decode()
+
+
+@steady
+@given(text=texts())
+def test_mending_changes_nothing_of_what_is_read(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
+    file = tmp_path_factory.getbasetemp() / "mending.txt"
+    try:
+        file.write_bytes(text.encode())
+    except UnicodeEncodeError:
+        return
+    findings = lint([file])
+    assert {finding.code for finding in findings} <= set(CATALOG)
+    assert all(finding.severity is CATALOG[finding.code].severity for finding in findings)
+    assert lint_text(findings, 1, 0)
+    content = mended(file.read_bytes(), findings)
+    before = [unit[:3] for unit in FoonReader().units(file.read_bytes().decode().removeprefix("\ufeff"), "f")]
+    file.write_bytes(content)
+    assert [unit[:3] for unit in FoonReader().units(content.decode().removeprefix("\ufeff"), "f")] == before
+    assert not [finding for finding in lint([file]) if finding.fix is not None]
+
+
+# The command
+
+
+def test_text_folds_and_counts(tmp_path: Path, cli: Cli) -> None:
+    (file,) = written(
+        tmp_path,
+        "O\ta\nS\tcontains\t{a, a}\nM\tgo\nO\tb\n//\nO\ta\nS\tx \nM\tgo\nO\tb\nS\tx \nS\ty \nS\tz \n//\n",
+    )
+    ran = cli("lint", file)
+    lines = ran.out.split("\n")
+    assert lines[0] == f"{file}:2:15: warning: spaces around 'a' left out [outer-space]"
+    assert (
+        lines[1:3] == ["    S→contains→{a, a}", "                  ^"] or lines[1] == "    S→contains→{a, a}"
+    )
+    assert "    ... and 2 more of this kind in this file, on lines 11, 12 [outer-space]" in lines
+    assert lines[-2] == "1 file: 6 warnings; --fix would mend 5"
+    assert ran.code == 1
+
+
+def test_json_has_all(tmp_path: Path, cli: Cli) -> None:
+    (file,) = written(tmp_path, "O\ta\nM\tgo\nO\tb\nS\tin [c]\n//\n")
+    ran = cli("lint", "--format", "json", file)
+    assert ran.json["counts"] == {"error": 0, "warning": 1, "note": 1}
+    assert ran.json["codes"] == {"space-for-tab": 1, "unknown-container": 1}
+    assert ran.json["findings"][0] == {
+        "file": str(file),
+        "line": 4,
+        "column": 5,
+        "severity": "warning",
+        "code": "space-for-tab",
+        "message": "no tab before [c]; read as if there were one",
+        "text": "S\tin [c]",
+        "fix": "S\tin\t[c]",
+        "mendable": True,
+    }
+
+
+def test_json_does_not_repeat_a_long_line_for_each_finding(tmp_path: Path, cli: Cli) -> None:
+    names = ", ".join(f"ingredient {number}" for number in range(2000))
+    (file,) = written(tmp_path, f"O\ta\nS\tcontains\t{{{names}}}\nM\tgo\nO\ta\nS\tbig\n//\n")
+    ran = cli("lint", "--format", "json", file)
+    slip = next(finding for finding in ran.json["findings"] if finding["code"] == "outer-space")
+    assert (slip["text"], slip["fix"], slip["mendable"]) == (None, None, True)
+    assert len(ran.json["findings"]) > 2000
+    assert len(ran.out) < 500 * len(ran.json["findings"])
+    assert cli("lint", "--fix", "--select", "outer-space", file).code == 0
+    assert ", " not in file.read_text()
+
+
+def test_annotations_are_escaped(tmp_path: Path, cli: Cli) -> None:
+    (file,) = written(
+        tmp_path, "O\ta%\nM\tgo\nO\ta%\n//\nO\ta\nM\tgo\nO\tb\nS\tin\t[c%]\n//\n", names=("a,b.txt",)
+    )
+    ran = cli("lint", "--format", "github", file)
+    place = str(file).replace(",", "%2C").replace(":", "%3A")
+    first, second = ran.out.splitlines()
+    assert first.startswith(f"::warning file={place},line=1,col=1,title=no-effect::the outputs")
+    assert second.startswith(f"::notice file={place},line=8,col=7,title=unknown-container::'c%25' stands")
+
+
+def test_the_exit_code_goes_by_severity(tmp_path: Path, cli: Cli) -> None:
+    note, warning, error = written(
+        tmp_path, "O\ta\nS\tin\t[z]\nM\tgo\nO\tb\n//\n", "O\ta\nM\tgo\nO\ta\n//\n", "zzz\n" + CHOP
+    )
+    assert [cli("lint", file).code for file in (note, warning, error)] == [0, 1, 1]
+    assert cli("lint", "--ignore", "syntax", error).code == 0
+    assert cli("lint", "--select", "syntax", warning).code == 0
+    for words in (
+        ["--select", "nothing", note],
+        [tmp_path / "none.txt"],
+        [],
+        ["--fix", "--format", "xml", note],
+    ):
+        assert cli("lint", *words).code == 2
+
+
+def test_folders(tmp_path: Path, cli: Cli) -> None:
+    (tmp_path / "deep").mkdir()
+    written(tmp_path / "deep", CHOP)
+    written(tmp_path, CHOP)
+    assert cli("lint", tmp_path).out.split("\n")[-2] == "2 files: 1 note"
+
+
+# The real corpus
+
+
+@pytest.mark.parametrize(
+    ("folder", "expected"),
+    [
+        (
+            "universal/FOON.txt",
+            {"space-for-tab", "outer-space", "no-outputs", "near-name", "repeated-ingredient"},
+        ),
+        (
+            "subgraphs",
+            {
+                "contents-bracket",
+                "empty-ingredient",
+                "time",
+                "no-motion",
+                "second-contents",
+                "second-relation",
+            },
+        ),
+        ("dialects", {"no-motion", "id-of-two-names"}),
+    ],
+)
+def test_the_dirt_of_the_corpus_is_found(universal: Path, cli: Cli, folder: str, expected: set[str]) -> None:
+    ran = cli("lint", CORPUS / folder, "--format", "json")
+    assert ran.code == 1
+    assert expected <= set(ran.json["codes"])
+
+
+def test_near_names_of_the_universal_foon_are_slips(universal: Path) -> None:
+    slips = {
+        "choppped",
+        "drinking glas",
+        "baking try",
+        "choocolate",
+        "cinammon",
+        "bow",
+        "garlic pres",
+        "lemon gras",
+    }
+    messages = [f.message for f in lint([universal / "FOON.txt"]) if f.code == "near-name"]
+    assert all(any(repr(slip) in message for message in messages) for slip in slips)
+    assert len(messages) < 20
+    words = {"cutter", "batter", "mashed", "loaf", "eggs", "broil"}
+    assert not any(repr(word) in message for word, message in product(words, messages))
+
+
+def test_severities() -> None:
+    assert {rule.severity for rule in CATALOG.values()} == set(Severity)

@@ -1,0 +1,255 @@
+"""``foon-asp merge``: every distinct unit once, with the places of all its copies."""
+
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, Network, NetworkBuilder, ObjectNode, Source
+from foon_asp.text import FoonReader, merged_text, write_unit
+from tests.conftest import CORPUS, Cli
+from tests.text.foon_strategies import names, steady, units
+
+TEA = """\
+# Source:\thttps://example.org/tea.mp4
+# Source:\thttps://example.org/a tea\tat 0:20
+//
+O1\twater\t1
+S2\thot
+M3\tpour\t0:10\t0:20
+O4\ttea
+//
+O4\ttea
+M5\tdrink
+O6\tcup
+S7\tempty
+//
+"""
+PARTY = "O\ttea\nM\tdrink\nO\tcup\nS\tempty\n//\nO\tcup\nS\tempty\nM\twash\nO\tcup\n//\n"
+MERGED = """\
+# Universal FOON: 3 functional units from 2 files
+//
+# From:\tparty.txt:1
+# From:\ttea.txt:9\thttps://example.org/tea.mp4\thttps://example.org/a tea at 0:20
+O\ttea
+M\tdrink
+O\tcup
+S\tempty
+//
+# From:\tparty.txt:6
+O\tcup
+S\tempty
+M\twash
+O\tcup
+//
+# From:\ttea.txt:4\thttps://example.org/tea.mp4\thttps://example.org/a tea at 0:20
+O\twater
+S\thot
+M\tpour
+O\ttea
+//
+"""
+
+
+def parts(network: Network) -> object:
+    return (
+        network.objects,
+        network.motions,
+        network.inputs,
+        network.outputs,
+        tuple(tuple(dict.fromkeys(s._replace(column=1) for s in sources)) for sources in network.sources),
+    )
+
+
+def read_back(text: str) -> Network:
+    reader = FoonReader()
+    builder = NetworkBuilder()
+    for motion, inputs, outputs, sources in reader.units(text, "merged.txt"):
+        builder.add(motion, inputs, outputs, *sources)
+    reader.raise_errors()
+    return builder.build()
+
+
+@pytest.fixture
+def recipes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "tea.txt").write_text(TEA)
+    (tmp_path / "party.txt").write_text(PARTY)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_folder(cli: Cli, recipes: Path) -> None:
+    ran = cli("merge", "party.txt", "tea.txt", "-o", "out.foon")
+    assert (ran.code, ran.out) == (0, "")
+    assert Path("out.foon").read_text() == MERGED
+    assert " ".join(ran.err.split()) == (
+        "2 files 4 units read 1 of them duplicates 3 distinct units 4 object nodes"
+    )
+    assert cli("merge", ".").out == MERGED
+    assert parts(FoonReader().read_network([Path("out.foon")])) == parts(
+        FoonReader().read_network([Path("party.txt"), Path("tea.txt")])
+    )
+
+
+def test_merging_again_keeps_the_places(cli: Cli, recipes: Path) -> None:
+    cli("merge", ".", "-o", "out.foon")
+    assert cli("merge", "out.foon").out.split("\n", 1)[1] == MERGED.split("\n", 1)[1]
+    more = cli("merge", "out.foon", "tea.txt").out
+    assert more.split("\n", 1)[1] == MERGED.split("\n", 1)[1]  # copies that are known already
+
+
+def test_every_answer_shows_the_places(cli: Cli, recipes: Path) -> None:
+    cli("merge", ".", "-o", "FOON.txt")
+    Path("kitchen.json").write_text('[{"label": "water", "states": ["hot"]}]')
+    ran = cli("solve", "--data", ".", "--goal", "cup; empty", "--format", "json")
+    sources = [[(s["file"], s["line"]) for s in unit["source"]] for unit in ran.json["units"]]
+    assert sources == [[("tea.txt", 4)], [("party.txt", 1), ("tea.txt", 9)]]
+
+
+def test_json_is_merged_with_text(cli: Cli, recipes: Path) -> None:
+    cli("convert", "tea.txt", "--to", "json", "-o", "tea.json")
+    ran = cli("merge", "tea.json", "tea.txt")
+    assert ran.code == 0
+    assert ran.out.count("# From:\ttea.json:") == ran.out.count("# From:\ttea.txt:") == 2
+    assert ran.out.count("\n//") == 3
+
+
+def test_kitchens_and_goals_are_no_networks(cli: Cli, recipes: Path) -> None:
+    """Known by name in a folder, and otherwise by what is in them."""
+    for name in ("kitchen.txt", "at_home.txt"):
+        Path(name).write_text("O\twater\nS\thot\nO\ttea\n")
+    Path("motion.txt").write_text("pour\t0.9\n")
+    ran = cli("merge", ".")
+    assert ran.code == 0
+    assert "at_home.txt:1:1: warning: 2 objects and no motion: a list such as a kitchen or goals" in ran.err
+    assert "kitchen.txt" not in ran.err
+    assert parts(read_back(ran.out)) == parts(read_back(MERGED))
+
+
+def test_what_is_not_understood(cli: Cli, recipes: Path) -> None:
+    Path("broken.txt").write_text("O\ttea\nwhat\nM\tsip\nO\ttea\n//\n")
+    ran = cli("merge", ".", "-o", "out.foon")
+    assert ran.code == 2
+    assert "broken.txt:2:1: error: " in ran.err
+    assert not Path("out.foon").exists()
+    ran = cli("merge", ".", "-o", "out.foon", "--lenient")
+    assert ran.code == 0
+    assert "1  lines that are in no unit" in ran.err
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["tea.txt", "-o", "tea.txt"], "is one of the files to merge"),
+        ([".", "-o", "./party.txt"], "is one of the files to merge"),
+        (["missing"], "no such file"),
+        (["kitchen.txt"], "no functional unit"),
+        (["bad\tname.txt"], "cannot be named in a line of text"),
+        (["bad\nname.txt"], "cannot be named in a line of text"),
+        ([" bad.txt"], "cannot be named in a line of text"),
+        (["names.json"], "a name that FOON text cannot hold"),
+        (["motions.json"], "a name that FOON text cannot hold"),
+        (["half.json"], "a name that FOON text cannot hold"),
+    ],
+)
+def test_what_cannot_be_merged(cli: Cli, recipes: Path, words: list[str], says: str) -> None:
+    Path("kitchen.txt").write_text("O\twater\n")
+    unit = '[{"input_nodes": [{"label": "%s"}], "motion_node": "%s", "output_nodes": []}]'
+    Path("names.json").write_text(unit % ("a [b]", "cut"))
+    Path("motions.json").write_text(unit % ("tea", "a\\tb"))
+    Path("half.json").write_text(unit % ("\\ud800", "cut"))
+    for name in words[:1]:
+        if "bad" in name:
+            Path(name).write_text(TEA)
+    ran = cli("merge", *words)
+    assert (ran.code, ran.out) == (2, "")
+    assert says in ran.err
+    assert Path("tea.txt").read_text() == TEA
+    assert Path("party.txt").read_text() == PARTY
+
+
+def test_a_file_whose_name_is_not_utf_8(cli: Cli, recipes: Path) -> None:
+    name = os.fsdecode(b"\xff.txt")
+    try:
+        Path(name).write_text(TEA)
+    except OSError:
+        pytest.skip("no such names here")
+    assert cli("merge", name).code == 2
+
+
+FILES = names().map(lambda name: name.lstrip()).filter(bool) | st.sampled_from(
+    ["a:3", "a.txt:3:4", "#", "C:\\a b", "ü "]
+)
+VIDEOS = st.lists(st.sampled_from(["https://a.b/c?d=e#f", "clip 3", "1:2"]), max_size=2).map(tuple)
+SOURCES = st.builds(Source, FILES, st.integers(1, 999_999_999), st.integers(1, 9), VIDEOS)
+
+
+@steady
+@given(st.lists(st.tuples(units(), SOURCES), max_size=4))
+def test_what_is_written_is_read_back(files: list[tuple[list[FunctionalUnit], Source]]) -> None:
+    builder = NetworkBuilder()
+    for found, source in files:
+        for unit in found:
+            if not unit.motion.endswith("*"):
+                builder.add(unit.motion, unit.inputs, unit.outputs, source)
+    network = builder.build()
+    try:
+        text = "".join(merged_text(network, "comment"))
+    except UserError as error:
+        assert "cannot be named" in str(error)  # noqa: PT017
+        assert any(source.file.strip() != source.file or "\x85" in source.file for _, source in files)
+        return
+    assert parts(read_back(text)) == parts(network)
+
+
+@steady
+@given(st.lists(units(), min_size=1, max_size=3))
+def test_merging_files_is_reading_them_together(
+    tmp_path_factory: pytest.TempPathFactory, files: list[list[FunctionalUnit]]
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    paths = []
+    for number, found in enumerate(files):
+        paths.append(folder / f"{number}.txt")
+        paths[-1].write_text("# Source: v\n//\n" + "".join(map(write_unit, found)), newline="")
+    network = FoonReader().read_network(paths)
+    once = "".join(merged_text(network, "once"))
+    assert parts(read_back(once)) == parts(network)
+    assert "".join(merged_text(read_back(once), "once")) == once
+
+
+def test_a_network_that_text_cannot_hold() -> None:
+    for node in (
+        ObjectNode.of("bowl", relations=[("contains", "salt")]),
+        ObjectNode.of("bowl", contents=[("contains", ["a,b"])]),
+        ObjectNode.of("bowl\nS\thot"),
+    ):
+        builder = NetworkBuilder()
+        builder.add("wash", [node], [], Source("a", 1))
+        with pytest.raises(UserError, match="cannot hold"):
+            list(merged_text(builder.build(), "comment"))
+
+
+def test_corpus(cli: Cli, universal: Path) -> None:
+    """The numbers of the subgraphs, and the universal FOON as it is."""
+    for folder, units_read, distinct, nodes in (
+        ("subgraphs", 1131, 1099, 2152),
+        ("universal", 2376, 2376, 4305),
+    ):
+        ran = cli("merge", CORPUS / folder)
+        assert ran.code == 0
+        for count, what in (
+            (units_read, "units read"),
+            (distinct, "distinct units"),
+            (nodes, "object nodes"),
+        ):
+            assert f" {count:,}  {what}\n" in ran.err
+        network = FoonReader().read_network(
+            sorted((CORPUS / folder).glob("*.txt")) if folder == "subgraphs" else [universal / "FOON.txt"]
+        )
+        assert (len(network), len(network.objects)) == (distinct, nodes)
+        assert sum(map(len, network.sources)) == units_read
+        assert parts(read_back(ran.out)) == parts(network)

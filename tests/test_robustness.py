@@ -1,0 +1,157 @@
+"""Whatever a file holds, reading it ends soon, in a network or in located words."""
+
+import contextlib
+import os
+import random
+import threading
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from foon_asp.errors import UserError
+from foon_asp.text import FoonReader, InputError, read_object_list
+from tests.conftest import CORPUS, Cli
+
+TREE = b"# Source:\thttp://video\n//\nO1\tegg\t1\nS2\twhole\nM3\tcrack\t0:01\t0:02\nO1\tegg\t0\t15\nS4\tin\t[bowl]\n//\n"
+LINE_SEPARATORS = "\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
+
+
+def read(file: Path, lenient: bool) -> FoonReader:
+    """Read a file both ways; whatever is wrong must be said with a place in that file."""
+    reader = FoonReader(lenient)
+    with contextlib.suppress(InputError):
+        reader.read_network([file])
+    listed = FoonReader(lenient)
+    units = list(listed.listed_units(listed.text(file), str(file)))
+    assert len(units) >= len({unit.sources for unit in units})
+    assert [d[:4] for d in listed.diagnostics] == [d[:4] for d in reader.diagnostics]
+    for diagnostic in reader.diagnostics:
+        assert diagnostic.source.file == str(file)
+        assert diagnostic.source.line >= 1
+        assert diagnostic.source.column >= 1
+        assert diagnostic.message
+        assert len(str(diagnostic)) < 2_000
+    return reader
+
+
+def mutated(data: bytes, dice: random.Random) -> bytes:
+    """Change a file as an accident would: bytes flipped, lost, doubled, pieces moved."""
+    changed = bytearray(data)
+    for _ in range(dice.randint(1, 12)):
+        at = dice.randrange(len(changed) + 1)
+        kind = dice.randrange(6)
+        if kind == 0:
+            changed[at : at + 1] = bytes([dice.randrange(256)])
+        elif kind == 1:
+            del changed[at : at + dice.randint(1, 30)]
+        elif kind == 2:
+            changed[at:at] = dice.choice(
+                [b"\t", b"\n", b"\r", b"{", b"}", b"[", b"]", b"//", b"\nM\t", b"\xff"]
+            )
+        elif kind == 3:
+            end = at + dice.randint(1, 200)
+            changed[at:at] = changed[at:end]
+        elif kind == 4:
+            changed[at:at] = dice.choice(LINE_SEPARATORS).encode()
+        else:
+            changed = changed[:at] if dice.random() < 0.1 else changed
+    return bytes(changed)
+
+
+@settings(deadline=None, derandomize=True, max_examples=200)
+@given(data=st.binary(max_size=300) | st.text(max_size=300).map(str.encode), lenient=st.booleans())
+def test_any_bytes_are_read_or_refused(
+    tmp_path_factory: pytest.TempPathFactory, data: bytes, lenient: bool
+) -> None:
+    file = tmp_path_factory.mktemp("any") / "any.txt"
+    file.write_bytes(data)
+    read(file, lenient)
+
+
+@pytest.mark.parametrize("lenient", [False, True])
+def test_a_small_file_with_any_byte_changed(tmp_path: Path, lenient: bool) -> None:
+    file = tmp_path / "one.txt"
+    for at in range(len(TREE)):
+        for byte in b"\t\n\r {}[]/#OSM\x00\xff":
+            file.write_bytes(TREE[:at] + bytes([byte]) + TREE[at + 1 :])
+            read(file, lenient)
+
+
+@pytest.mark.skipif(not CORPUS.exists(), reason="the corpus of real FOON files is not here")
+def test_real_files_with_accidents(tmp_path: Path) -> None:
+    dice = random.Random(7)
+    files = sorted((CORPUS / "subgraphs").glob("*.txt")) + sorted((CORPUS / "dialects").iterdir())
+    for number, original in enumerate(files):
+        for _ in range(3):
+            file = tmp_path / f"{number}{original.suffix}"
+            file.write_bytes(mutated(original.read_bytes(), dice))
+            read(file, lenient=bool(dice.randrange(2)))
+            with contextlib.suppress(UserError):
+                read_object_list(file)
+
+
+@pytest.mark.parametrize("separator", LINE_SEPARATORS)
+def test_only_line_feeds_and_carriage_returns_end_lines(tmp_path: Path, separator: str) -> None:
+    file = tmp_path / "FOON.txt"
+    label = f"a{separator}b"
+    file.write_text(f"O\t{label}\nM\tmix\nO\tc\n//\n", "utf-8", newline="")
+    assert not read(file, lenient=False).diagnostics
+    network = FoonReader().read_network([file])
+    assert [node.label for node in network.objects] == [label, "c"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{" * 100_000,
+        "[" * 100_000,
+        "[{" * 50_000,
+        '{"functional_units":' * 50_000,
+        "O\ta\nS\tin\t" + "[" * 100_000,
+        "O\ta\nS\tin\t" + "{[" * 50_000,
+        "M" * 100_000,
+        "\t" * 100_000,
+        "O\t" + " " * 100_000,
+        "S\t" * 50_000,
+    ],
+)
+def test_brackets_and_blanks_without_end(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "FOON.txt"
+    file.write_text(text)
+    read(file, lenient=False)
+
+
+def test_a_folder_a_pipe_and_what_is_not_there(cli: Cli, tmp_path: Path) -> None:
+    ran = cli("stats", "--network", tmp_path)
+    assert ran.code == 2
+    assert "expected a folder with FOON.txt or other networks" in ran.err
+    assert cli("stats", "--network", tmp_path / "none.txt").code == 2
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=pipe.write_bytes, args=(TREE,))
+    writer.start()
+    ran = cli("stats", "--network", pipe, "--format", "json")
+    writer.join()
+    assert ran.code == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"O\t" + b"a" * 100_000_000,
+        b"O\tb\nS\tcontains\t{" + b"a," * 50_000_000,
+        b"x" * 100_000_000,
+        b"\0" * 100_000_000,
+        b"\xff" * 100_000_000,
+        b"[" * 100_000_000,
+        b'"' * 100_000_000,
+    ],
+    ids=["label", "list", "no letter", "zeros", "no text", "brackets", "quotes"],
+)
+def test_one_line_of_a_hundred_megabytes(tmp_path: Path, data: bytes) -> None:
+    file = tmp_path / "FOON.txt"
+    file.write_bytes(data)
+    assert read(file, lenient=False).diagnostics
