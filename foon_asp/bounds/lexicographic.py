@@ -94,7 +94,7 @@ def _product_sign(rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
         if exponent:
             below, above = _logarithms(rate)
             total += (below - above) * exponent
-            error += abs(exponent) * (below + above) * _FINE
+            error += (below + above) * _FINE * (exponent if exponent > 0 else -exponent)
     if abs(total) > error:
         return 1 if total > 0 else -1
     common = math.lcm(*(e.denominator for e in exponents))

@@ -5,9 +5,8 @@ from collections.abc import Collection, Iterable, Sequence
 from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 
-from foon_asp.bounds import Lexicographic
+from foon_asp.bounds import Cuts, Lexicographic
 from foon_asp.problem import Objective, Problem
-from foon_asp.reduce.cuts import Cuts
 
 _COARSE = 1000  # steps of -ln(rate) to 1, where a cost need not be exact
 _SCALE = 10**40  # steps of logarithms where rounding must not decide

@@ -1,6 +1,7 @@
 """Actions that every tree has, and what no tree needs beside them."""
 
 from collections.abc import Container
+from dataclasses import replace
 
 from foon_asp.reduce.graph import Graph
 
@@ -32,20 +33,13 @@ def beside_forced(graph: Graph, allowed: Container[int]) -> set[int]:
             continue
         forced.add(action)
         goals.extend(needs[action])
-        _, upstream = Graph(
-            graph.units,
-            needs,
-            gives,
-            makers,
-            frozenset(start),
-            tuple(n for n in needs[action] if n not in start),
-        ).cone(allowed)
+        needed = tuple(n for n in needs[action] if n not in start)
+        _, upstream = replace(graph, start=frozenset(start), goals=needed).cone(allowed)
         if upstream.isdisjoint(gives[action]):
             start.update(gives[action])
         else:
             open_.append(o)
-    rest = Graph(
-        graph.units, needs, gives, makers, frozenset(start), tuple(o for o in open_ if o not in start)
-    )
+    missing = tuple(o for o in open_ if o not in start)
+    rest = replace(graph, start=frozenset(start), goals=missing)
     left, _ = rest.cone(allowed)
     return forced.union(left)

@@ -3,25 +3,23 @@
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 
+from foon_asp.bounds import Hypergraph
 from foon_asp.problem import Objective, Problem
 
 
-@dataclass(frozen=True, eq=False)
-class Graph:
-    """Actions and objects by number; nothing is copied where the network has it already.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Graph(Hypergraph):
+    """A hypergraph with goals; nothing is copied where the network has it already.
 
     Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
     taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is
     empty; elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
-    ``makers[o]`` are the actions that give object ``o``. ``goals`` are those not there from the start.
+    ``goals`` are those not there from the start.
     """
 
     units: int
-    needs: Sequence[Sequence[int]]
-    gives: Sequence[Sequence[int]]
-    makers: Sequence[Sequence[int]]
-    start: frozenset[int]
     goals: tuple[int, ...]
+    start: frozenset[int]
 
     def cone(self, allowed: Container[int] | None = None) -> tuple[list[int], set[int]]:
         """Go backwards from the goals through all (allowed) actions, and stop at the start.
@@ -46,15 +44,22 @@ class Graph:
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
     """Give the graph of a problem under a list of objectives."""
     network, kitchen = problem.network, problem.kitchen
-    units = len(network)
+    units, size = len(network), len(network.objects)
+    goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
     if Objective.KITCHEN not in objectives:
-        goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
-        return Graph(units, problem.needs, network.outputs, network.producers, kitchen, goals)
+        return Graph(
+            size,
+            problem.needs,
+            network.outputs,
+            start=kitchen,
+            known_makers=network.producers,
+            units=units,
+            goals=goals,
+        )
     makers = list(network.producers)
     for o in kitchen:
         makers[o] = (units + o,)
     gives: list[Sequence[int]] = [[o for o in given if o not in kitchen] for given in network.outputs]
-    gives += [(o,) for o in range(len(network.objects))]
-    needs = [*problem.needs, *([()] * len(network.objects))]
-    goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
-    return Graph(units, needs, gives, makers, frozenset(), goals)
+    gives += [(o,) for o in range(size)]
+    needs = [*problem.needs, *([()] * size)]
+    return Graph(size, needs, gives, start=frozenset(), known_makers=makers, units=units, goals=goals)

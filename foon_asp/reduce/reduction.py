@@ -4,8 +4,8 @@ import gc
 from collections.abc import Callable, Collection, Sequence
 from typing import NamedTuple
 
+from foon_asp.bounds import Cuts, landmark_cuts
 from foon_asp.problem import Objective, Problem
-from foon_asp.reduce.cuts import Cuts, landmark_cuts
 from foon_asp.reduce.derivation import Derivations, derive
 from foon_asp.reduce.dominance import undominated
 from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
@@ -135,7 +135,7 @@ class _Reducer:
     def _bound(self, costs: ExactCosts, guide: dict[int, int]) -> bool:
         """Find cuts, and better trees near what they leave; whether bounds meet."""
         searched = Reduction.BOUNDS in self.reductions
-        self.cuts = cuts = landmark_cuts(self.graph, self.left, costs, guide, self.expired)
+        self.cuts = cuts = landmark_cuts(self.graph, self.graph.goals, self.left, costs, guide, self.expired)
         total = self._total(costs)
         bound = total if cuts.hopeless else min(cuts.bound, total)
         if bound > self.bound:

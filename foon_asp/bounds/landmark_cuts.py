@@ -5,10 +5,10 @@ need none of the set, every derivation uses one. Costs are divided among landmar
 Domshlak 2009): each takes from all of its members what the cheapest has left.
 """
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from typing import NamedTuple
 
-from foon_asp.reduce.graph import Graph
+from foon_asp.bounds.hypergraph import Hypergraph
 
 
 class WeightedCut(NamedTuple):
@@ -34,13 +34,14 @@ class Cuts(NamedTuple):
 
 
 def landmark_cuts(
-    graph: Graph,
+    graph: Hypergraph,
+    targets: Iterable[int],
     allowed: Container[int],
     cost: Callable[[int], int],
     dear: Mapping[int, int],
     expired: Callable[[], bool],
 ) -> Cuts:
-    """Find weighted cuts before the goals, until the rest of the costs lets all goals through for nothing.
+    """Find weighted cuts before the targets, until what is left of the costs gives them all for nothing.
 
     Only ``allowed`` actions count, and all costs are above zero. ``dear`` says how dear each object is
     thought to be: a cut passes through the dearest object that an action needs. What is made for nothing only
@@ -51,13 +52,13 @@ def landmark_cuts(
     free = _Free(graph)
     found: list[WeightedCut] = []
     bound = 0
-    goals = sorted(graph.goals, key=lambda o: (dear.get(o, 0), o))
-    while goals and not expired():
-        if goals[-1] in free.objects:
-            goals.pop()
+    remaining = sorted(targets, key=lambda o: (dear.get(o, 0), o))
+    while remaining and not expired():
+        if remaining[-1] in free.objects:
+            remaining.pop()
             continue
-        zone = {goals[-1]}
-        stack = [goals[-1]]
+        zone = {remaining[-1]}
+        stack = [remaining[-1]]
         edge: dict[int, None] = {}
         passed: set[int] = set()
         while stack:
@@ -90,7 +91,7 @@ def landmark_cuts(
 class _Free:
     """What can be made for nothing, growing as actions run out of cost."""
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph: Hypergraph) -> None:
         self._graph = graph
         self.objects: set[int] = set()
         self._missing: dict[int, int] = {}
