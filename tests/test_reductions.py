@@ -4,7 +4,8 @@ from itertools import combinations
 
 import pytest
 
-from foon_asp.asp import Settings, solve
+from foon_asp.asp import Proof, Settings, solve
+from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce
 from tests.oracle import best, key, trees
@@ -81,3 +82,32 @@ def test_answers_are_the_same(seed: int, rule: ContainerRule) -> None:
         if plain.costs is not None and outcome.costs is not None:
             assert outcome.costs.key(levels(objectives)) == plain.costs.key(levels(objectives)), reductions
             assert outcome.bounds == plain.bounds
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_cuts_of_the_reductions_make_certificates(seed: int) -> None:
+    problem = random_problem(seed, list(ContainerRule)[seed % 2], units=14)
+    names = LISTS[seed % len(LISTS)]
+    outcome = solve(problem, tuple(map(Objective, names)), Settings())
+    if outcome.units is None:
+        assert outcome.cuts == ()
+        return
+    wanted = levels(outcome.objectives)
+    certificate = certify(problem, wanted, outcome.units, cuts=outcome.cuts)
+    assert certificate is not None
+    assert (certificate.claim, certificate.certified) == ("optimal", wanted)
+
+
+def test_where_bounds_meet_the_cuts_are_the_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise AssertionError("searched again")
+
+    monkeypatch.setattr("foon_asp.bounds.lower_bound.Covering", fail)
+    met = 0
+    for seed in range(40):
+        problem = random_problem(seed, ContainerRule.STRICT)
+        outcome = solve(problem, (Objective.SUCCESS,), Settings())
+        if outcome.proof is Proof.CUTS and outcome.units:
+            assert certify(problem, levels(outcome.objectives), outcome.units, cuts=outcome.cuts)
+            met += 1
+    assert met > 10

@@ -44,6 +44,8 @@ class Outcome(NamedTuple):
     ``encodings`` is the folder whose encodings replaced ours, if one did: what is best is then what they say.
     ``certified`` are the objectives, from the first on, for which a certificate proves the tree best.
     ``left`` counts the units that the search had to choose from, 0 where nothing was left to search.
+    ``cuts`` are the sets of object nodes whose landmarks the reductions bounded costs with; see
+    :mod:`foon_asp.bounds`.
     """
 
     problem: Problem
@@ -57,3 +59,4 @@ class Outcome(NamedTuple):
     proof: Proof | None = None
     certified: tuple[Objective, ...] = ()
     left: int = 0
+    cuts: tuple[tuple[int, ...], ...] = ()

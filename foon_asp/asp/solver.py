@@ -368,6 +368,7 @@ class _Solver:
             raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
         self._spent("check", began)
         costs = problem.costs(listed)
+        cuts = self.reduced.cuts.cuts if self.reduced and self.reduced.cuts else ()
         return Outcome(
             problem,
             self.objectives,
@@ -379,6 +380,7 @@ class _Solver:
             self.settings.encodings,
             proof,
             left=left,
+            cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
         )
 
     def _spent(self, phase: str, began: float) -> None:
