@@ -44,15 +44,17 @@ def landmark_cuts(
     """Find weighted cuts before the targets, until what is left of the costs gives them all for nothing.
 
     Only ``allowed`` actions count, and all costs are above zero. ``dear`` says how dear each object is
-    thought to be: a cut passes through the dearest object that an action needs. What is made for nothing only
-    grows, so that the time goes with what the cuts touch and not with the size of the graph.
+    thought to be, those not in it dearer than all: a cut passes through the dearest object that an action
+    needs. What is made for nothing only grows, so that the time goes with what the cuts touch and not with
+    the size of the graph.
     """
     needs, makers = graph.needs, graph.makers
     left: dict[int, int] = {}
     free = _Free(graph)
+    dearest = 1 + max(dear.values(), default=0)
     found: list[WeightedCut] = []
     bound = 0
-    remaining = sorted(targets, key=lambda o: (dear.get(o, 0), o))
+    remaining = sorted(targets, key=lambda o: (dear.get(o, dearest), o))
     while remaining and not expired():
         if remaining[-1] in free.objects:
             remaining.pop()
@@ -71,7 +73,7 @@ def landmark_cuts(
                 passed.add(action)
                 needed = needs[action]
                 if zone.isdisjoint(needed):
-                    o = max(free.lacking(action), key=lambda o: (dear.get(o, 0), o))
+                    o = max(free.lacking(action), key=lambda o: (dear.get(o, dearest), o))
                     zone.add(o)
                     stack.append(o)
         members = tuple(action for action in edge if zone.isdisjoint(needs[action]))

@@ -36,17 +36,8 @@ class ExactCosts:
         self._rates = problem.rates or {}
         self._weights: dict[Fraction, int] = {}
         if Objective.SUCCESS in objectives:
-            self._weights = _weights({self._rates[network.motions[a]] for a in actions if a < units})
-        most = {
-            Objective.UNITS: len(actions),
-            Objective.KITCHEN: len(actions),
-            Objective.INPUTS: sum(len(network.inputs[a]) for a in actions if a < units),
-            Objective.SUCCESS: len(actions) * max(self._weights.values(), default=0),
-        }
-        if Objective.INPUTS_AND_INGREDIENTS in objectives:
-            most[Objective.INPUTS_AND_INGREDIENTS] = sum(
-                self._figure(Objective.INPUTS_AND_INGREDIENTS, a) for a in actions
-            )
+            motions = {network.motions[a] for a in actions if a < units}
+            self._weights = _weights({self._rates[motion] for motion in motions})
         self._factors: list[int] = []
         factor = 1
         self.doubt = 0
@@ -54,9 +45,18 @@ class ExactCosts:
             self._factors.append(factor)
             if objective is Objective.SUCCESS:
                 self.doubt = _ROUNDED * factor
-            factor *= 1 + most[objective]
+            if objective is not self._objectives[0]:
+                factor *= 1 + self._most(objective, actions)
         self._factors.reverse()
         self._known: dict[int, int] = {}
+
+    def _most(self, objective: Objective, actions: Collection[int]) -> int:
+        """Give what no set of actions costs more than by one objective."""
+        if objective in {Objective.UNITS, Objective.KITCHEN}:
+            return len(actions)
+        if objective is Objective.SUCCESS:
+            return len(actions) * max(self._weights.values(), default=0)
+        return sum(self._figure(objective, a) for a in actions)
 
     def __call__(self, action: int) -> int:
         """Give what an action costs."""
