@@ -328,12 +328,13 @@ QUESTIONS = (
     ("optima", "--objective", "units", "--format", "json"),
     ("optima", "--goal", "ice", "--objective", "inputs,success", "--format", "json"),
     ("compare", "--goal", "macaroni", "--goal", "ice", "--format", "csv"),
-    pytest.param(("compare", "--all-makeable", "--search", "bfs"), marks=pytest.mark.slow),
     ("draw", "--goal", "macaroni"),
     ("draw", "--unit", "7", "--unit", "3"),
     ("draw", "--unit", "999999"),
     ("draw",),
     ("stats",),
+    ("certify", "--goal", "macaroni"),
+    ("certify", "--goal", "ice", "--objective", "success", "--level", "2"),
 )
 
 
@@ -369,6 +370,27 @@ def test_json_answers_have_the_ids_of_the_whole_network(cli: Cli, kitchen_store:
         assert answer.pop("seconds")["read"] > 0
     assert from_store == from_text
     assert max(unit["id"] for unit in from_store["units"]) > len(from_store["units"])
+
+
+def test_proofs_speak_about_the_whole_network(cli: Cli, kitchen_store: Path, tmp_path: Path) -> None:
+    proofs = tmp_path / "text.json", tmp_path / "store.json"
+    for proof, words in zip(proofs, (("--data", KITCHEN), ("--network", kitchen_store)), strict=True):
+        assert cli("solve", "--goal", "macaroni", "--certificate", proof, *words).code == 0
+    assert proofs[0].read_bytes() == proofs[1].read_bytes()
+    assert cli("verify", proofs[0], "--network", kitchen_store) == cli("verify", proofs[1])
+    assert "verified" in cli("verify", proofs[0], "--network", kitchen_store).out
+    tree = tmp_path / "tree.txt"
+    tree.write_text(cli("solve", "--goal", "macaroni", "--format", "foon").out, encoding="utf-8")
+    given = ("certify", "--goal", "macaroni", "--tree", tree)
+    assert cli(*given, "--network", kitchen_store) == cli(*given, "--data", KITCHEN)
+
+
+@pytest.mark.parametrize("verb", ["lint", "fmt", "convert", "merge"])
+def test_what_is_about_text_refuses_a_store(cli: Cli, kitchen_store: Path, tmp_path: Path, verb: str) -> None:
+    words = {"convert": ("--to", "json"), "merge": ("-o", tmp_path / "merged.txt")}
+    ran = cli(verb, kitchen_store, *words.get(verb, ()))
+    assert ran.code == 2
+    assert "is a store, expected text" in ran.err
 
 
 def test_a_tree_is_checked_and_drawn(cli: Cli, kitchen_store: Path, tmp_path: Path) -> None:
@@ -540,6 +562,15 @@ def test_readers_at_once_and_a_new_import_under_them(soup: tuple[DataFiles, Path
     assert len(Store(store).whole()[0]) == 2
 
 
+def test_processes_that_read_at_once(soup: tuple[DataFiles, Path]) -> None:
+    _, store = soup
+    words = [sys.executable, "-m", "foon_asp", "solve", "--network", str(store), "--goal", SOUP_NODE]
+    running = [subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, text=True) for _ in range(4)]
+    printed = {process.communicate()[0] for process in running}
+    assert [process.returncode for process in running] == [0] * 4
+    assert len(printed) == 1
+
+
 def read_whole(store: Path) -> tuple[Network, frozenset[int]]:
     return Store(store).whole()
 
@@ -661,6 +692,20 @@ def test_foreign_files_are_refused(tmp_path: Path, cli: Cli) -> None:
 
 def test_a_checksum_knows_its_place() -> None:
     assert seal(Table.UNIT, 1, [1]) != seal(Table.UNIT, 2, [1]) != seal(Table.NODE, 2, [1])
+
+
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_the_real_universal_foon(universal: Path, tmp_path: Path, rule: ContainerRule) -> None:
+    """Clingo is given the same about any object, whether the whole network was read or its cone."""
+    files, store = find_data(universal), tmp_path / "universal.foon"
+    import_files(files, store)
+    data = read_data(files)
+    assert_holds(store, data)
+    for goal in random.Random(3).sample(range(len(data.network.objects)), 25):
+        problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
+        part = cone_problem(store, problem, own_kitchen=True)
+        chosen = (Objective.SUCCESS, Objective.INPUTS)
+        assert program_facts(part, chosen, Settings()) == program_facts(problem, chosen, Settings())
 
 
 @pytest.mark.slow

@@ -156,8 +156,7 @@ class StoreBuilder:
         """Give every motion with the place of the first unit that has it."""
         return zip(self._motions, self._motion_sources, strict=True)
 
-    def _new_node(self, node: ObjectNode) -> int:
-        number = self._nodes[node] = len(self._nodes)
+    def _new_node(self, node: ObjectNode, number: int) -> None:
         in_kitchen = False
         hashes = node_hashes(node)
         self._hashes.extend(hashes)
@@ -173,21 +172,21 @@ class StoreBuilder:
         self._node_block.append(node_values(node, in_kitchen))
         if len(self._node_block) == SIZES[Table.NODE]:
             self._flush(Table.NODE, number, self._node_block)
-        return number
 
     def _ids(self, nodes: Iterable[ObjectNode]) -> list[int]:
-        ids: list[int] = []
-        for node in nodes:
-            # The reader gives one object for each node: knowing that object is quicker than comparing nodes.
-            number = self._same.get(id(node))
-            if number is None:
-                number = self._nodes.get(node)
-                if number is None:
-                    number = self._new_node(node)
-                    self._same[id(node)] = number  # which is kept from now on, and with it the address
-            if number not in ids:
-                ids.append(number)
-        return ids
+        # The reader gives one object for each node: knowing that object is quicker than comparing nodes.
+        known = self._same.get
+        # 0 stands for none, so that node 0 is looked up each time.
+        ids = [known(id(node)) or self._id(node) for node in nodes]
+        return ids if len(ids) == len(set(ids)) else list(dict.fromkeys(ids))
+
+    def _id(self, node: ObjectNode) -> int:
+        new = len(self._nodes)
+        number = self._nodes.setdefault(node, new)
+        if number == new:
+            self._new_node(node, number)
+            self._same[id(node)] = number  # which is kept from now on, and with it the address
+        return number
 
     def _flush(self, table: Table, last: int, block: list[Any]) -> None:
         """Write the block at hand, whose last value belongs to that id."""
