@@ -2,9 +2,11 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from pathlib import PurePath
 
 from foon_asp.asp.exact_success import RateScale
 from foon_asp.errors import UserError
+from foon_asp.network import Source
 from foon_asp.problem import Objective, Problem
 
 # Every predicate written here, with its arity; encodings/README.md gives the meanings.
@@ -22,6 +24,7 @@ FACT_PREDICATES = {
     "kitchen": 1,
     "goal": 1,
     "utensil": 1,
+    "source": 2,
     "inputs": 2,
     "ingredients": 2,
     "rate": 2,
@@ -43,11 +46,13 @@ OBJECTIVE_TERMS = {
 _LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
 
 
-def write_facts(problem: Problem, units: Sequence[int], scale: RateScale | None) -> str:
+def write_facts(
+    problem: Problem, units: Sequence[int], scale: RateScale | None, with_sources: bool = False
+) -> str:
     """Describe the given units of a problem, their object nodes, the kitchen and the goals.
 
     One line per unit and per object node. ``scale`` gives the weights of ``risk/2``; ``None`` where no
-    rates are known.
+    rates are known. ``with_sources`` adds where each unit was read, which only constraints look at.
     """
     network, rates = problem.network, problem.rates
     _check(len(network))
@@ -66,6 +71,8 @@ def write_facts(problem: Problem, units: Sequence[int], scale: RateScale | None)
         if scale and rates:
             rate = rates[network.motions[unit]]
             facts.append(f"rate({unit},{_millionths(rate)}). risk({unit},{_check(scale.weights[rate])}).")
+        if with_sources:
+            facts += [f"source({unit},{quote(name)})." for name in _source_names(network.sources[unit])]
         lines.append(" ".join(facts))
     described.update(dict.fromkeys(problem.goals))
     labels: set[str] = set()
@@ -115,6 +122,12 @@ def write_wanted(exponents: Mapping[int, int]) -> str:
 def quote(text: str) -> str:
     """Give a clingo string."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+
+
+def _source_names(sources: Iterable[Source]) -> dict[str, None]:
+    """Give the names by which a constraint can mean the places of a unit: files, with folders and without."""
+    names = (name for s in sources for name in (s.file, PurePath(s.file).name, *s.videos))
+    return dict.fromkeys(names)
 
 
 def _millionths(rate: Fraction) -> int:

@@ -126,7 +126,7 @@ class _Solver:
     def facts(self) -> str:
         if self._facts is None:
             began = time.perf_counter()
-            self._facts = write_facts(self.problem, self.units, self.scale)
+            self._facts = write_facts(self.problem, self.units, self.scale, with_sources=not self.program.own)
             self._spent("facts", began)
         return self._facts
 

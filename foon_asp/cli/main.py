@@ -21,6 +21,7 @@ _VERBS = (
     "certify",
     "verify",
     "draw",
+    "constraints",
     "facts",
     "stats",
     "lint",
@@ -39,7 +40,7 @@ class _Verbs(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in _VERBS:
             return None
-        command: click.Command = importlib.import_module(f"foon_asp.cli.{cmd_name}").command
+        command: click.Command = importlib.import_module(f"foon_asp.cli.{cmd_name.replace('-', '_')}").command
         return command
 
 
