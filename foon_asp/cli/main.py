@@ -21,6 +21,7 @@ _VERBS = (
     "certify",
     "verify",
     "draw",
+    "why-not",
     "constraints",
     "facts",
     "stats",

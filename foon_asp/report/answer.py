@@ -117,7 +117,7 @@ def goal_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
         if network.detailed is None:
             continue
         details = network.objects_stand_for[goal]
-        yield f"  stands for {_count(len(details), 'object node')} at level 3:"
+        yield f"  stands for {counted(len(details), 'object node')} at level 3:"
         yield from (f"    {network.detailed.objects[detail]}" for detail in details[:shown])
         if len(details) > shown:
             yield f"    ... and {len(details) - shown} more; --format json lists all"
@@ -150,7 +150,7 @@ def headline(outcome: Outcome) -> str:
 
 def costs_text(costs: Costs) -> str:
     """Give the measures of a tree in a few words."""
-    text = f"{_count(costs.units, 'unit')}, {_count(costs.inputs, 'input')}"
+    text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
     if costs.success is not None:
         text += f", success {success_text(costs.success)}"
     return text
@@ -162,7 +162,8 @@ def success_text(success: Fraction) -> str:
     return shown if Fraction(shown) == success else f"≈ {shown}"
 
 
-def _count(number: int, noun: str) -> str:
+def counted(number: int, noun: str) -> str:
+    """Give a number with its noun: ``1 unit``, ``2 units``."""
     return f"{number} {noun}" + ("" if number == 1 else "s")
 
 
@@ -201,7 +202,7 @@ def _details(network: Network, unit: int, shown: int = 5) -> Iterator[str]:
     if detailed is None:
         return
     details = network.stands_for[unit]
-    yield f"     stands for {_count(len(details), 'unit')} at level 3:"
+    yield f"     stands for {counted(len(details), 'unit')} at level 3:"
     for detail in details[:shown]:
         yield f"       {detail}    [{detailed.sources[detail][0]}]  {detailed.unit(detail)}"
     if len(details) > shown:
