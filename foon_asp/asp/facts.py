@@ -33,6 +33,18 @@ FACT_PREDICATES = {
     "exponent": 3,
     "seen": 3,
     "wanted": 2,
+    "for_sale": 2,
+    "second_choice": 1,
+    "found_list": 1,
+    "on_list": 2,
+    "constraint": 2,
+    "kept": 1,
+    "correction": 2,
+    "soft": 2,
+    "broken": 2,
+    "greatest_penalty": 1,
+    "given_tree": 0,
+    "in_tree": 1,
 }
 
 OBJECTIVE_TERMS = {
@@ -117,6 +129,47 @@ def write_seen(number: int, exponents: Mapping[int, int]) -> str:
 def write_wanted(exponents: Mapping[int, int]) -> str:
     """Ask for trees with exactly that product of rates."""
     return "".join(f"wanted({factor},{_check(exponent)}).\n" for factor, exponent in exponents.items())
+
+
+def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
+    """Say which object nodes can be bought at which price, a whole number, and which only if need be."""
+    facts = [f"for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
+    return "".join([*facts, *(f"second_choice({o}).\n" for o in second_choices)])
+
+
+def write_list(number: int, items: Iterable[int]) -> str:
+    """Give a shopping list that was found before."""
+    return f"found_list({number}).\n" + "".join(f"on_list({number},{o}).\n" for o in items)
+
+
+def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
+    """Say what it costs to drop each constraint, by number, and which are not dropped."""
+    facts = [f"constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
+    return "".join([*facts, *(f"kept({number}).\n" for number in kept)])
+
+
+def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
+    """Give sets of constraints, by number, each of which leaves a tree when it is dropped."""
+    return "".join(
+        f"correction({place},{number}).\n"
+        for place, correction in enumerate(corrections)
+        for number in correction
+    )
+
+
+def write_soft(weights: Mapping[int, int]) -> str:
+    """Give the weight of each soft constraint, by number."""
+    return "".join(f"soft({number},{_check(weight)}).\n" for number, weight in weights.items())
+
+
+def write_greatest_penalty(penalty: int) -> str:
+    """Bound the sum of the weights of what is broken."""
+    return f"greatest_penalty({_check(penalty)}).\n"
+
+
+def write_tree(units: Iterable[int]) -> str:
+    """Ask for a tree of exactly these units."""
+    return "given_tree.\n" + "".join(f"in_tree({unit}).\n" for unit in units)
 
 
 def quote(text: str) -> str:

@@ -1,6 +1,7 @@
 """One run of clingo over encodings and facts, with limits and without any claim of its own."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,13 +19,15 @@ class Run:
     ``units`` is the last (best) answer or ``None``, ``cost`` its cost vector as clingo reports it, which
     wraps at 32 bits. ``exhausted`` says that the search space was, so that
     the answer is optimal, or that there is none. ``lower`` holds the proved lower bound of each priority,
-    highest first, as far as known.
+    highest first, as far as known. ``atoms`` says for each predicate that was
+    asked for how many of its atoms in the answer begin with each number.
     """
 
     units: frozenset[int] | None = None
     cost: tuple[int, ...] = ()
     exhausted: bool = False
     lower: list[int] = field(default_factory=list)
+    atoms: dict[str, Counter[int]] = field(default_factory=dict)
     ground_seconds: float = 0.0
     solve_seconds: float = 0.0
 
@@ -54,10 +57,12 @@ def run(
     opt_mode: str = "opt",
     on_tree: Callable[[frozenset[int]], None] | None = None,
     on_bound: Callable[[list[int]], None] | None = None,
+    predicates: Sequence[str] = (),
 ) -> Run:
     """Ground the files and facts and search for the best answer.
 
-    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do). Raises
+    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
+    ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. Raises
     what :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
     """
     messages: list[str] = []
@@ -84,6 +89,7 @@ def run(
         try:
             result.units = _used(model)
             result.cost = tuple(model.cost)
+            result.atoms = {name: _numbers(model, name) for name in predicates}
             if on_tree:
                 on_tree(result.units)
         except UserError as error:
@@ -130,3 +136,8 @@ def _used(model: Model) -> frozenset[int]:
                 raise UserError(f"the encodings made {symbol}, expected use(U) with the number of a unit")
             units.add(argument.number)
     return frozenset(units)
+
+
+def _numbers(model: Model, name: str) -> Counter[int]:
+    atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.name == name and symbol.positive)
+    return Counter(symbol.arguments[0].number for symbol in atoms)

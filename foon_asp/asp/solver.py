@@ -131,7 +131,7 @@ class _Solver:
         return self._facts
 
     def _run(self, objectives: Sequence[Objective], extra: str = "", opt_mode: str = "opt") -> Run:
-        facts = self.facts() + write_objectives(objectives) + extra
+        facts = self.facts() + self.program.rules + write_objectives(objectives) + extra
         files = (*self.program.files, self.program.exact_success) if extra else self.program.files
         first = opt_mode == "opt" and not extra
         ended = run(

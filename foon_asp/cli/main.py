@@ -22,6 +22,8 @@ _VERBS = (
     "verify",
     "draw",
     "why-not",
+    "shopping-list",
+    "clash",
     "constraints",
     "facts",
     "stats",

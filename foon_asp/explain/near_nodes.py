@@ -72,4 +72,6 @@ def _named(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_Part]:
         else:
             yield from (("container", name) for name in sorted({r.object for r in node.relations}))
     else:
-        yield from (("relation", f"{relation.word} [{relation.object}]") for relation in sorted(node.relations))
+        yield from (
+            ("relation", f"{relation.word} [{relation.object}]") for relation in sorted(node.relations)
+        )

@@ -1,7 +1,7 @@
 """An outcome for people, for programs and as FOON text."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
@@ -177,8 +177,11 @@ def _bound_line(outcome: Outcome) -> str:
     return "proved so far: " + (", ".join(bounds) or "nothing")
 
 
-def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
-    """Number the units, and say of every input whether it is from the kitchen or from which step."""
+def steps(problem: Problem, units: tuple[int, ...], bought: Collection[int] = ()) -> Iterator[str]:
+    """Number the units, and say of every input whether it is from the kitchen or from which step.
+
+    ``bought`` are the items of the kitchen, by id, that were not there before.
+    """
     network = problem.network
     maker: dict[int, int] = {}
     for number, unit in enumerate(units, 1):
@@ -186,7 +189,7 @@ def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
         for o in network.inputs[unit]:
             origin = "implied"
             if o in problem.kitchen:
-                origin = "kitchen"
+                origin = "bought" if o in bought else "kitchen"
             elif o in maker:
                 origin = f"step {maker[o]}"
             yield f"       {network.objects[o]}  ({origin})"

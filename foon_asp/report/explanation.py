@@ -19,14 +19,19 @@ def explanation_text(explanation: Explanation) -> str:
     problem = explanation.problem
     roots = explanation.roots
     causes = [_causes(explanation, Cause.MISSING), _causes(explanation, Cause.CYCLE)]
-    lines = [*goal_lines(problem), f"no task tree exists ({problem.conditions}): {' and '.join(filter(None, causes))}"]
+    lines = [
+        *goal_lines(problem),
+        f"no task tree exists ({problem.conditions}): {' and '.join(filter(None, causes))}",
+    ]
     lines += ["", *_Tree(explanation).lines(), ""]
     shown = [root for root in roots if root.on_the_way][:_ROOTS]
     lines.append("in the way:")
     for root in shown:
         lines += _root_lines(explanation, root, numbers(explanation)[root.object])
     if len(roots) > len(shown):
-        lines.append(f"{counted(len(roots) - len(shown), 'more')} behind other units; --format json lists all")
+        lines.append(
+            f"{counted(len(roots) - len(shown), 'more')} behind other units; --format json lists all"
+        )
     return "\n".join(lines) + "\n"
 
 
@@ -65,7 +70,10 @@ def explanation_dict(explanation: Explanation) -> dict[str, object]:
             {
                 "object": str(objects[o]),
                 "makers": [
-                    {**unit_json(network, blocked.unit), "lacks": [str(objects[lack]) for lack in blocked.lacks]}
+                    {
+                        **unit_json(network, blocked.unit),
+                        "lacks": [str(objects[lack]) for lack in blocked.lacks],
+                    }
                     for blocked in makers
                 ],
             }

@@ -11,6 +11,7 @@ from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.object_list import ListedObject, read_object_list
+from foon_asp.text.price_list import Price, read_prices
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_node, write_unit, write_units
@@ -29,6 +30,7 @@ __all__ = [
     "InputError",
     "LineError",
     "ListedObject",
+    "Price",
     "Severity",
     "excerpt_with_caret",
     "find_data",
@@ -43,6 +45,7 @@ __all__ = [
     "read_data",
     "read_labels",
     "read_object_list",
+    "read_prices",
     "read_rates",
     "summarize",
     "write_node",
