@@ -64,7 +64,7 @@ def solve_soft(
     scale = None if problem.rates is None else problem_scale(problem, units)
     facts = write_facts(problem, units, scale, with_sources=True) + rules
 
-    def tell(units: frozenset[int] | tuple[int, ...] | None, outcome: Outcome) -> SoftOutcome:
+    def tell(units: tuple[int, ...] | None, outcome: Outcome) -> SoftOutcome:
         if units is None:
             return SoftOutcome(outcome, None, ())
         given = run(
@@ -83,6 +83,7 @@ def solve_soft(
         found = tuple(Broken(c, by_number[c.number], ways[c.number]) for c in constraints)
         return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
 
+    spent: dict[str, float] = {}
     least: int | None = None
     proved = True
     if all(reached.available[goal] for goal in problem.goals):
@@ -90,6 +91,7 @@ def solve_soft(
             program.files, facts + "optimize(soft,1).\n", program.arguments, deadline, predicates=("broken",)
         )
         proved = ended.exhausted
+        spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
             least = sum(by_number[number] * ways for number, ways in ended.atoms["broken"].items())
     bound = "" if least is None else write_greatest_penalty(least)
@@ -101,4 +103,5 @@ def solve_soft(
         raise BugError("the least penalty was lost")
     if not proved and outcome.status is Status.OPTIMAL:
         outcome = outcome._replace(status=Status.FEASIBLE, proof=None, bounds={})
+    outcome.seconds.update(spent)
     return tell(outcome.units, outcome)

@@ -132,10 +132,12 @@ def _solve_soft(
     if format_ == "json":
         click.echo(json.dumps(soft_dict(found), indent=2, ensure_ascii=False))
     else:
-        render = {"text": answer.outcome_text, "foon": answer.outcome_foon}[format_]
-        click.echo(render(outcome), nl=False)
-        for line in soft_lines(found):
-            click.echo(line, err=format_ != "text")
+        remarks = list(soft_lines(found))
+        if format_ == "text":
+            click.echo(answer.outcome_text(outcome, remarks), nl=False)
+        else:
+            click.echo(answer.outcome_foon(outcome), nl=False)
+            click.echo("\n".join([answer.headline(outcome), *remarks]), err=True)
     if outcome.status is Status.INFEASIBLE and format_ == "text":
         for line in answer.why_infeasible(problem, reach(problem).available):
             click.echo(line)

@@ -1,7 +1,7 @@
 """An outcome for people, for programs and as FOON text."""
 
 import json
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
@@ -94,10 +94,10 @@ def outcome_foon(outcome: Outcome) -> str:
     return write_units(map(outcome.problem.network.unit, outcome.units), comments)
 
 
-def outcome_text(outcome: Outcome) -> str:
-    """Give an outcome for people: what was proved, and the steps with where each input comes from."""
+def outcome_text(outcome: Outcome, remarks: Iterable[str] = ()) -> str:
+    """Give an outcome for people: what was proved, remarks, and the steps with where each input comes from."""
     problem = outcome.problem
-    lines = [*goal_lines(problem), headline(outcome)]
+    lines = [*goal_lines(problem), headline(outcome), *remarks]
     if outcome.status is Status.FEASIBLE:
         lines.append(_bound_line(outcome))
     if outcome.units is not None:
@@ -220,7 +220,8 @@ def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> It
     """
     network = problem.network
     if all(available[goal] for goal in problem.goals):
-        yield "without the constraints there is one: together they rule out every tree"
+        yield "without the constraints there is one: together they rule out every tree; foon-asp clash says which do"
+        return
     for goal in problem.goals:
         if available[goal]:
             continue
@@ -234,3 +235,4 @@ def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> It
             yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
         if len(producers) > shown:
             yield f"  ... and {len(producers) - shown} more units"
+    yield "foon-asp why-not says what is behind it, and foon-asp shopping-list what would help"

@@ -1,6 +1,5 @@
 """Why there is no tree, for people and for programs."""
 
-import json
 from collections.abc import Iterator, Sequence
 
 from foon_asp.explain.why_not import Blocked, Cause, Explanation, NearName, Root
@@ -80,11 +79,6 @@ def explanation_dict(explanation: Explanation) -> dict[str, object]:
             for o, makers in explanation.dead_ends.items()
         ],
     }
-
-
-def explanation_json(explanation: Explanation) -> str:
-    """Give :func:`explanation_dict` as JSON."""
-    return json.dumps(explanation_dict(explanation), indent=2, ensure_ascii=False) + "\n"
 
 
 def numbers(explanation: Explanation) -> dict[int, int]:
