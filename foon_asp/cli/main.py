@@ -24,6 +24,7 @@ _VERBS = (
     "why-not",
     "shopping-list",
     "clash",
+    "diff",
     "constraints",
     "facts",
     "stats",
