@@ -100,7 +100,7 @@ def constraint(seed: int, problem: Problem) -> tuple[str, list[str], oracle.Allo
             lambda t: sum(u.motion == motion for u in t) <= bound // 2,
         ),
         ("require_object", [f"required_object={label}"], lambda t: any(map(has, t))),
-        ("forbid_ingredient", [f"forbidden_ingredient={food}"], lambda t: no_food(t)),
+        ("forbid_ingredient", [f"forbidden_ingredient={food}"], no_food),
         ("require_ingredient", [f"required_ingredient={food}"], lambda t: any(map(holds, nodes_of(t)))),
         ("at_most_utensils", [f"max_utensils={bound // 2}"], lambda t: len(utensils(t)) <= bound // 2),
         ("least_rate", ["least_rate=250000"], lambda t: all(rates[u.motion] >= Fraction(1, 4) for u in t)),

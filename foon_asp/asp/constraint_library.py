@@ -22,7 +22,7 @@ class Parameter(NamedTuple):
 
 
 class LibraryConstraint(NamedTuple):
-    """One file of ``encodings/constraints``: the name it goes by, its title, what it demands, its parameters."""
+    """One file of ``encodings/constraints``: its name, its title, what it demands, its parameters."""
 
     name: str
     file: Path

@@ -1,6 +1,6 @@
 """The facts handed to clingo, as text."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import PurePath
 
@@ -43,7 +43,7 @@ FACT_PREDICATES = {
     "soft": 2,
     "broken": 2,
     "greatest_penalty": 1,
-    "given_tree": 0,
+    "tree_size": 1,
     "in_tree": 1,
 }
 
@@ -167,9 +167,9 @@ def write_greatest_penalty(penalty: int) -> str:
     return f"greatest_penalty({_check(penalty)}).\n"
 
 
-def write_tree(units: Iterable[int]) -> str:
+def write_tree(units: Collection[int]) -> str:
     """Ask for a tree of exactly these units."""
-    return "given_tree.\n" + "".join(f"in_tree({unit}).\n" for unit in units)
+    return f"tree_size({len(units)}).\n" + "".join(f"in_tree({unit}).\n" for unit in units)
 
 
 def quote(text: str) -> str:

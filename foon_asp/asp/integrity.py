@@ -32,9 +32,9 @@ def relax(
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
     """Number the integrity constraints of some files, from 1, and put all that they say in other words.
 
-    Without ``soft``, constraint number C holds unless ``dropped(C)`` does (``questions/clash.lp``). With it, it
-    is a rule for ``broken(C,Way)``, where ``Way`` has the values of its variables (``questions/soft.lp``). Other
-    rules stay as they are. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
+    Without ``soft``, constraint number C holds unless ``dropped(C)`` does (``questions/clash.lp``). With it,
+    it is a rule for ``broken(C,Way)``, where ``Way`` has the values of its variables (``questions/soft.lp``).
+    Other rules stay as they are. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
     """
     found: list[IntegrityConstraint] = []
     rules: list[str] = []

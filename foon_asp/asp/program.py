@@ -63,8 +63,9 @@ class Settings(NamedTuple):
 class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
-    ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates are compared exactly. ``own`` says
-    that every rule is ours, so that what the goals do not need cannot matter.
+    ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates
+    are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
+    matter.
     """
 
     files: tuple[Path, ...]

@@ -27,9 +27,9 @@ class Broken(NamedTuple):
 class SoftOutcome(NamedTuple):
     """An answer under soft constraints.
 
-    ``penalty`` is the sum of weight times ways over ``constraints``, for the tree of ``outcome``; ``None`` and
-    empty where there is no tree. An ``optimal`` outcome has the least penalty of all trees, and is the best
-    by the objectives among those with that penalty.
+    ``penalty`` is the sum of weight times ways over ``constraints``, for the tree of ``outcome``; ``None``
+    and empty where there is no tree. An ``optimal`` outcome has the least penalty of all trees, and is the
+    best by the objectives among those with that penalty.
     """
 
     outcome: Outcome
@@ -44,11 +44,11 @@ def solve_soft(
     weights: Mapping[Path, int],
     reporter: Reporter | None = None,
 ) -> SoftOutcome:
-    """Find the tree with the least penalty, and among those the best one by a lexicographic list of objectives.
+    """Find the tree with the least penalty, and among those the best by a lexicographic list of objectives.
 
-    ``weights`` are those of the files whose integrity constraints are soft; the constraints of ``settings`` are
-    hard. Each way in which a constraint is broken, by other values of the variables that it has as a whole,
-    costs its weight. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    ``weights`` are those of the files whose integrity constraints are soft; the constraints of ``settings``
+    are hard. Each way in which a constraint is broken, by other values of the variables that it has as a
+    whole, costs its weight. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     reporter = reporter or Reporter()
     began = time.monotonic()

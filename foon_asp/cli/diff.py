@@ -77,12 +77,13 @@ def _listed(
     if tree.units is None:
         click.echo(f"{file}: the answer has no tree ({tree.status})", err=True)
         return None
-    data = question.data
-    objects = data.network.objects
-    goals = tree.goals or tuple(objects[find_goal(name, data.network, data.goals)] for name in goals_named)
-    listed = [(unit_at_level(unit, data.network.level), source) for unit, source in tree.units]
+    data, network = question.data, question.data.network
+    objects = network.objects
+    goals = tree.goals or tuple(objects[find_goal(name, network, data.goals)] for name in goals_named)
+    listed = [(unit_at_level(unit, network.level), source) for unit, source in tree.units]
     kitchen = frozenset(objects[o] for o in data.kitchen)
-    return side(str(file), listed, goals, kitchen, ContainerRule(containers), data.utensils, data.rates)
+    rule = ContainerRule(containers)
+    return side(str(file), listed, goals, kitchen, rule, data.utensils, data.rates, network)
 
 
 def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
@@ -117,4 +118,4 @@ def _side(name: str, problem: Problem, units: tuple[int, ...]) -> Side:
     listed: Listed = [(network.unit(unit), network.sources[unit][0]) for unit in units]
     goals = [network.objects[goal] for goal in problem.goals]
     kitchen = frozenset(network.objects[o] for o in problem.kitchen)
-    return side(name, listed, goals, kitchen, problem.containers, problem.utensils, problem.rates)
+    return side(name, listed, goals, kitchen, problem.containers, problem.utensils, problem.rates, network)

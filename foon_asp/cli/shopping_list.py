@@ -53,11 +53,12 @@ def command(
     foon-asp shopping-list --goal 'hot cocoa' --goal omelet --prices prices.txt
 
     For sale is what no unit makes, and what has no state and holds at most one ingredient, unless it is a
-    product of some unit. The dish itself is proposed only when nothing else is left. A line of a price list is
-    an object node in one-line notation, or a label, then a tab and a price. Every list is proved to be the
+    product of some unit. The dish itself is proposed only when nothing else is left. A line of a price list
+    is an object node in one-line notation, or a label, then a tab and a price. Every list is proved to be the
     cheapest of those that do not hold all of one before it.
 
-    Exits with 0 when there is a list, proved; with 1 when no list helps, proved; with 3 when stopped at a limit.
+    Exits with 0 when there is a list, proved; with 1 when no list helps, proved; with 3 when stopped at a
+    limit.
     """
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]

@@ -21,7 +21,8 @@ def weighted_files(settings: Sequence[str], option: str) -> dict[Path, int]:
             raise UserError(f"found {option} {setting!r}, expected FILE.lp=WEIGHT")
         if not (weight.isascii() and weight.isdigit() and 1 <= int(weight) <= _GREATEST):
             raise UserError(
-                f"found the weight {weight!r} in {option} {setting!r}, expected a whole number from 1 to {_GREATEST}"
+                f"found the weight {weight!r} in {option} {setting!r}, "
+                f"expected a whole number from 1 to {_GREATEST}"
             )
         path = find_constraint(Path(file))
         if found.setdefault(path, int(weight)) != int(weight):

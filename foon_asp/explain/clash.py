@@ -21,9 +21,9 @@ class Clash(NamedTuple):
 
     ``constraints`` are all of them. ``tree_exists`` says whether there is a tree without any of them.
     ``smallest`` is a smallest set, by number of constraints, that cannot hold together; ``proved`` that it is
-    one. ``dropped`` is the cheapest set to drop so that the others leave a tree, by ``weights``, and ``outcome``
-    the best tree without them. Where the constraints do leave a tree both sets are empty, and ``outcome`` is the
-    answer. ``complete`` is false when a limit came before any of this was known.
+    one. ``dropped`` is the cheapest set to drop so that the others leave a tree, by ``weights``, and
+    ``outcome`` the best tree without them. Where the constraints do leave a tree both sets are empty, and
+    ``outcome`` is the answer. ``complete`` is false when a limit came before any of this was known.
     """
 
     problem: Problem
@@ -46,11 +46,11 @@ def find_clash(
 ) -> Clash:
     """Find a smallest clash and the cheapest constraints to drop.
 
-    Every rule without a head in the constraint files is one constraint; ``file_weights`` says what it costs to
-    drop one of a file, 1 where it says nothing. Other rules of the files always hold. The smallest clash is
-    found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS Extraction with
-    Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction known so far, until
-    it is a clash itself.
+    Every rule without a head in the constraint files is one constraint; ``file_weights`` says what it costs
+    to drop one of a file, 1 where it says nothing. Other rules of the files always hold. The smallest clash
+    is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS Extraction
+    with Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction known so far,
+    until it is a clash itself.
     """
     reporter = reporter or Reporter()
     began = time.monotonic()

@@ -5,14 +5,14 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Costs, needed_inputs
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 
 
 class Side(NamedTuple):
-    """One of two trees: its units in the order listed, each once, with place and needed inputs, and its costs.
+    """One of two trees: its units in the order listed, each once, with place and needs, and its costs.
 
     ``goals`` may be empty where they are not known. ``costs.success`` is ``None`` where a rate is not known.
     """
@@ -33,7 +33,7 @@ class Side(NamedTuple):
 
 
 class Parting(NamedTuple):
-    """An object node that both trees want and have from elsewhere: the unit that makes it in each, or ``None``."""
+    """An object node that both trees come to, and the unit that makes it in each, or ``None``."""
 
     object: ObjectNode
     left: FunctionalUnit | None
@@ -64,11 +64,15 @@ def side(
     rule: ContainerRule,
     utensils: frozenset[str],
     rates: Mapping[str, Fraction] | None,
+    network: Network | None = None,
 ) -> Side:
-    """Take a tree as one side of a difference; its units need not be those of any network."""
-    places = {unit: source for unit, source in reversed(listed)}
+    """Take a tree as one side of a difference; its units need not be those of any network.
+
+    Below level 3 the ``network`` says what its units stand for, and so what they need.
+    """
+    places = dict(reversed(listed))
     units = tuple(dict.fromkeys(unit for unit, _ in listed))
-    needs = {unit: needed_inputs(unit, rule, utensils) for unit in units}
+    needs = {unit: needed_inputs(unit, rule, utensils, network) for unit in units}
     known = rates is not None and all(unit.motion in rates for unit in units)
     costs = Costs(
         units=len(units),
@@ -85,8 +89,8 @@ def side(
 def difference(left: Side, right: Side) -> Difference:
     """Compare two trees as sets of units, and follow both back from the goals to where they part.
 
-    They part at an object node that both come to and have from elsewhere: from another unit, or one of them from
-    the kitchen. Where no goals are known, it is from the nodes that a tree makes and does not need.
+    They part at an object node that both come to and have from elsewhere: from another unit, or one of them
+    from the kitchen. Where no goals are known, it is from the nodes that a tree makes and does not need.
     """
     in_left, in_right = set(left.units), set(right.units)
     goals = left.goals + right.goals or (*_ends(left), *_ends(right))

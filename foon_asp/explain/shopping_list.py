@@ -37,7 +37,7 @@ class Offer(StrEnum):
 
 
 class ShoppingList(NamedTuple):
-    """Object nodes to add to the kitchen, by id, and what they cost: their number, or the sum of their prices.
+    """Object nodes to add to the kitchen, by id, and what they cost: their number or the sum of prices.
 
     ``proved`` says that no list is cheaper, among those that do not hold all of an earlier one.
     """
@@ -71,7 +71,7 @@ def shopping_list(
     most: int = 3,
     reporter: Reporter | None = None,
 ) -> Shopping:
-    """Find the cheapest lists, at most so many, and prove each: no other list that could stand there is cheaper.
+    """Find the cheapest lists, at most so many, and prove each: no list that could stand there is cheaper.
 
     Without ``prices`` (by object node id) every node counts one. Of lists that cost the same, one with fewer
     second choices (:meth:`Shop.is_second_choice`) comes first, then one with a smaller tree. The tree that
@@ -83,10 +83,12 @@ def shopping_list(
     shop = Shop(problem)
     deadline = Deadline(settings.time_limit)
     program = assemble(settings, reporter.warning)
-    for offer, wares in _offers(problem, shop, prices):
+    offers = _offers(problem, shop, prices)
+    lists: list[ShoppingList] = []
+    complete = True
+    while not lists and complete and (following := next(offers, None)) is not None:
+        offer, wares = following
         lists, complete = _lists(problem, shop, wares, program, deadline, most)
-        if lists or not complete:
-            break
     outcome = None
     if lists:
         stocked = replace(problem, kitchen=problem.kitchen.union(lists[0].items))

@@ -11,11 +11,11 @@ class Shop:
 
     For sale is a node that no unit makes (one that needs it only hands it on), and a node without any state
     that holds at most one ingredient, where what it is or holds is nobody's product. A *product* is a name
-    that some unit makes out of things that neither bear nor hold it: whipped cream, dough, lemon juice. States
-    are how a FOON says that something was done, so what has none is taken to be unprocessed.
+    that some unit makes out of things that neither bear nor hold it: whipped cream, dough, lemon juice.
+    States are how a FOON says that something was done, so what has none is taken to be unprocessed.
 
-    A goal is not for sale, nor is any node that bears or holds the name of the *dish*: the label of a goal (or,
-    where that is a utensil, the one ingredient in it), if that is a product.
+    A goal is not for sale, nor is any node that bears or holds the name of the *dish*: the label of a goal
+    (or, where that is a utensil, the one ingredient in it), if that is a product.
     """
 
     def __init__(self, problem: Problem) -> None:

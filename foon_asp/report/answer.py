@@ -95,7 +95,7 @@ def outcome_foon(outcome: Outcome) -> str:
 
 
 def outcome_text(outcome: Outcome, remarks: Iterable[str] = ()) -> str:
-    """Give an outcome for people: what was proved, remarks, and the steps with where each input comes from."""
+    """Give an outcome for people: what was proved, remarks, the steps with where each input comes from."""
     problem = outcome.problem
     lines = [*goal_lines(problem), headline(outcome), *remarks]
     if outcome.status is Status.FEASIBLE:
@@ -220,7 +220,8 @@ def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> It
     """
     network = problem.network
     if all(available[goal] for goal in problem.goals):
-        yield "without the constraints there is one: together they rule out every tree; foon-asp clash says which do"
+        yield "without the constraints there is one: together they rule out every tree"
+        yield "foon-asp clash says which do, and which to drop"
         return
     for goal in problem.goals:
         if available[goal]:

@@ -106,7 +106,7 @@ class _Tree:
         chosen: dict[int, None] = {}
         frontier = list(self.explanation.goals)
         while frontier and len(chosen) < _OBJECTS:
-            following = []
+            following: list[int] = []
             for o in frontier:
                 if o in chosen or o in self.roots or len(chosen) == _OBJECTS:
                     continue
@@ -196,7 +196,7 @@ def _units(problem: Problem, units: Sequence[int]) -> str:
 def _near_text(problem: Problem, near: NearName) -> str:
     kind = f"the {near.slip.kind} {near.slip.name!r} for {near.slip.other!r}"
     if near.object is None:
-        return f"a slip of the pen? the kitchen has {near.name}, which is no node of the network: {kind} ({near.place})"
+        return f"a slip of the pen? {near.place} has {near.name}, which is no node of the network: {kind}"
     return f"a slip of the pen? {_had(problem, near.object)}: {kind}"
 
 

@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
@@ -38,7 +38,7 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         raise UserError(f"{file}: expected an answer of foon-asp in JSON, but {_what(error)}") from None
 
 
-def _answer(file: Path) -> dict[str, list[dict[str, list[str]]]] | None:
+def _answer(file: Path) -> dict[str, Any] | None:
     """Give the object of an answer; of a shopping list that is the tree it makes possible."""
     if not file.is_file():
         raise UserError(f"{file}: no such file")
@@ -54,7 +54,7 @@ def _answer(file: Path) -> dict[str, list[dict[str, list[str]]]] | None:
     return value if isinstance(value, dict) and "units" in value else None
 
 
-def _unit(value: dict[str, list[str]]) -> tuple[FunctionalUnit, Source]:
+def _unit(value: dict[str, Any]) -> tuple[FunctionalUnit, Source]:
     inputs, outputs = (tuple(map(parse_node, value[key])) for key in ("inputs", "outputs"))
     place = value["source"][0]
     if not isinstance(value["motion"], str) or not isinstance(place, dict):

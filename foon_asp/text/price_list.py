@@ -14,7 +14,7 @@ _DECIMAL = re.compile(r"\d{1,9}(\.\d{1,6})?", re.ASCII)
 
 
 class Price(NamedTuple):
-    """One line of a price list; ``label_alone`` says that the node was given by its label and nothing else."""
+    """One line of a price list; ``label_alone`` says that it has nothing but the label of a node."""
 
     node: ObjectNode
     label_alone: bool
@@ -25,9 +25,10 @@ class Price(NamedTuple):
 def read_prices(file: Path) -> list[Price]:
     """Read ``node⇥price`` lines; blank lines and ``#`` comments are passed over.
 
-    A node is in one-line notation (``sugar; in [sugar jar]``) or a label alone (``sugar``); ``sugar;`` is the node
-    that is nothing but the label. A price is a decimal from 0, with up to nine digits before the point and six
-    behind it. Raises :class:`InputError` for a line of another form and for a node that is listed twice.
+    A node is in one-line notation (``sugar; in [sugar jar]``) or a label alone (``sugar``); ``sugar;`` is the
+    node that is nothing but the label. A price is a decimal from 0, with up to nine digits before the point
+    and six behind it. Raises :class:`InputError` for a line of another form and for a node that is listed
+    twice.
     """
     prices: list[Price] = []
     errors: list[Diagnostic] = []
