@@ -24,12 +24,13 @@ from foon_asp.text import Price
 class Offer(StrEnum):
     """What lists are made of. The first offer from which any list can be made is taken.
 
-    ``for sale``: what :class:`Shop` sells, without the dish. ``processed``: also nodes that can only be made
-    from each other. ``dish``: also what bears or holds the name of the dish. ``goal``: also the goals.
-    ``priced``: what a price list has, and nothing else.
+    ``for sale``: what :class:`Shop` sells, without the dish. ``cycle``: also nodes that can only be made from
+    each other. ``processed``: everything but the dish. ``dish``: everything but the goals. ``goal``:
+    everything. ``priced``: what a price list has, and nothing else.
     """
 
     FOR_SALE = "for sale"
+    CYCLE = "cycle"
     PROCESSED = "processed"
     DISH = "dish"
     GOAL = "goal"
@@ -133,10 +134,10 @@ def _offers(
     yield Offer.FOR_SALE, {o: one for o in sold if not shop.is_dish(o)}
     roots = why_not(problem).roots
     cycles = {o for root in roots if root.cause is Cause.CYCLE and root.cycle for o in root.cycle.nodes}
-    more = dict.fromkeys([*sold, *sorted(cycles)], one)
-    yield Offer.PROCESSED, {o: one for o in more if not shop.is_dish(o)}
-    yield Offer.DISH, {o: one for o in more if o not in problem.goals}
-    yield Offer.GOAL, {**more, **dict.fromkeys(problem.goals, one)}
+    yield Offer.CYCLE, {o: one for o in dict.fromkeys([*sold, *sorted(cycles)]) if not shop.is_dish(o)}
+    yield Offer.PROCESSED, {o: one for o in others if not shop.is_dish(o)}
+    yield Offer.DISH, {o: one for o in others if o not in problem.goals}
+    yield Offer.GOAL, dict.fromkeys(others, one)
 
 
 def _lists(

@@ -8,7 +8,8 @@ from foon_asp.explain.shopping_list import Offer, Shopping, ShoppingList
 from foon_asp.report.answer import counted, fraction_json, goal_lines, headline, outcome_dict, steps
 
 _REMARKS = {
-    Offer.PROCESSED: "nothing that one can buy would do: some of a cycle that feeds only itself has to be had",
+    Offer.CYCLE: "nothing that one can buy would do: some of a cycle that feeds only itself is needed",
+    Offer.PROCESSED: "nothing that one can buy would do, so the list has things that units would make",
     Offer.DISH: "nothing else is left, so the list has something that bears or holds the name of the dish",
     Offer.GOAL: "nothing else is left but to buy what was asked for",
 }
