@@ -89,15 +89,12 @@ def why_not(problem: Problem, kitchen_items: Sequence[ListedObject] = ()) -> Exp
     goals = tuple(goal for goal in problem.goals if not available[goal])
     makers = _dead_ends(problem, goals, available)
     cycles: list[DeadCycle] = []
-    things = _things_more(makers, ())
+    things, easiest = _things_more(makers, ())
     while len(things) < len(makers):  # the others wait for each other, also with all that is missing at hand
         cycles += _cycles(problem, makers.keys() - things)
-        things = _things_more(makers, [node for cycle in cycles for node in cycle.nodes])
+        things, easiest = _things_more(makers, [node for cycle in cycles for node in cycle.nodes])
     cycle_of = {node: cycle for cycle in cycles for node in cycle.nodes}
-    ordered = {
-        o: tuple(sorted(blocked, key=lambda b: (sum(things[lack] for lack in b.lacks), b.unit)))
-        for o, blocked in makers.items()
-    }
+    ordered = {o: _in_order(found, things, easiest.get(o)) for o, found in makers.items()}
     way = _way(goals, ordered, cycle_of)
     users: dict[int, list[int]] = {}
     for blocked in {b.unit: b for found in ordered.values() for b in found}.values():
@@ -109,10 +106,10 @@ def why_not(problem: Problem, kitchen_items: Sequence[ListedObject] = ()) -> Exp
         if not found
     ]
     for cycle in cycles:
-        entered = next((step for step, _ in cycle.steps if step in way), None)
-        node = cycle.steps[0][0] if entered is None else entered
+        entered = [o for o, _ in cycle.steps if o in way] + sorted(way & cycle.nodes)
+        node = entered[0] if entered else cycle.steps[0][0]
         stops = {unit for o in cycle.nodes for unit in users.get(o, ())}
-        roots.append(Root(node, Cause.CYCLE, tuple(sorted(stops)), entered is not None, cycle))
+        roots.append(Root(node, Cause.CYCLE, tuple(sorted(stops)), bool(entered), cycle))
     roots.sort(key=lambda root: not root.on_the_way)
     spellings = _Spellings(problem, kitchen_items, available)
     return Explanation(problem, goals, ordered, tuple(map(spellings.look_up, roots)), available)
@@ -138,18 +135,28 @@ def _dead_ends(
     return makers
 
 
+def _in_order(found: tuple[Blocked, ...], things: dict[int, int], easiest: int | None) -> tuple[Blocked, ...]:
+    """Put the easiest unit first, and then those that take the fewest things more."""
+    return tuple(
+        sorted(found, key=lambda b: (b.unit != easiest, sum(things[lack] for lack in b.lacks), b.unit))
+    )
+
+
 def _cycles(problem: Problem, waiting: Collection[int]) -> list[DeadCycle]:
     """Find sets of nodes that can only be made from each other, among those given; all else is at hand."""
     others = [o for o in range(len(problem.network.objects)) if o not in waiting]
     return dead_cycles(replace(problem.network, inputs=problem.needs), others)
 
 
-def _things_more(makers: dict[int, tuple[Blocked, ...]], in_cycles: Collection[int]) -> dict[int, int]:
+def _things_more(
+    makers: dict[int, tuple[Blocked, ...]], in_cycles: Collection[int]
+) -> tuple[dict[int, int], dict[int, int]]:
     """Estimate for each dead end how many things it takes, a shared one counted each time it is needed.
 
     A missing node and a node of a cycle are one thing, others as many as the unit that takes the fewest
     (Knuth, A generalization of Dijkstra's algorithm, 1977). What waits for itself, and is not
-    ``in_cycles``, is left out.
+    ``in_cycles``, is left out. Beside the numbers is the unit that takes the fewest; following these never
+    leads in a circle.
     """
     lacking = {blocked.unit: len(blocked.lacks) for found in makers.values() for blocked in found}
     made_by: dict[int, list[int]] = {}
@@ -162,21 +169,24 @@ def _things_more(makers: dict[int, tuple[Blocked, ...]], in_cycles: Collection[i
             users.setdefault(lack, []).append(blocked.unit)
     sums = dict.fromkeys(lacking, 0)
     settled: dict[int, int] = {}
-    queue = [(1, o) for o, found in makers.items() if not found]
-    queue += [(1, o) for o in in_cycles if o in makers]
+    easiest: dict[int, int] = {}
+    queue = [(1, -1, o) for o, found in makers.items() if not found]
+    queue += [(1, -1, o) for o in in_cycles if o in makers]
     heapq.heapify(queue)
     while queue:
-        count, o = heapq.heappop(queue)
+        count, maker, o = heapq.heappop(queue)
         if o in settled:
             continue
         settled[o] = count
+        if maker >= 0:
+            easiest[o] = maker
         for unit in users.get(o, ()):
             sums[unit] += count
             lacking[unit] -= 1
             if not lacking[unit]:
                 for made in made_by[unit]:
-                    heapq.heappush(queue, (sums[unit], made))
-    return settled
+                    heapq.heappush(queue, (sums[unit], unit, made))
+    return settled, easiest
 
 
 def _way(

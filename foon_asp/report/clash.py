@@ -26,13 +26,15 @@ def clash_lines(clash: Clash) -> Iterator[str]:
         return
     number = counted(len(clash.constraints), "constraint")
     if not clash.dropped:
-        yield f"no clash: the {number} can hold together ({rule})"
+        yield f"no clash: the {number} can hold{' together' * (len(clash.constraints) > 1)} ({rule})"
         if clash.outcome is not None:
             yield headline(clash.outcome)
         return
     if clash.proved:
         size = len(clash.smallest)
-        if size == 1:
+        if len(clash.constraints) == 1:
+            yield f"1 constraint leaves no task tree: proved ({rule})"
+        elif size == 1:
             yield f"1 of the {number} leaves no task tree by itself: proved ({rule})"
         else:
             yield f"{size} of the {number} cannot hold together, and no fewer do not: proved ({rule})"
