@@ -12,7 +12,7 @@ from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.program import Settings, assemble, find_constraint
 from foon_asp.asp.search import Deadline, run
 from foon_asp.asp.solver import Reporter, solve
-from foon_asp.errors import BugError
+from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Objective, Problem, reach
 
 
@@ -51,6 +51,9 @@ def solve_soft(
     whole, costs its weight. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     reporter = reporter or Reporter()
+    both = set(map(find_constraint, settings.constraints)) & set(map(find_constraint, weights))
+    if both:
+        raise UserError(f"{min(both)} is named as a constraint and as a soft one; leave one of them out")
     began = time.monotonic()
     deadline = Deadline(settings.time_limit)
     constraints, relaxed = relax(tuple(weights), settings.constants, soft=True)
