@@ -209,6 +209,25 @@ def test_clash_where_there_is_no_tree_at_all(cli: Cli, two_files: tuple[Path, Pa
     assert cli("clash", "--goal", "ice", "--constraint", two_files[0], "--time-limit", "0").code == 3
 
 
+def test_faults_keep_their_places(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "mine.lp"
+    file.write_text("% first\n:- use(U), not motion(U,M).\n")
+    for words in (["clash", "--constraint", file], ["solve", "--soft", f"{file}=1"]):
+        ran = cli(*words, "--goal", "ice")
+        assert (ran.code, ran.out) == (2, "")
+        assert "mine.lp:2:25: error: the variable 'M' is unsafe" in ran.err
+    file.write_text("#script (python)\n#end.\n:- use(3).\n")
+    assert "mine.lp:1:1: error: found #script" in cli("clash", "--goal", "ice", "--constraint", file).err
+
+
+def test_other_rules_always_hold(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "mine.lp"
+    file.write_text("never :- not never.\n:- use(3).\n")
+    ran = cli("clash", "--goal", "ice", "--constraint", file)
+    assert ran.code == 1
+    assert "no task tree is left whatever is dropped" in ran.out
+
+
 def test_soft_constraints(cli: Cli, two_files: tuple[Path, Path]) -> None:
     one, two = two_files
     words = ["solve", "--goal", "whipped cream", "--soft", f"{one}=3", "--soft", f"{two}=2"]

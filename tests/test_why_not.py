@@ -198,6 +198,7 @@ def test_exit_codes(cli: Cli) -> None:
     holds = cli("why-not", "--goal", "ice", "--constraint", "at_most_units", "-c", "max_units=2")
     assert holds.code == 0
     assert "no clash" in holds.out
+    assert "there is a task tree" in cli("why-not", "--goal", "ice", "--encodings", "by_need").out
 
 
 def test_the_text_is_a_small_tree(cli: Cli, universal: Path) -> None:

@@ -4,9 +4,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from clingo import Control
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 
-from foon_asp.asp.encoding import read_encoding
+from foon_asp.asp.encoding import fault, read_encoding, refuse_scripts
 from foon_asp.asp.program import Relaxed, find_constraint
 from foon_asp.network import Source
 from foon_asp.resources import encodings_folder
@@ -40,7 +41,7 @@ def relax(
     rules: list[str] = []
     paths = tuple(dict.fromkeys(find_constraint(file) for file in files))
     for path in paths:
-        read_encoding(path)  # for its errors, which have places
+        _look_over(path)
         statements: list[AST] = []
         parse_files([str(path)], statements.append)
         for statement in statements:
@@ -56,6 +57,18 @@ def relax(
             rules.append(_broken(statement, number) if soft else _unless_dropped(statement, number))
     encoding = encodings_folder() / "questions" / ("soft.lp" if soft else "clash.lp")
     return tuple(found), Relaxed(paths, "".join(f"{rule}\n" for rule in rules), encoding)
+
+
+def _look_over(path: Path) -> None:
+    """Raise what is wrong with a file while it still has its places: in other words it is only text."""
+    refuse_scripts([read_encoding(path)])
+    messages: list[str] = []
+    try:
+        control = Control(logger=lambda _, text: messages.append(text), message_limit=1000)
+        control.load(str(path))
+        control.ground([("base", [])])  # without facts, for unsafe variables alone
+    except RuntimeError as error:
+        raise fault(messages, str(error)) from None
 
 
 def _is_constraint(statement: AST) -> bool:

@@ -65,7 +65,7 @@ def command(
     with Progress() as progress:
         clash = find_clash(problem, chosen, settings, of_file, progress)
     click.echo({"text": clash_text, "json": clash_json}[format_](clash), nl=False)
-    if format_ == "text" and not clash.tree_exists:
+    if format_ == "text" and not clash.makeable:
         click.echo("foon-asp why-not says why")
     return code_of(clash)
 

@@ -19,15 +19,17 @@ from foon_asp.resources import encodings_folder
 class Clash(NamedTuple):
     """Whether the constraints of a question leave a tree, and if not, why.
 
-    ``constraints`` are all of them. ``tree_exists`` says whether there is a tree without any of them.
-    ``smallest`` is a smallest set, by number of constraints, that cannot hold together; ``proved`` that it is
-    one. ``dropped`` is the cheapest set to drop so that the others leave a tree, by ``weights``, and
-    ``outcome`` the best tree without them. Where the constraints do leave a tree both sets are empty, and
-    ``outcome`` is the answer. ``complete`` is false when a limit came before any of this was known.
+    ``constraints`` are all of them; ``makeable`` says whether the goals can be made at all. ``tree_exists``
+    says whether there is a tree without any of them. ``smallest`` is a smallest set, by number of
+    constraints, that cannot hold together; ``proved`` that it is one. ``dropped`` is the cheapest set to drop
+    so that the others leave a tree, by ``weights``, and ``outcome`` the best tree without them. Where the
+    constraints do leave a tree both sets are empty, and ``outcome`` is the answer. ``complete`` is false when
+    a limit came before any of this was known.
     """
 
     problem: Problem
     constraints: tuple[IntegrityConstraint, ...]
+    makeable: bool
     weights: Mapping[int, int]
     tree_exists: bool
     smallest: tuple[IntegrityConstraint, ...]
@@ -63,6 +65,9 @@ def find_clash(
     program = assemble(settings, reporter.warning)
     blame = (encodings_folder() / "questions" / "blame.lp",)
 
+    reached = reach(problem)
+    makeable = all(reached.available[goal] for goal in problem.goals)
+
     def answer(
         tree_exists: bool = True,
         smallest: Sequence[int] = (),
@@ -73,11 +78,19 @@ def find_clash(
     ) -> Clash:
         sets = (tuple(by_number[number] for number in sorted(part)) for part in (smallest, dropped))
         return Clash(
-            problem, constraints, weights, tree_exists, next(sets), proved, next(sets), outcome, complete
+            problem,
+            constraints,
+            makeable,
+            weights,
+            tree_exists,
+            next(sets),
+            proved,
+            next(sets),
+            outcome,
+            complete,
         )
 
-    reached = reach(problem)
-    if not all(reached.available[goal] for goal in problem.goals):
+    if not makeable:
         return answer(tree_exists=False)
     units = tuple(sorted(reached.units))
     scale = None if problem.rates is None else problem_scale(problem, units)

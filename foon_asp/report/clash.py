@@ -18,6 +18,10 @@ def clash_text(clash: Clash) -> str:
 def clash_lines(clash: Clash) -> Iterator[str]:
     """Give the same without the goals."""
     rule = clash.problem.conditions
+    if not clash.tree_exists and clash.makeable:
+        yield f"no task tree is left whatever is dropped: proved ({rule})"
+        yield "other rules of the files rule it out"
+        return
     if not clash.tree_exists:
         yield f"no task tree exists even without the constraints: proved ({rule})"
         return
@@ -25,6 +29,9 @@ def clash_lines(clash: Clash) -> Iterator[str]:
         yield f"unknown: stopped at a limit before it was known whether the constraints clash ({rule})"
         return
     number = counted(len(clash.constraints), "constraint")
+    if not clash.constraints:
+        yield f"there is a task tree ({rule}); foon-asp solve finds the best"
+        return
     if not clash.dropped:
         yield f"no clash: the {number} can hold{' together' * (len(clash.constraints) > 1)} ({rule})"
         if clash.outcome is not None:
