@@ -32,6 +32,18 @@ _RESERVED = (
 )
 
 
+class Relaxed(NamedTuple):
+    """Constraint files that are loaded in other words.
+
+    ``files`` are looked over like other constraints, but ``rules`` stand in for what they say, together with
+    ``encoding``, one of ours (``encodings/questions``).
+    """
+
+    files: tuple[Path, ...]
+    rules: str
+    encoding: Path
+
+
 class Settings(NamedTuple):
     """How to solve, and under which constraints.
 
@@ -39,6 +51,7 @@ class Settings(NamedTuple):
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
     interrupted. ``reductions`` come before the search, unless there are constraints or other encodings.
+    ``relaxed`` are constraints in other words.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -47,19 +60,22 @@ class Settings(NamedTuple):
     clingo_options: tuple[str, ...] = ()
     time_limit: float | None = None
     reductions: frozenset[Reduction] = ALL
+    relaxed: Relaxed | None = None
 
 
 class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
-    ``exact_success`` is loaded beside ``files`` when products of rates are compared exactly. ``own`` says
-    that every rule is ours, so that what the goals do not need cannot matter.
+    ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates
+    are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
+    matter.
     """
 
     files: tuple[Path, ...]
     exact_success: Path
     arguments: tuple[str, ...]
     own: bool
+    rules: str = ""
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
@@ -72,12 +88,18 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     folder = _find_encodings(settings.encodings, ours)
     base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
     added = tuple(dict.fromkeys(find_constraint(path) for path in settings.constraints))
+    relaxed = settings.relaxed
+    loaded = added
+    if relaxed is not None:
+        loaded = (*(file for file in added if file not in relaxed.files), relaxed.encoding)
+        added = tuple(dict.fromkeys((*added, *relaxed.files)))
     constants: list[str] = []
     if added or settings.encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
 
-        parsed = [encoding.read_encoding(file) for file in base]
+        ours_too = () if relaxed is None else (relaxed.encoding,)
+        parsed = [encoding.read_encoding(file) for file in (*base, *ours_too)]
         extra = [encoding.read_encoding(file) for file in added]
         for diagnostic in encoding.check_added(extra, parsed):
             warn(str(diagnostic))
@@ -85,10 +107,11 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
     return Program(
-        (*base, *added),
+        (*base, *loaded),
         ours / _EXACT_SUCCESS,
         (*constants, *_clingo_options(settings.clingo_options)),
         own=not added and settings.encodings is None,
+        rules="" if relaxed is None else relaxed.rules,
     )
 
 

@@ -1,6 +1,7 @@
 """One run of clingo over encodings and facts, with limits and without any claim of its own."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -31,10 +32,12 @@ def run(
     opt_mode: str = "opt",
     on_tree: Callable[[frozenset[int]], None] | None = None,
     on_bound: Callable[[list[int]], None] | None = None,
+    predicates: Sequence[str] = (),
 ) -> Run:
     """Ground the files and facts and search for the best answer.
 
-    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do). Raises
+    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
+    ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. Raises
     what :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
     """
     messages: list[str] = []
@@ -61,6 +64,7 @@ def run(
         try:
             result.units = _used(model)
             result.cost = tuple(model.cost)
+            result.atoms = {name: _numbers(model, name) for name in predicates}
             if on_tree:
                 on_tree(result.units)
         except UserError as error:
@@ -107,3 +111,8 @@ def _used(model: Model) -> frozenset[int]:
                 raise UserError(f"the encodings made {symbol}, expected use(U) with the number of a unit")
             units.add(argument.number)
     return frozenset(units)
+
+
+def _numbers(model: Model, name: str) -> Counter[int]:
+    atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.name == name and symbol.positive)
+    return Counter(symbol.arguments[0].number for symbol in atoms)

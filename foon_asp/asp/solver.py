@@ -179,7 +179,7 @@ class _Solver:
             began = time.perf_counter()
             if self.problem.rates is not None:
                 self.scale = problem_scale(self.problem, self.units)
-            self._facts = write_facts(self.problem, self.units, self.scale)
+            self._facts = write_facts(self.problem, self.units, self.scale, with_sources=not self.program.own)
             self._spent("facts", began)
         return self._facts
 
@@ -188,7 +188,7 @@ class _Solver:
     ) -> Run:
         from foon_asp.asp.search import run  # noqa: PLC0415 (slow to import, and often there is nothing left)
 
-        facts = self.facts() + write_objectives(objectives) + extra
+        facts = self.facts() + self.program.rules + write_objectives(objectives) + extra
         files = (*self.program.files, self.program.exact_success) if extra else self.program.files
         ended = run(
             files,
