@@ -15,6 +15,8 @@ def is_store(file: Path) -> bool:
     """Whether a path is no text but a store: it is named like one, or begins like any database."""
     if file.suffix == STORE_SUFFIX and not file.is_dir():
         return True
+    if not file.is_file():  # a pipe can be read once only
+        return False
     try:
         with file.open("rb") as opened:
             return opened.read(len(STORE_MAGIC)) == STORE_MAGIC
