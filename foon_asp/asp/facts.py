@@ -45,6 +45,10 @@ FACT_PREDICATES = {
     "greatest_penalty": 1,
     "tree_size": 1,
     "in_tree": 1,
+    "avoid": 2,
+    "tree": 1,
+    "distance": 3,
+    "chosen_trees": 1,
 }
 
 OBJECTIVE_TERMS = {
@@ -172,6 +176,22 @@ def write_greatest_penalty(penalty: int) -> str:
 def write_tree(units: Collection[int]) -> str:
     """Ask for a tree of exactly these units."""
     return f"tree_size({len(units)}).\n" + "".join(f"in_tree({unit}).\n" for unit in units)
+
+
+def write_avoided(number: int, units: Iterable[int]) -> str:
+    """Rule out a tree, by the ids of its units in the whole network, and all that hold it."""
+    return "".join(f"avoid({number},{_check(unit)}).\n" for unit in units)
+
+
+def write_distances(trees: Sequence[Collection[int]], chosen: int) -> str:
+    """Ask for so many of some trees, given by their units."""
+    sets = list(map(frozenset, trees))
+    facts = [f"chosen_trees({chosen}).", *(f"tree({number})." for number in range(len(sets)))]
+    for number, one in enumerate(sets):
+        facts += [
+            f"distance({number},{other},{len(one ^ sets[other])})." for other in range(number + 1, len(sets))
+        ]
+    return "\n".join(facts) + "\n"
 
 
 def quote(text: str) -> str:
