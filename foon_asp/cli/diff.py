@@ -102,7 +102,7 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     containers = asked.pop("containers")
     settings = Settings(
         *(asked.pop(n) for n in ("constraints", "encodings", "constants", "clingo_options", "time_limit")),
-        parse_reductions(asked.pop("reductions")),
+        reductions=parse_reductions(asked.pop("reductions")),
     )
     question = read_question(**asked)
     problem = question.problem(question.goals(goals), containers, everything=True)
