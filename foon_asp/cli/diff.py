@@ -100,10 +100,9 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     asked.pop("format_")
     goals, objectives = asked.pop("goals_named"), parse_objectives(asked.pop("objectives"))
     containers = asked.pop("containers")
-    settings = Settings(
-        *(asked.pop(n) for n in ("constraints", "encodings", "constants", "clingo_options", "time_limit")),
-        reductions=parse_reductions(asked.pop("reductions")),
-    )
+    names = ("constraints", "encodings", "constants", "clingo_options", "time_limit")
+    reductions = parse_reductions(asked.pop("reductions"))
+    settings = Settings(*map(asked.pop, names))._replace(reductions=reductions)
     question = read_question(**asked)
     problem = question.problem(question.goals(goals), containers, everything=True)
     with Progress() as progress:
