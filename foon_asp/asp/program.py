@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
@@ -37,7 +38,7 @@ class Settings(NamedTuple):
     ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
-    interrupted.
+    interrupted. ``reductions`` come before the search, unless there are constraints or other encodings.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -45,6 +46,7 @@ class Settings(NamedTuple):
     constants: tuple[str, ...] = ()
     clingo_options: tuple[str, ...] = ()
     time_limit: float | None = None
+    reductions: frozenset[Reduction] = ALL
 
 
 class Program(NamedTuple):

@@ -12,6 +12,7 @@ from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives, reach
+from foon_asp.reduce import Reduction, parse_reductions
 from foon_asp.report import answer
 from foon_asp.report.certified import certificate_lines
 
@@ -23,6 +24,14 @@ from foon_asp.report.certified import certificate_lines
 @options.constraint_options
 @options.constant_option
 @options.time_limit_option
+@click.option(
+    "--reduce",
+    "reductions",
+    default="all",
+    show_default=True,
+    metavar="all|safe|none|LIST",
+    help=f"What comes before the search; safe keeps every optimal tree. LIST of: {', '.join(Reduction)}.",
+)
 @click.option(
     "--certificate",
     "certificate_file",
@@ -46,6 +55,7 @@ def command(
     encodings: Path | None,
     constants: tuple[str, ...],
     time_limit: float | None,
+    reductions: str,
     certificate_file: Path | None,
     cross_check: bool,
     format_: str,
@@ -67,7 +77,9 @@ def command(
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
     problem = question.problem(question.goals(goals_named), containers)
-    settings = Settings(constraints, encodings, constants, clingo_options, time_limit)
+    settings = Settings(
+        constraints, encodings, constants, clingo_options, time_limit, parse_reductions(reductions)
+    )
     expired = expiry(time_limit)
     covered = checkable(settings) if cross_check else None
     with Progress() as progress:

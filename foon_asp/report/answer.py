@@ -69,7 +69,7 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
         "status": str(outcome.status),
         "proof": None if outcome.proof is None else str(outcome.proof),
         "proof_by_objective": {
-            str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else Proof.SOLVER)
+            str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else outcome.proof)
             for objective in levels(outcome.objectives)
             if outcome.status is Status.OPTIMAL
         },
