@@ -39,6 +39,7 @@ def best_left(problem: Problem, units: tuple[int, ...], names: list[str]) -> obj
 def _sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Have small networks treated as large ones are."""
     if request.param != "all at once":
+        monkeypatch.setattr(reduction, "_LARGE", 0)
         monkeypatch.setattr(reduction, "_FIRST", 1)
     if request.param == "no searches left out":
         monkeypatch.setattr(reduction, "_EASY", 0)

@@ -12,14 +12,16 @@ from foon_asp.reduce.dominance import undominated
 from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
 from foon_asp.reduce.forced import beside_forced
 from foon_asp.reduce.graph import Graph, graph_of
+from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
 from foon_asp.reduce.upper_bound import improved, without_spare
 
+_LARGE = 40_000  # actions from which on it pays not to look at all of them
 _FIRST = 4000  # actions nearest to the goals, among which a tree is looked for before all others count
 _MANY = 2000  # actions among which better trees are looked for
 _EASY = 600  # actions that clingo chooses from faster than better trees are looked for here
-_ROUNDS = 12  # of cuts, trees and what they leave
+_ROUNDS = 24  # of cuts, trees and what they leave
 
 
 class Reduced(NamedTuple):
@@ -115,19 +117,17 @@ class _Reducer:
         dear objects are, or ``None`` where that does not help.
         """
         graph = self.graph
-        number = _FIRST
-        while self.reductions & {Reduction.BOUNDS, Reduction.DEAR} and 4 * number < len(graph.needs):
-            everything = range(len(graph.needs))
-            few = near(graph, everything, self.coarse, sys.maxsize, most=number)
-            if len(few) < number:  # that was all, and not much
-                break
-            made = derive(graph, few, self.coarse, added=False)
-            tree = made.tree(graph, graph.goals)
-            if tree is not None:
-                self.left, self.tree = everything, tree
-                return made.cost
-            number *= 8
-        return None
+        size = len(graph.needs)
+        if not self.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= _LARGE:
+            return None
+        everything = range(size)
+        few = near(graph, everything, self.coarse, sys.maxsize, most=_FIRST)
+        found = narrow(graph, few, self.coarse, size // 4) if len(few) >= _FIRST else None
+        if found is None:
+            return None
+        made, self.tree = found
+        self.left = everything
+        return made.cost
 
     def _whole(self) -> dict[int, int] | None:
         """Leave all that can be made and that the goals can need; gives how dear objects are.
@@ -152,10 +152,11 @@ class _Reducer:
             self.costs = costs = ExactCosts(self.problem, self.objectives, self.left)
         except TooFineError:
             costs = None
+        thorough = False  # as a last resort
         for _ in range(_ROUNDS):
             before = len(self.left), self.tree
             if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
-                if self._bound(costs, guide or {}):
+                if self._bound(costs, guide or {}, thorough):
                     return True
                 self._drop_dear(costs)
             if self.expired():
@@ -164,14 +165,17 @@ class _Reducer:
                 self._whole()
             if costs is not None and Reduction.DOMINATED in self.reductions:
                 self.left = undominated(self.graph, self.left, costs)
-            if Reduction.FORCED in self.reductions and len(self.left) <= _MANY:
+            changed = (len(self.left), self.tree) != before
+            if not changed and Reduction.FORCED in self.reductions and len(self.left) <= _MANY:
                 self.left = beside_forced(self.graph, self.left)
-            if (len(self.left), self.tree) == before:
+                changed = len(self.left) < before[0]
+            if not changed and (thorough or len(self.left) <= _EASY):
                 break
+            thorough = not changed
             guide = derive(self.graph, self.left, costs or self.coarse, added=False).cost
         return False
 
-    def _bound(self, costs: ExactCosts, guide: dict[int, int]) -> bool:
+    def _bound(self, costs: ExactCosts, guide: dict[int, int], thorough: bool) -> bool:
         """Find cuts, and better trees near what they leave; whether bounds meet."""
         searched = Reduction.BOUNDS in self.reductions
         self.cuts = cuts = landmark_cuts(self.graph, self.graph.goals, self.left, costs, guide, self.expired)
@@ -187,9 +191,7 @@ class _Reducer:
             return cuts.left[action] if action in cuts.left else costs(action)
 
         few = near(self.graph, self.left, rest, total - cuts.bound, most=_MANY)
-        better = improved(
-            self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough=len(few) > _EASY
-        )
+        better = improved(self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough)
         if better is not self.tree:
             self.tree = better
             self.listener.tree(self._units(better))

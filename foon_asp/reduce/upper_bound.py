@@ -10,19 +10,22 @@ def without_spare(graph: Graph, tree: Iterable[int], cost: Callable[[int], int])
     """Leave out actions one by one, dear ones first, as long as the others still make the goals."""
     left = set(tree)
     left = derive(graph, left, lambda _: 1, added=False).tree(graph, graph.goals) or left
+    needed: set[int] = set()  # and needed in every smaller tree as well
     again = True
     while again:
         again = False
-        for action in _replaceable(graph, left, cost):
-            if action in left:
+        for action in replaceable(graph, left, cost):
+            if action in left and action not in needed:
                 smaller = derive(graph, left - {action}, lambda _: 1, added=False).tree(graph, graph.goals)
-                if smaller is not None:
+                if smaller is None:
+                    needed.add(action)
+                else:
                     left = smaller
                     again = True
     return left
 
 
-def _replaceable(graph: Graph, tree: Collection[int], cost: Callable[[int], int]) -> list[int]:
+def replaceable(graph: Graph, tree: Collection[int], cost: Callable[[int], int]) -> list[int]:
     """Give the actions, dear ones first, all of whose outputs in use another action of the tree gives, too.
 
     As long as an action can be left out there is one among these: the last, in an order that executes, of
@@ -59,6 +62,11 @@ def improved(
     def offer(found: set[int] | None) -> bool:
         nonlocal best, total
         if found is None:
+            return False
+        spare = replaceable(
+            graph, found, cost
+        )  # without these and what only they need is the least it can cost
+        if not spare and sum(map(cost, found)) >= total:
             return False
         slim = without_spare(graph, found, cost)
         price = sum(map(cost, slim))
