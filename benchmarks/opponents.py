@@ -33,6 +33,7 @@ from contest.clingo_plain import ready as clingo_ready
 from contest.engines import ENGINES, Engine
 from contest.instance import instance_of, raw_units
 from contest.page import put, table
+from contest.plot import draw_ratios
 from contest.ratio import Figure, median, ratio
 from contest.trial import End, Trial, Work, attempt
 from generate import Family, generate
@@ -77,6 +78,7 @@ class Row(NamedTuple):
     status: str
     cost: str
     bound: str
+    limit: float
 
     @property
     def time(self) -> Figure:
@@ -126,11 +128,24 @@ def questions(options: argparse.Namespace) -> Iterator[list[Question]]:
         yield found
 
 
+def unshare(problem: Problem) -> None:
+    """Touch what a forked process shares with its parent, so that no clock counts the copying of pages.
+
+    Looking at a number counts a reference to it, which is a write.
+    """
+    network = problem.network
+    for lists in (problem.needs, network.inputs, network.outputs, network.producers, [network.motions]):
+        for members in lists:
+            for _ in members:
+                pass
+
+
 def our_work(question: Question, limit: float) -> Work:
     """Answer a question as the program does."""
 
     def work(start: Any) -> dict[str, Any]:
         clingo_ready()
+        unshare(question.problem)
         start()
         outcome = solve(question.problem, (question.objective,), Settings(time_limit=limit))
         return {
@@ -150,6 +165,7 @@ def their_work(question: Question, engine: Engine, view: str, limit: float) -> W
 
     def work(start: Any) -> dict[str, Any]:
         engine.ready()
+        unshare(problem)
         start()
         began = time.perf_counter()
         reduced = None if view == "raw" else reduce(problem, levels((objective,)))
@@ -208,6 +224,7 @@ def row(question: Question, engine: str, view: str, trial: Trial, limit: float) 
         said.get("status", ""),
         cost,
         said.get("bound", "") if not proved else "",
+        limit,
     )
 
 
@@ -268,13 +285,13 @@ def same(objective: Objective, one: Costs | None, other: Costs | None) -> bool:
     return apart <= _CLOSE * (1 + one.units + other.units)
 
 
-def summary(rows: Sequence[Row], engines: Sequence[Engine], options: argparse.Namespace) -> str:
+def summary(rows: Sequence[Row]) -> str:
     """Lay out the tables, one for each network and objective."""
     parts = []
     for network, objective in dict.fromkeys((r.network, r.objective) for r in rows):
         some = [r for r in rows if (r.network, r.objective) == (network, objective)]
         ours = {r.goal: r for r in some if r.engine == OURS}
-        parts.append(f"**{network}, `{objective}`**, {len(ours)} goals, limit {options.limit:g} s")
+        parts.append(f"**{network}, `{objective}`**, {len(ours)} goals, limit {some[0].limit:g} s")
         header = ["engine"]
         views = list(dict.fromkeys(r.view for r in some if r.engine != OURS))
         for view in views:
@@ -309,9 +326,21 @@ def summary(rows: Sequence[Row], engines: Sequence[Engine], options: argparse.Na
             for r in own
             if r.end != End.ANSWERED
         ]
-    missing = [engine for engine in ENGINES if engine not in engines and not engine.installed]
-    parts += [f"Left out, since {e.package} is not installed: {e.name}." for e in missing]
     return "\n\n".join(parts)
+
+
+def plotted(rows: Sequence[Row]) -> dict[str, dict[str, Figure]]:
+    """Give how many times slower each engine is on raw questions, for each network and objective."""
+    groups: dict[str, dict[str, Figure]] = {}
+    for network, objective in dict.fromkeys((r.network, r.objective) for r in rows):
+        some = [r for r in rows if (r.network, r.objective) == (network, objective)]
+        ours = {r.goal: r.time for r in some if r.engine == OURS and not r.time.beyond}
+        bars = groups[f"{network}, {objective}"] = {}
+        for engine in dict.fromkeys(r.engine for r in some if r.view == "raw"):
+            theirs = [r for r in some if (r.engine, r.view) == (engine, "raw") and r.goal in ours]
+            if theirs:
+                bars[engine] = median([ratio(r.time, ours[r.goal]) for r in theirs])
+    return groups
 
 
 def _cells(some: Sequence[Row], ours: dict[str, Row]) -> list[str]:
@@ -327,6 +356,24 @@ def _cells(some: Sequence[Row], ours: dict[str, Row]) -> list[str]:
         str(max(r.time for r in some)),
         f"{max(r.memory for r in some) / _MEGABYTE:,.0f}",
     ]
+
+
+def run(engines: Sequence[Engine], options: argparse.Namespace) -> list[Row]:
+    """Measure everything that the command line asks for, and say so line by line."""
+    rows: list[Row] = []
+    for asked in questions(options):
+        for question in asked:
+            for measured in answer(question, engines, options):
+                rows.append(measured)
+                print(
+                    f"{measured.network} {measured.objective:<8} {measured.goal[:40]:<40} "
+                    f"{measured.engine:<16} {measured.view:<8} {measured.end:<9} {measured.seconds:8.3f} s",
+                    file=sys.stderr,
+                )
+                if options.rows:
+                    with options.rows.open("a", encoding="utf-8") as file:
+                        file.write(json.dumps(measured._asdict()) + "\n")
+    return rows
 
 
 def main() -> None:
@@ -349,6 +396,8 @@ def main() -> None:
     )
     parser.add_argument("--all-settings", action="store_true", help="every setting of every engine")
     parser.add_argument("--rows", type=Path, help="a file for all that was measured, as JSON Lines")
+    parser.add_argument("--from-rows", type=Path, help="lay out such a file again, and measure nothing")
+    parser.add_argument("--plot", type=Path, help="a file for a plot of the ratios on raw questions")
     parser.add_argument("--page", type=Path, help="a page whose section gets the tables")
     parser.add_argument("--section", default="opponents")
     options = parser.parse_args()
@@ -364,23 +413,17 @@ def main() -> None:
         if engine not in engines:
             print(f"left out: {engine.name}, since {engine.package} is not installed", file=sys.stderr)
 
-    rows: list[Row] = []
-    for asked in questions(options):
-        for question in asked:
-            for measured in answer(question, engines, options):
-                rows.append(measured)
-                print(
-                    f"{measured.network} {measured.objective:<8} {measured.goal[:40]:<40} "
-                    f"{measured.engine:<16} {measured.view:<8} {measured.end:<9} {measured.seconds:8.3f} s",
-                    file=sys.stderr,
-                )
-                if options.rows:
-                    with options.rows.open("a", encoding="utf-8") as file:
-                        file.write(json.dumps(measured._asdict()) + "\n")
-    text = summary(rows, engines, options)
+    if options.from_rows:
+        lines = options.from_rows.read_text(encoding="utf-8").splitlines()
+        rows = [Row(**json.loads(line)) for line in lines]
+    else:
+        rows = run(engines, options)
+    text = summary(rows)
     print(text)
     if options.page:
         put(options.page, options.section, text)
+    if options.plot:
+        draw_ratios(plotted(rows), "times slower than foon-asp on the raw question, medians", options.plot)
 
 
 if __name__ == "__main__":
