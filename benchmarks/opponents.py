@@ -8,7 +8,10 @@ Each engine answers each question in a process of its own, which has the network
 and with all imports done. Then its clock starts; it stops with a tree in an order that executes, simulated.
 A process that has no answer at the limit is killed with all it started. *Raw* is the question after what the
 plain program does, which is to leave out units that cannot run and those that the goals cannot need;
-*reduced* is it after all of the program's reductions. Either way the clock runs for these steps too.
+*reduced* is it after all of the program's reductions, from whose end on its seconds count, ours too. Where
+bounds have met, the program then knows that its tree is the best; opponents are only given the units left.
+The clock of raw questions runs from the beginning. *Whole* is loading and solving the tuned plain encoding
+with all of the network, whose facts are there before the clock starts.
 
 Goals are the harder half of those that come with a generated network, or, from other data, what can be made;
 so many of them as are asked for, evenly spread.
@@ -49,6 +52,11 @@ from foon_asp.text import Data, find_data, find_goal, read_data
 
 OURS = "foon-asp"
 OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS, Objective.SUCCESS)
+HEADERS = {
+    "whole": ("whole: times", "proved", "s", "most s", "peak MB"),
+    "raw": ("raw: times", "proved", "s", "most s", "peak MB"),
+    "reduced": ("reduced: times", "proved", "s", "most s"),
+}
 _CLOSE = 2e-6  # for each unit of two trees, how far engines may be apart that round logarithms
 _MEGABYTE = 2**20
 
@@ -84,6 +92,11 @@ class Row(NamedTuple):
     def time(self) -> Figure:
         """The seconds it took, from below where there is no answer."""
         return Figure(self.seconds, self.end != End.ANSWERED)
+
+    @property
+    def rest(self) -> Figure:
+        """The seconds after the reductions."""
+        return Figure(max(self.seconds - self.reducing, 1e-6), self.end != End.ANSWERED)
 
 
 def networks(options: argparse.Namespace) -> Iterator[tuple[str, Data, list[str | int]]]:
@@ -203,7 +216,7 @@ def _checked(problem: Problem, used: Sequence[int] | None) -> dict[str, Any]:
     return {"units": order, "status": Status.OPTIMAL}
 
 
-def row(question: Question, engine: str, view: str, trial: Trial, limit: float) -> Row:
+def noted(question: Question, engine: str, view: str, trial: Trial, limit: float) -> Row:
     """Note what came of a trial; costs are computed here from the units."""
     said = trial.said
     cost = ""
@@ -243,7 +256,7 @@ def answer(question: Question, engines: Sequence[Engine], options: argparse.Name
         if trial.end is End.FAILED and "MemoryError" not in trial.trouble:
             sys.exit(f"{name} ({view}) failed on {question.goal} by {question.objective}:\n{trial.trouble}")
     compare(question, trials)
-    yield from (row(question, name, view, trial, limit) for name, view, trial in trials)
+    yield from (noted(question, name, view, trial, limit) for name, view, trial in trials)
 
 
 def compare(question: Question, trials: Sequence[tuple[str, str, Trial]]) -> None:
@@ -291,36 +304,24 @@ def summary(rows: Sequence[Row]) -> str:
     for network, objective in dict.fromkeys((r.network, r.objective) for r in rows):
         some = [r for r in rows if (r.network, r.objective) == (network, objective)]
         ours = {r.goal: r for r in some if r.engine == OURS}
-        parts.append(f"**{network}, `{objective}`**, {len(ours)} goals, limit {some[0].limit:g} s")
-        header = ["engine"]
-        views = list(dict.fromkeys(r.view for r in some if r.engine != OURS))
-        for view in views:
-            header += [f"{view}: slower by", "answered", "seconds", "most", "peak MB"]
-        lines = []
+        own = list(ours.values())
+        views = [view for view in HEADERS if any(r.view == view for r in some)]
+        header = ["engine", *(cell for view in views for cell in HEADERS[view])]
+        lines = [[f"**{OURS}**", *(cell for view in views for cell in _cells(own, ours, view))]]
         for engine in dict.fromkeys(r.engine for r in some if r.engine != OURS):
             line = [engine]
             for view in views:
-                line += _cells([r for r in some if (r.engine, r.view) == (engine, view)], ours)
+                line += _cells([r for r in some if (r.engine, r.view) == (engine, view)], ours, view)
             lines.append(line)
-        own = list(ours.values())
-        memory = max(r.memory for r in own) / _MEGABYTE
-        cells = [
-            "1",
-            f"{sum(r.end == End.ANSWERED for r in own)}/{len(own)}",
-            str(median([r.time for r in own])),
-            str(max(r.time for r in own)),
-            f"{memory:,.0f}",
-        ]
-        lines.insert(0, [f"**{OURS}**", *cells, *[""] * (5 * (len(views) - 1))])
+        parts.append(f"**{network}, `{objective}`**, {len(ours)} goals, limit {some[0].limit:g} s")
         parts.append(table(header, lines))
-        settled = sum(r.left == 0 for r in own)
-        before = [r.left for r in some if r.view == "raw" and r.left]
-        after = [r.left for r in some if r.view == "reduced" and r.end == End.ANSWERED]
-        parts.append(
-            f"Bounds met before any search in {settled} of {len(own)}."
-            + (f" Units in the raw question: {min(before):,} to {max(before):,}" if before else "")
-            + (f", in the reduced one {min(after):,} to {max(after):,}." if after else "")
-        )
+        settled = sum(r.end == End.ANSWERED and r.left == 0 for r in own)
+        sizes = f"Bounds met before any search for {settled} of {len(own)} goals."
+        for view in ("raw", "reduced"):
+            left = [r.left for r in some if r.view == view and r.end == End.ANSWERED]
+            if left:
+                sizes += f" Units in the {view} questions: {min(left):,} to {max(left):,}."
+        parts.append(sizes)
         parts += [
             f"Not proved: {r.goal}: {r.status}, {r.objective} {r.cost or 'unknown'}, bound {r.bound}."
             for r in own
@@ -343,19 +344,24 @@ def plotted(rows: Sequence[Row]) -> dict[str, dict[str, Figure]]:
     return groups
 
 
-def _cells(some: Sequence[Row], ours: dict[str, Row]) -> list[str]:
+def _cells(some: Sequence[Row], ours: dict[str, Row], view: str) -> list[str]:
+    """Give the cells of an engine under the headers of a view."""
     if not some:
-        return [""] * 5
-    pairs = [(r.time, ours[r.goal].time) for r in some if not ours[r.goal].time.beyond]
-    ratios = [ratio(theirs, our) for theirs, our in pairs]
-    answered = sum(r.end == End.ANSWERED for r in some)
-    return [
+        return [""] * len(HEADERS[view])
+
+    def figure(r: Row) -> Figure:
+        return r.rest if view == "reduced" else r.time
+
+    ratios = [ratio(figure(r), figure(ours[r.goal])) for r in some if not ours[r.goal].time.beyond]
+    cells = [
         str(median(ratios)) if ratios else "",
-        f"{answered}/{len(some)}",
-        str(median([r.time for r in some])),
-        str(max(r.time for r in some)),
-        f"{max(r.memory for r in some) / _MEGABYTE:,.0f}",
+        f"{sum(r.end == End.ANSWERED for r in some)}/{len(some)}",
+        str(median([figure(r) for r in some])),
+        str(max(figure(r) for r in some)),
     ]
+    if view != "reduced":
+        cells.append(f"{max(r.memory for r in some) / _MEGABYTE:,.0f}")
+    return cells
 
 
 def run(engines: Sequence[Engine], options: argparse.Namespace) -> list[Row]:
