@@ -14,6 +14,7 @@ from foon_asp.errors import UserError
 from foon_asp.explain.difference import Listed, Side, difference, side
 from foon_asp.network import unit_at_level
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
+from foon_asp.reduce import parse_reductions
 from foon_asp.report.answer import headline
 from foon_asp.report.difference import difference_json, difference_text
 from foon_asp.text import FoonReader, find_goal, summarize
@@ -99,9 +100,9 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     asked.pop("format_")
     goals, objectives = asked.pop("goals_named"), parse_objectives(asked.pop("objectives"))
     containers = asked.pop("containers")
-    settings = Settings(
-        *(asked.pop(n) for n in ("constraints", "encodings", "constants", "clingo_options", "time_limit"))
-    )
+    names = ("constraints", "encodings", "constants", "clingo_options", "time_limit")
+    reductions = parse_reductions(asked.pop("reductions"))
+    settings = Settings(*map(asked.pop, names))._replace(reductions=reductions)
     question = read_question(**asked)
     problem = question.problem(question.goals(goals), containers, everything=True)
     with Progress() as progress:
