@@ -1,5 +1,6 @@
 """Reductions: each alone and all together leave the optimum as it is."""
 
+import sys
 from itertools import combinations
 
 import pytest
@@ -43,6 +44,7 @@ def _sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
         monkeypatch.setattr(reduction, "_FIRST", 1)
     if request.param == "no searches left out":
         monkeypatch.setattr(reduction, "_EASY", 0)
+        monkeypatch.setattr(sys.modules["foon_asp.bounds.landmark_cuts"], "_FRESH", 1)
 
 
 @pytest.mark.usefixtures("_sizes")

@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 from foon_asp.bounds.hypergraph import Hypergraph
 
+_FRESH = 64  # cuts after which what is thought of how dear objects are is too old
+
 
 class WeightedCut(NamedTuple):
     """A cut: its objects, its landmark, the member that had least cost left, and that cost as its weight."""
@@ -40,13 +42,15 @@ def landmark_cuts(
     cost: Callable[[int], int],
     dear: Mapping[int, int],
     expired: Callable[[], bool],
+    guide: Callable[[Callable[[int], int]], Mapping[int, int]] | None = None,
 ) -> Cuts:
     """Find weighted cuts before the targets, until what is left of the costs gives them all for nothing.
 
     Only ``allowed`` actions count, and all costs are above zero. ``dear`` says how dear each object is
     thought to be, those not in it dearer than all: a cut passes through the dearest object that an action
-    needs. What is made for nothing only grows, so that the time goes with what the cuts touch and not with
-    the size of the graph.
+    needs. ``guide`` tells the same from the costs of actions, and is asked now and then by what the cuts
+    leave of them. What is made for nothing only grows, so that the time goes with what the cuts touch and not
+    with the size of the graph.
     """
     needs, makers = graph.needs, graph.makers
     left: dict[int, int] = {}
@@ -54,11 +58,18 @@ def landmark_cuts(
     dearest = 1 + max(dear.values(), default=0)
     found: list[WeightedCut] = []
     bound = 0
+
+    def rest_of(action: int) -> int:
+        return left[action] if action in left else cost(action)
+
     remaining = sorted(targets, key=lambda o: (dear.get(o, dearest), o))
     while remaining and not expired():
         if remaining[-1] in free.objects:
             remaining.pop()
             continue
+        if guide is not None and found and len(found) % _FRESH == 0:
+            dear = guide(rest_of)
+            dearest = 1 + max(dear.values(), default=0)
         zone = {remaining[-1]}
         stack = [remaining[-1]]
         edge: dict[int, None] = {}
@@ -79,7 +90,7 @@ def landmark_cuts(
         members = tuple(action for action in edge if zone.isdisjoint(needs[action]))
         if not members:
             return Cuts(bound, left, found, hopeless=True)
-        rests = [left[a] if a in left else cost(a) for a in members]
+        rests = [rest_of(a) for a in members]
         weight = min(rests)
         bound += weight
         found.append(WeightedCut(frozenset(zone), members, members[rests.index(weight)], weight))

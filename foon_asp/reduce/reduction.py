@@ -152,6 +152,8 @@ class _Reducer:
             self.costs = costs = ExactCosts(self.problem, self.objectives, self.left)
         except TooFineError:
             costs = None
+        if costs is not None and not isinstance(self.left, range):
+            self._offer(derive(self.graph, self.left, costs, added=True).tree(self.graph, self.graph.goals))
         thorough = False  # as a last resort
         for _ in range(_ROUNDS):
             before = len(self.left), self.tree
@@ -178,7 +180,16 @@ class _Reducer:
     def _bound(self, costs: ExactCosts, guide: dict[int, int], thorough: bool) -> bool:
         """Find cuts, and better trees near what they leave; whether bounds meet."""
         searched = Reduction.BOUNDS in self.reductions
-        self.cuts = cuts = landmark_cuts(self.graph, self.graph.goals, self.left, costs, guide, self.expired)
+        lazy = isinstance(self.left, range)  # a guide to all of them would have to look at all of them
+        self.cuts = cuts = landmark_cuts(
+            self.graph,
+            self.graph.goals,
+            self.left,
+            costs,
+            guide,
+            self.expired,
+            None if lazy else lambda rest: derive(self.graph, self.left, rest, added=False).cost,
+        )
         total = self._total(costs)
         bound = total if cuts.hopeless else min(cuts.bound, total)
         if bound > self.bound:
@@ -196,6 +207,15 @@ class _Reducer:
             self.tree = better
             self.listener.tree(self._units(better))
         return searched and costs.met(cuts, better)
+
+    def _offer(self, tree: set[int] | None) -> None:
+        """Take a tree in hand if it is better than the one there, once spare units are left out of it."""
+        if tree is None or self.costs is None:
+            return
+        slim = without_spare(self.graph, tree, self.costs)
+        if sum(map(self.costs, slim)) < self._total(self.costs):
+            self.tree = slim
+            self.listener.tree(self._units(slim))
 
     def _drop_dear(self, costs: ExactCosts) -> None:
         """Leave out what only trees have that are no better than the one in hand."""
