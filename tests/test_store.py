@@ -328,6 +328,7 @@ QUESTIONS = (
     ("optima", "--objective", "units", "--format", "json"),
     ("optima", "--goal", "ice", "--objective", "inputs,success", "--format", "json"),
     ("compare", "--goal", "macaroni", "--goal", "ice", "--format", "csv"),
+    pytest.param(("compare", "--all-makeable", "--search", "bfs"), marks=pytest.mark.slow),
     ("draw", "--goal", "macaroni"),
     ("draw", "--unit", "7", "--unit", "3"),
     ("draw", "--unit", "999999"),
@@ -688,6 +689,17 @@ def test_foreign_files_are_refused(tmp_path: Path, cli: Cli) -> None:
     assert "is no store" in cli("solve", "--network", store, "--goal", "x").err
     store.write_bytes(b"")
     assert "is empty" in cli("solve", "--network", store, "--goal", "x").err
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_is_no_store(tmp_path: Path, cli: Cli, soup: tuple[DataFiles, Path]) -> None:
+    files, _ = soup
+    pipe = tmp_path / "pipe.foon"
+    os.mkfifo(pipe)
+    ran = cli("solve", "--network", pipe, "--goal", "x")
+    assert ran.code == 2
+    assert "is no file, expected a store" in ran.err
+    assert "there is something else under this name" in cli("import", *files.network, "--store", pipe).err
 
 
 def test_a_checksum_knows_its_place() -> None:

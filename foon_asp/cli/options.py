@@ -175,7 +175,7 @@ class Question:
         """Find one goal for each name; without names, all nodes of the goals file."""
         if names:
             return [find_goal(name, self.names, self.listed) for name in names]
-        return list(dict.fromkeys(node for entry in self.listed for node in listed_nodes(entry, self.names)))
+        return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Question":
         """Give the same data with another kitchen."""

@@ -17,6 +17,8 @@ Value = TypeVar("Value")
 
 def is_database_of_ours(file: Path) -> bool:
     """Whether a file begins like a store of any version, whole or not."""
+    if not file.is_file():
+        return False
     try:
         with file.open("rb") as opened:
             header = opened.read(_HEADER)
@@ -83,6 +85,8 @@ class StoreFile:
     def _check_header(self) -> None:
         """Refuse what is no store of ours, before SQLite looks at it."""
         file = self.file
+        if file.exists() and not file.is_file():  # a pipe would be waited for
+            raise UserError(f"{file}: is no file, expected a store")
         try:
             with file.open("rb") as opened:
                 header = opened.read(_HEADER)
