@@ -7,6 +7,7 @@
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
+CORES := -n auto --dist worksteal
 
 .PHONY: demo test test-slow lint bench clean
 
@@ -19,10 +20,10 @@ demo: .venv/installed
 	@$(BIN)/foon-asp draw --goal macaroni -o demo/macaroni.svg
 
 test: .venv/installed-dev
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(CORES)
 
 test-slow: .venv/installed-dev
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest $(CORES) -m slow
 
 lint: .venv/installed-dev
 	$(BIN)/ruff check .

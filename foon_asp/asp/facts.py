@@ -46,41 +46,42 @@ _LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
 def write_facts(problem: Problem, units: Sequence[int], scale: RateScale | None) -> str:
     """Describe the given units of a problem, their object nodes, the kitchen and the goals.
 
-    One line per unit and per object node. ``scale`` gives the weights of ``risk/2``; ``None`` where no
-    rates are known.
+    One line per unit and per object node; ids are those of the whole network. ``scale`` gives the weights
+    of ``risk/2``; ``None`` where no rates are known.
     """
     network, rates = problem.network, problem.rates
-    _check(len(network))
-    _check(len(network.objects))
+    number, name = network.unit_number, network.object_number
     described: dict[int, None] = {}
     lines = []
     for unit in units:
         inputs, outputs = network.inputs[unit], network.outputs[unit]
         described.update(dict.fromkeys(inputs + outputs))
         ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
-        facts = [f"unit({unit}). motion({unit},{quote(network.motions[unit])})."]
-        facts += [f"input({unit},{o})." for o in inputs]
-        facts += [f"needs({unit},{o})." for o in problem.needs[unit]]
-        facts += [f"output({unit},{o})." for o in outputs]
-        facts.append(f"inputs({unit},{len(inputs)}). ingredients({unit},{_check(ingredients)}).")
+        u = _check(number(unit))
+        facts = [f"unit({u}). motion({u},{quote(network.motions[unit])})."]
+        facts += [f"input({u},{name(o)})." for o in inputs]
+        facts += [f"needs({u},{name(o)})." for o in problem.needs[unit]]
+        facts += [f"output({u},{name(o)})." for o in outputs]
+        facts.append(f"inputs({u},{len(inputs)}). ingredients({u},{_check(ingredients)}).")
         if scale and rates:
             rate = rates[network.motions[unit]]
-            facts.append(f"rate({unit},{_millionths(rate)}). risk({unit},{_check(scale.weights[rate])}).")
+            facts.append(f"rate({u},{_millionths(rate)}). risk({u},{_check(scale.weights[rate])}).")
         lines.append(" ".join(facts))
     described.update(dict.fromkeys(problem.goals))
     labels: set[str] = set()
     for o in sorted(described):
         node = network.objects[o]
         labels.add(node.label)
-        facts = [f"object({o}). label({o},{quote(node.label)})."]
-        facts += [f"state({o},{quote(state)})." for state in sorted(node.states)]
-        facts += [f"located({o},{quote(word)},{quote(related)})." for word, related in sorted(node.relations)]
-        facts += [f"ingredient({o},{quote(item)})." for item in dict.fromkeys(node.ingredients)]
+        i = _check(name(o))
+        facts = [f"object({i}). label({i},{quote(node.label)})."]
+        facts += [f"state({i},{quote(state)})." for state in sorted(node.states)]
+        facts += [f"located({i},{quote(word)},{quote(related)})." for word, related in sorted(node.relations)]
+        facts += [f"ingredient({i},{quote(item)})." for item in dict.fromkeys(node.ingredients)]
         if o in problem.kitchen:
-            facts.append(f"kitchen({o}).")
+            facts.append(f"kitchen({i}).")
         lines.append(" ".join(facts))
     lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
-    lines += [f"goal({o})." for o in problem.goals]
+    lines += [f"goal({name(o)})." for o in problem.goals]
     return "\n".join(lines) + "\n"
 
 
@@ -96,7 +97,7 @@ def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) ->
     """Give every unit's rate over the coprime factors of the scale."""
     rates, motions = problem.rates or {}, problem.network.motions
     return "".join(
-        f"exponent({unit},{factor},{_check(exponent)}).\n"
+        f"exponent({problem.network.unit_number(unit)},{factor},{_check(exponent)}).\n"
         for unit in units
         for factor, exponent in scale.exponents[rates[motions[unit]]].items()
     )

@@ -196,14 +196,24 @@ class _Solver:
             self.program.arguments,
             self.deadline,
             opt_mode,
-            on_tree=self._report_tree if report else None,
+            on_tree=(lambda units: self._report_tree(self._ids(units))) if report else None,
             on_bound=self._report_bound if report else None,
         )
         self.seconds["ground"] = self.seconds.get("ground", 0.0) + ended.ground_seconds
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
         if ended.units is not None:
-            self._costs(ended.units)
+            ended.units = self._ids(ended.units)
         return ended
+
+    def _ids(self, numbers: Units) -> Units:
+        """Give the ids of units in an answer, whose numbers come from encodings, which may be the user's."""
+        found = {number: self.problem.network.unit_of_number(number) for number in sorted(numbers)}
+        for number, unit in found.items():
+            if unit is None:
+                raise UserError(
+                    f"the encodings made use({number}), but the network has no unit of that number"
+                )
+        return Units(unit for unit in found.values() if unit is not None)
 
     def _settle_success(self, best: Units) -> tuple[Units, bool]:
         """Look at every product of rates that rounding may have hidden; see docs/exact-success.md.
@@ -250,7 +260,7 @@ class _Solver:
         """
         if ended.units is None:
             return False
-        costs = self._costs(ended.units)
+        costs = self.problem.costs(ended.units)
         weights = [
             self._weight(ended.units) if objective is Objective.SUCCESS else costs.measure(objective)
             for objective in self.levels
@@ -271,14 +281,7 @@ class _Solver:
     def _better(self, one: Units, other: Units | None) -> Units:
         if other is None:
             return one
-        return min(other, one, key=lambda units: self._costs(units).key(self.levels))
-
-    def _costs(self, units: Units) -> Costs:
-        """Compute costs; the numbers in an answer come from encodings, which may be the user's."""
-        for unit in sorted(units):
-            if not 0 <= unit < len(self.problem.network):
-                raise UserError(f"the encodings made use({unit}), but the network has no unit of that number")
-        return self.problem.costs(units)
+        return min(other, one, key=lambda units: self.problem.costs(units).key(self.levels))
 
     def _rate(self, unit: int) -> Fraction:
         return (self.problem.rates or {})[self.problem.network.motions[unit]]
@@ -322,7 +325,7 @@ class _Solver:
         return bounds
 
     def _report_tree(self, units: Units) -> None:
-        costs = self._costs(units)
+        costs = self.problem.costs(units)
         if self._best is None or costs.key(self.levels) < self._best.key(self.levels):
             self._best = costs
             self.reporter.tree(costs)

@@ -69,7 +69,8 @@ def command(
     """
     chosen = parse_objectives(objectives)
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers)
+    # a certificate speaks about the whole network, by its digest
+    problem = question.problem(question.goals(goals_named), containers, everything=True)
     settings = Settings(constraints, encodings, constants, time_limit=time_limit)
     expired = expiry(time_limit)
     name = "standard output" if file is None else str(file)

@@ -35,13 +35,15 @@ def command(
     order executes or when a unit is not one of the network.
     """
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers)
+    goals = question.goals(goals_named)
     reader = FoonReader(lenient)
     listed = reader.read_tree(tree_file)
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
-    listed = [(unit_at_level(unit, problem.network.level), source) for unit, source in listed]
+    listed = [(unit_at_level(unit, question.names.level), source) for unit, source in listed]
     tree = TaskTree(tuple(unit for unit, _ in listed))
+    data_of_tree, goals = question.part(goals, tree=tree)
+    problem = options.ask(data_of_tree, goals, containers)
     simulation = simulate_for(problem, tree)
     render = {"text": verdict_text, "json": verdict_json}[format_]
     click.echo(render(problem, listed, simulation), nl=False)

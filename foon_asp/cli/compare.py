@@ -4,15 +4,14 @@ import contextlib
 import hashlib
 import json
 import os
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.progress import bar
 from foon_asp.cli.search_options import search_options
 from foon_asp.compare import (
     Comparison,
@@ -34,10 +33,6 @@ from foon_asp.report.comparison_table import (
 from foon_asp.report.published_table import PublishedTable, published_markdown, read_published
 from foon_asp.resources import published_table
 from foon_asp.search import SEARCHES, Count, SearchSettings, Ties
-from foon_asp.text import find_goal, listed_nodes
-
-if TYPE_CHECKING:
-    from rich.progress import Progress
 
 _CHARTED = 60  # goals that a chart has room for
 
@@ -103,7 +98,6 @@ def command(
     stopped at the time limit.
     """
     question = options.read_question(**data)  # type: ignore[arg-type]
-    network, listed = question.data.network, question.data.goals
     table = read_published(published_table()) if published else None
     if table is not None:
         goals_named = goals_named or tuple(table.goals)
@@ -111,18 +105,18 @@ def command(
         if unknown or all_makeable:
             raise UserError(f"the published table has the goals {', '.join(table.goals)} and no others")
     if all_makeable:
-        one = question.problem((0,), containers)
-        goals = makeable(one)
-    elif goals_named:
-        goals = [find_goal(name, network, listed) for name in goals_named]
+        goals = makeable(question.problem((0,), containers, everything=True))
     else:
-        goals = list(dict.fromkeys(node for entry in listed for node in listed_nodes(entry, network)))
+        goals = list(dict.fromkeys(question.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     if charts and len(goals) > _CHARTED:
         raise UserError(f"a chart of {len(goals)} goals could not be read; name up to {_CHARTED} with --goal")
     settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit)
-    problem = question.problem((goals[0],), containers)
+    # Results are kept with a digest of all the data.
+    everything = all_makeable or results is not None
+    problem = question.problem(goals, containers, everything)
+    goals = list(problem.goals)
     rows = _run(problem, goals, searches, settings, jobs, results)
 
     for chart in charts:
@@ -151,14 +145,13 @@ def _run(
             file = stack.enter_context(ResultsFile(results, _question(problem, searches, settings)))
             done = file.done
         left = [goal for goal in dict.fromkeys(goals) if names[goal] not in done]
-        progress = stack.enter_context(_progress(len(names), len(names) - len(left)))
+        advance = stack.enter_context(bar("comparing", len(names), len(names) - len(left)))
         for row in compare_goals(problem, left, searches, settings, settings.time_limit, jobs):
             if file is None:
                 done[row.goal] = row
             else:
                 file.add(row)
-            if progress is not None:
-                progress.advance(progress.task_ids[0])
+            advance()
     return [done[names[goal]] for goal in goals]
 
 
@@ -185,21 +178,6 @@ def _question(problem: Problem, searches: Sequence[str], settings: SearchSetting
         "depth_limit": settings.depth_limit,
         "time_limit": settings.time_limit,
     }
-
-
-@contextlib.contextmanager
-def _progress(total: int, completed: int) -> "Iterator[Progress | None]":
-    """Show a bar on a terminal, for more than a handful of goals."""
-    if total < 20 or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("comparing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
-        progress.add_task("", total=total, completed=completed)
-        yield progress
 
 
 def _print(rows: list[Comparison], format_: str, summary_only: bool) -> None:

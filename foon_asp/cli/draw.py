@@ -11,6 +11,7 @@ from click.core import ParameterSource
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.options import Question
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, TaskTree, unit_at_level
@@ -111,9 +112,10 @@ def command(
             return code
         drawing = _solved_tree(outcome, outcome.units)
     elif tree_file is not None:
-        drawing = _given_tree(question.data, goals, tree_file, ContainerRule(containers), lenient)
+        drawing = _given_tree(question, goals, tree_file, ContainerRule(containers), lenient)
     else:
-        drawing = _subgraph(question.data, goals, units)
+        data_shown, goals = question.part(goals, units) if units else (question.data, goals)
+        drawing = _subgraph(data_shown, goals, units)
     _write(drawing, form, file)
     return code
 
@@ -146,17 +148,18 @@ def _solved_tree(outcome: Outcome, units: tuple[int, ...]) -> Drawing:
 
 
 def _given_tree(
-    data: Data, goal_ids: tuple[int, ...], file: Path, containers: ContainerRule, lenient: bool
+    question: Question, goal_ids: tuple[int, ...], file: Path, containers: ContainerRule, lenient: bool
 ) -> Drawing:
     """Number the units in an order that executes, if one does, and say whether."""
     reader = FoonReader(lenient)
-    level = data.network.level
+    level = question.names.level
     listed = (unit_at_level(unit, level) for unit, _ in reader.read_tree(file))
     tree = TaskTree(tuple(dict.fromkeys(listed)))
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
     if not tree.units:
         raise UserError(f"{file}: no functional unit to draw")
+    data, goal_ids = question.part(goal_ids, tree=tree)
     objects = data.network.objects
     kitchen = frozenset(objects[o] for o in data.kitchen)
     goals = tuple(objects[o] for o in goal_ids)
@@ -177,18 +180,18 @@ def _given_tree(
 def _subgraph(data: Data, goal_ids: tuple[int, ...], unit_ids: tuple[int, ...]) -> Drawing:
     """Draw the units that are named, or else all."""
     network = data.network
-    for unit in unit_ids:
-        if not 0 <= unit < len(network):
-            raise UserError(f"there is no unit {unit}: the network has units 0 to {len(network) - 1}")
-    shown = tuple(dict.fromkeys(unit_ids)) or tuple(range(len(network)))
+    shown = tuple(range(len(network)))
+    if unit_ids:
+        ids = map(network.unit_of_number, dict.fromkeys(unit_ids))
+        shown = tuple(unit for unit in ids if unit is not None)
     if not unit_ids:
         caption = [f"A network of {_count(shown)}"]
     elif len(shown) == 1:
         file, line, *_ = network.sources[shown[0]][0]
-        caption = [f"Functional unit {shown[0]} ({Path(file).name}, line {line})"]
+        caption = [f"Functional unit {unit_ids[0]} ({Path(file).name}, line {line})"]
     else:
-        caption = [f"Functional units {', '.join(map(str, shown))}"]
-    units = [(unit, network.unit(unit)) for unit in shown]
+        caption = [f"Functional units {', '.join(map(str, dict.fromkeys(unit_ids)))}"]
+    units = [(network.unit_number(unit), network.unit(unit)) for unit in shown]
     objects = network.objects
     return draw_network(units, {objects[o] for o in data.kitchen}, {objects[o] for o in goal_ids}, caption)
 

@@ -35,6 +35,8 @@ def command(
     """
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers)
+    problem = question.problem(
+        question.goals(goals_named), containers, everything=bool(constraints or encodings)
+    )
     click.echo(program_facts(problem, chosen, Settings(constraints, encodings)), nl=False)
     return ExitCode.DONE

@@ -17,6 +17,7 @@ _VERBS = (
     "optima",
     "search",
     "compare",
+    "batch",
     "check",
     "certify",
     "verify",
@@ -27,7 +28,9 @@ _VERBS = (
     "fmt",
     "convert",
     "merge",
+    "import",
 )
+_MODULES = {"import": "import_files"}  # of verbs that cannot be the name of a module
 
 
 class _Verbs(click.Group):
@@ -39,7 +42,8 @@ class _Verbs(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in _VERBS:
             return None
-        command: click.Command = importlib.import_module(f"foon_asp.cli.{cmd_name}").command
+        module = _MODULES.get(cmd_name, cmd_name)
+        command: click.Command = importlib.import_module(f"foon_asp.cli.{module}").command
         return command
 
 

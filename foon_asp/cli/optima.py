@@ -9,7 +9,6 @@ from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
 from foon_asp.report.optima_table import optima_json, print_optima
-from foon_asp.text import find_goal, listed_nodes
 
 
 @click.command("optima")
@@ -42,11 +41,7 @@ def command(
     """
     lists = [parse_objectives([text]) for text in objectives]
     question = options.read_question(**data)  # type: ignore[arg-type]
-    network, listed = question.data.network, question.data.goals
-    if goals_named:
-        goals = [find_goal(name, network, listed) for name in goals_named]
-    else:
-        goals = list(dict.fromkeys(node for entry in listed for node in listed_nodes(entry, network)))
+    goals = list(dict.fromkeys(question.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     outcomes: list[Outcome] = []

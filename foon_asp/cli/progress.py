@@ -1,7 +1,9 @@
 """What is seen on stderr while a search goes on: the best tree and the bound, on a terminal only."""
 
+import contextlib
 import sys
 import time
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -64,3 +66,19 @@ class Progress(Reporter):
 
         self._live = Console(stderr=True).status(text)
         self._live.start()
+
+
+@contextlib.contextmanager
+def bar(word: str, total: int, completed: int) -> Iterator[Callable[[], None]]:
+    """Show a bar on a terminal for more than a handful of steps; what is given is called after each."""
+    if total < 20 or not sys.stderr.isatty():
+        yield lambda: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (TextColumn(word), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Bar(*columns, console=Console(stderr=True)) as progress:
+        task = progress.add_task("", total=total, completed=completed)
+        yield lambda: progress.advance(task)

@@ -76,7 +76,11 @@ def command(
         raise UserError(f"found {clingo_options[0]!r}, expected an option; a goal is named by --goal NAME")
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers)
+    problem = question.problem(
+        question.goals(goals_named),
+        containers,
+        everything=bool(constraints or encodings or certificate_file or cross_check),
+    )
     settings = Settings(
         constraints, encodings, constants, clingo_options, time_limit, parse_reductions(reductions)
     )

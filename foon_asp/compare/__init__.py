@@ -3,6 +3,7 @@
 from foon_asp.compare.comparison import MEASURED, Comparison, Judgement, Optimum, compare, judge
 from foon_asp.compare.many import compare_goals, makeable
 from foon_asp.compare.results_file import ResultsFile, comparison_json
+from foon_asp.compare.rows_file import RowsFile
 from foon_asp.compare.summary import Distance, Summary, all_proved, summarize_comparisons
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
     "Judgement",
     "Optimum",
     "ResultsFile",
+    "RowsFile",
     "Summary",
     "all_proved",
     "compare",

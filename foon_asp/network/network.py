@@ -1,5 +1,6 @@
 """The merged network (universal FOON): object nodes and units, each interned once."""
 
+from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -24,6 +25,10 @@ class Network:
 
     A network below ``level`` 3 has the level-3 network it was made from in ``detailed``. ``stands_for[u]``
     are the ids there of the units that ``u`` stands for, ``objects_stand_for[o]`` those of the nodes.
+
+    A network may be a part of a greater one, of which the rest was not read: ``unit_numbers`` and
+    ``object_numbers`` are then the ids in the whole, which rise as the ids here do and are the ones to show.
+    They are empty where the two are the same.
     """
 
     objects: tuple[ObjectNode, ...]
@@ -37,6 +42,8 @@ class Network:
     detailed: "Network | None" = field(default=None, repr=False)
     stands_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
     objects_stand_for: tuple[tuple[int, ...], ...] = field(default=(), repr=False)
+    unit_numbers: tuple[int, ...] = field(default=(), repr=False)
+    object_numbers: tuple[int, ...] = field(default=(), repr=False)
 
     def __len__(self) -> int:
         """Count the units."""
@@ -50,6 +57,21 @@ class Network:
             tuple(objects[o] for o in self.inputs[unit_id]),
             tuple(objects[o] for o in self.outputs[unit_id]),
         )
+
+    def unit_number(self, unit_id: int) -> int:
+        """Give the id that a unit has in the whole network."""
+        return self.unit_numbers[unit_id] if self.unit_numbers else unit_id
+
+    def unit_of_number(self, number: int) -> int | None:
+        """Give the id of the unit that has this id in the whole network; ``None`` when it is not here."""
+        if not self.unit_numbers:
+            return number if 0 <= number < len(self) else None
+        place = bisect_left(self.unit_numbers, number)
+        return place if place < len(self) and self.unit_numbers[place] == number else None
+
+    def object_number(self, object_id: int) -> int:
+        """Give the id that a node has in the whole network."""
+        return self.object_numbers[object_id] if self.object_numbers else object_id
 
     def object_id(self, node: ObjectNode) -> int | None:
         """Give the id of a node, or ``None`` when the network does not have it."""

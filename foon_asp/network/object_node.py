@@ -1,7 +1,15 @@
 """Object nodes: objects in a state."""
 
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
+
+_QUOTED = re.compile(r"\\(?=[;\\]|$)|;")  # a backslash that would quote what comes behind it, or a semicolon
+
+
+def in_notation(name: str) -> str:
+    """Give a name as the one-line notation has it, where ``;`` separates names; in a name it is quoted."""
+    return _QUOTED.sub(r"\\\g<0>", name) if ";" in name or "\\" in name else name
 
 
 class Relation(NamedTuple):
@@ -11,7 +19,7 @@ class Relation(NamedTuple):
     object: str
 
     def __str__(self) -> str:
-        return f"{self.word} [{self.object}]"
+        return f"{in_notation(self.word)} [{self.object}]"
 
 
 class Contents(NamedTuple):
@@ -21,7 +29,7 @@ class Contents(NamedTuple):
     ingredients: tuple[str, ...]
 
     def __str__(self) -> str:
-        return f"{self.word} {{{','.join(self.ingredients)}}}"
+        return f"{in_notation(self.word)} {{{','.join(self.ingredients)}}}"
 
 
 class ObjectNode(NamedTuple):
@@ -67,8 +75,8 @@ class ObjectNode(NamedTuple):
     def __str__(self) -> str:
         """Give the one-line notation: ``sweet potato; chopped; in [cutting board]``."""
         parts = [
-            self.label,
-            *sorted(self.states),
+            in_notation(self.label),
+            *map(in_notation, sorted(self.states)),
             *map(str, sorted(self.relations)),
             *map(str, self.contents),
         ]

@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network, TaskTree
+from foon_asp.network import Network, Source, TaskTree
 from foon_asp.problem.containers import ContainerRule, conditions, network_needs
 from foon_asp.problem.costs import Costs
 
@@ -31,8 +31,10 @@ class Problem:
     def __post_init__(self) -> None:
         if not self.goals:
             raise UserError("no goal is given")
-        if self.rates is not None:
-            require_rates(self.network, self.rates)
+        if self.rates is not None and not self.rates.keys() >= set(self.network.motions):
+            network = self.network
+            sources = (copies[0] for copies in network.sources)
+            require_rates(zip(network.motions, sources, strict=True), self.rates)
 
     @property
     def conditions(self) -> str:
@@ -64,16 +66,19 @@ class Problem:
         )
 
 
-def require_rates(network: Network, rates: Mapping[str, Fraction]) -> None:
-    """Raise :class:`UserError` naming every motion of the network that has no success rate."""
-    missing: dict[str, int] = {}
-    for unit, motion in enumerate(network.motions):
+def require_rates(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> None:
+    """Raise :class:`UserError` naming every motion without a success rate and where it was first read.
+
+    ``motions`` may name a motion again; what counts is its first place.
+    """
+    missing: dict[str, Source] = {}
+    for motion, source in motions:
         if motion not in rates:
-            missing.setdefault(motion, unit)
+            missing.setdefault(motion, source)
     if missing:
         lines = [
-            f"{network.sources[unit][0]}:1: error: the motion {motion!r} has no success rate"
-            for motion, unit in list(missing.items())[:10]
+            f"{source}:1: error: the motion {motion!r} has no success rate"
+            for motion, source in list(missing.items())[:10]
         ]
         if len(missing) > 10:
             lines.append(f"... and {len(missing) - 10} more motions")

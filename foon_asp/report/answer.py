@@ -28,6 +28,14 @@ def costs_json(costs: Costs | None) -> dict[str, object] | None:
     }
 
 
+def bounds_json(outcome: Outcome) -> dict[str, object]:
+    """Give the proved bounds by objective."""
+    return {
+        str(objective): fraction_json(Fraction(bound)) if objective is Objective.SUCCESS else bound
+        for objective, bound in outcome.bounds.items()
+    }
+
+
 def unit_json(network: Network, unit: int) -> dict[str, object]:
     """Give a unit with its id, motion, nodes in one-line notation and every place it was read from.
 
@@ -35,7 +43,7 @@ def unit_json(network: Network, unit: int) -> dict[str, object]:
     """
     objects = network.objects
     given: dict[str, object] = {
-        "id": unit,
+        "id": network.unit_number(unit),
         "motion": network.motions[unit],
         "inputs": [str(objects[o]) for o in network.inputs[unit]],
         "outputs": [str(objects[o]) for o in network.outputs[unit]],
@@ -74,10 +82,7 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
             if outcome.status is Status.OPTIMAL
         },
         "costs": costs_json(outcome.costs),
-        "lower_bound": {
-            str(objective): fraction_json(Fraction(bound)) if objective is Objective.SUCCESS else bound
-            for objective, bound in outcome.bounds.items()
-        },
+        "lower_bound": bounds_json(outcome),
         "units": None
         if outcome.units is None
         else [unit_json(problem.network, unit) for unit in outcome.units],

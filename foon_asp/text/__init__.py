@@ -1,21 +1,32 @@
 """FOON text and the tables beside it, in and out."""
 
 from foon_asp.text.conversion import Converted, Converter
-from foon_asp.text.data_folder import Data, DataFiles, find_data, kitchen_nodes, network_files, read_data
+from foon_asp.text.data_folder import (
+    Data,
+    DataFiles,
+    find_data,
+    kitchen_item_warning,
+    kitchen_nodes,
+    network_files,
+    read_data,
+)
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
 from foon_asp.text.dialect import Dialect
 from foon_asp.text.folder_files import FolderFile, foon_files
 from foon_asp.text.formatter import Change, Formatted, format_text
-from foon_asp.text.goal_name import find_goal, listed_nodes
+from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, near_labels
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.object_list import ListedObject, read_object_list
+from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store, read_plain_text
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_node, write_unit, write_units
 
 __all__ = [
+    "STORE_MAGIC",
+    "STORE_SUFFIX",
     "Change",
     "Converted",
     "Converter",
@@ -29,20 +40,25 @@ __all__ = [
     "InputError",
     "LineError",
     "ListedObject",
+    "NodeNames",
     "Severity",
     "excerpt_with_caret",
     "find_data",
     "find_goal",
     "foon_files",
     "format_text",
+    "is_store",
+    "kitchen_item_warning",
     "kitchen_nodes",
     "listed_nodes",
     "merged_text",
+    "near_labels",
     "network_files",
     "parse_node",
     "read_data",
     "read_labels",
     "read_object_list",
+    "read_plain_text",
     "read_rates",
     "summarize",
     "write_node",

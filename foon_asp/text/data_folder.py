@@ -131,8 +131,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     items = tuple(read_object_list(files.kitchen, warnings)) if files.kitchen else ()
     for item in items:
         if not network.find(pattern_at_level(item.pattern, level)):
-            message = f"the kitchen item {str(item.pattern)!r} matches no object node of the network"
-            warnings.append(Diagnostic(Severity.WARNING, "kitchen-item", message, item.source))
+            warnings.append(kitchen_item_warning(item))
     goals = tuple(
         entry._replace(pattern=pattern_at_level(entry.pattern, level))
         for entry in (read_object_list(files.goals, warnings) if files.goals else ())
@@ -152,3 +151,9 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
     """Give the object nodes that kitchen items stand for, at the level of the network."""
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
+
+
+def kitchen_item_warning(item: ListedObject) -> Diagnostic:
+    """Say that a kitchen item is of no use."""
+    message = f"the kitchen item {str(item.pattern)!r} matches no object node of the network"
+    return Diagnostic(Severity.WARNING, "kitchen-item", message, item.source)

@@ -2,17 +2,46 @@
 
 import difflib
 import shlex
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from typing import Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network, node_at_level
+from foon_asp.network import Network, NodePattern, ObjectNode, node_at_level
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.object_list import ListedObject
 
 _SHOWN = 12
+_NEAR = 3  # labels shown that are like one that nobody has
 
 
-def find_goal(name: str, network: Network, listed: Sequence[ListedObject] = ()) -> int:
+class NodeNames(Protocol):
+    """What names are looked up in, where it is no :class:`Network`. Ids are those of the object nodes."""
+
+    @property
+    def level(self) -> int:
+        """How much of a node counts."""
+
+    def object_id(self, node: ObjectNode) -> int | None:
+        """Give the id of a node, or ``None`` when it is not there."""
+
+    def node(self, object_id: int) -> ObjectNode:
+        """Give the node with that id."""
+
+    def find(self, pattern: NodePattern) -> Sequence[int]:
+        """Give the ids of the nodes that a kitchen or goals entry stands for."""
+
+    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
+        """Give how many nodes have a label, and the first of them, a dozen or more."""
+
+    def beginning(self, start: str, most: int) -> Sequence[str]:
+        """Give labels that begin so, in alphabetical order, at most so many."""
+
+    def near(self, label: str, most: int) -> Sequence[str]:
+        """Give labels that are like one, the likest first, at most so many."""
+
+
+def find_goal(name: str, network: Network | NodeNames, listed: Sequence[ListedObject] = ()) -> int:
     """Give the id of the object node that a goal names.
 
     A name is a label (of an entry of the goals file first, then of the network's nodes) or the one-line
@@ -20,60 +49,122 @@ def find_goal(name: str, network: Network, listed: Sequence[ListedObject] = ()) 
     notation of a node that is only a label. Raises :class:`UserError` with candidates ready
     to paste when it is unknown or means several nodes.
     """
+    names = _names(network)
     try:
-        node = node_at_level(parse_node(name), network.level)
+        node = node_at_level(parse_node(name), names.level)
     except LineError as error:
         raise UserError(f"the goal {name!r} cannot be read: at column {error.column}, {error}") from None
-    bare = ";" not in name
+    bare = node == ObjectNode(node.label) and not _is_closed(name, node)
     entries = [entry for entry in listed if bare and entry.pattern.label == node.label]
     if entries:
-        return _only(name, network, [o for entry in entries for o in listed_nodes(entry, network)])
-    if bare and node.label in network.by_label:
-        return _only(name, network, network.by_label[node.label])
-    exact = network.object_id(node)
+        found = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
+        return _only(name, names, len(found), found)
+    if bare:
+        count, labelled = names.labelled(node.label)
+        if count:
+            return _only(name, names, count, labelled)
+    exact = names.object_id(node)
     if exact is not None:
         return exact
-    labelled = network.by_label.get(node.label, ())
-    if labelled:
+    if not bare:  # a label with a semicolon in it, as it is
+        count, labelled = names.labelled(name)
+        if count:
+            return _only(name, names, count, labelled)
+    count, labelled = names.labelled(node.label)
+    if count:
         raise UserError(
-            f"no object node is exactly {str(node)!r}; with that label there are\n" + _list(network, labelled)
+            f"no object node is exactly {str(node)!r}; with that label there are\n"
+            + _list(names, count, labelled)
         )
-    lower = {label.lower(): label for label in network.by_label}
-    found = difflib.get_close_matches(node.label.lower(), lower, n=3, cutoff=0.6)
-    near = [lower[name] for name in found]
-    message = f"no object node has the label {node.label!r}"
-    if near:
-        candidates = [o for label in near for o in network.by_label[label]]
-        message += "; similar are\n" + _list(network, candidates)
-    raise UserError(message)
+    raise UserError(f"no object node has the label {node.label!r}" + _similar(node.label, names))
 
 
-def listed_nodes(entry: ListedObject, network: Network) -> tuple[int, ...]:
+def _is_closed(name: str, node: ObjectNode) -> bool:
+    """Whether a notation ends in a semicolon that is no part of a name."""
+    name = name.rstrip(" ")
+    return name.endswith(";") and parse_node(name[:-1]) == node
+
+
+def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[int]:
     """Give the nodes that an entry of a goals file stands for; raises :class:`UserError` for none."""
-    found = network.find(entry.pattern)
+    names = _names(network)
+    found = names.find(entry.pattern)
     if not found:
-        labelled = network.by_label.get(entry.pattern.label, ())
+        count, labelled = names.labelled(entry.pattern.label)
         raise UserError(
             f"{entry.source.file}:{entry.source.line}:{entry.source.column}: error: the goal "
             f"{str(entry.pattern)!r} matches no object node"
-            + ("; with that label there are\n" + _list(network, labelled) if labelled else " of the network")
+            + (
+                "; with that label there are\n" + _list(names, count, labelled)
+                if count
+                else " of the network" + _similar(entry.pattern.label, names)
+            )
         )
     return found
 
 
-def _only(name: str, network: Network, candidates: Iterable[int]) -> int:
-    found = list(dict.fromkeys(candidates))
-    if len(found) > 1:
+class _NetworkNames:
+    """The names of a network that is in memory."""
+
+    def __init__(self, network: Network) -> None:
+        self.level = network.level
+        self.object_id = network.object_id
+        self.find = network.find
+        self._network = network
+
+    def node(self, object_id: int) -> ObjectNode:
+        return self._network.objects[object_id]
+
+    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
+        found = self._network.by_label.get(label, ())
+        return len(found), found
+
+    def beginning(self, start: str, most: int) -> Sequence[str]:
+        return sorted(label for label in self._network.by_label if label.startswith(start))[:most]
+
+    def near(self, label: str, most: int) -> Sequence[str]:
+        return near_labels(label, self._network.by_label, most)
+
+
+def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
+    """Give those of the known labels that are like one, whatever their capitals, the likest first."""
+    lower: defaultdict[str, list[str]] = defaultdict(list)
+    for name in known:
+        lower[name.lower()].append(name)
+    close = difflib.get_close_matches(label.lower(), lower, n=most, cutoff=0.6)
+    return [name for small in close for name in lower[small]]
+
+
+def _names(network: Network | NodeNames) -> NodeNames:
+    return _NetworkNames(network) if isinstance(network, Network) else network
+
+
+def _similar(label: str, names: NodeNames) -> str:
+    """List nodes whose labels begin so or are near, a few of each label; empty where there are none."""
+    labels = dict.fromkeys((*names.beginning(label, _SHOWN), *names.near(label, _NEAR)))
+    found = [names.labelled(like) for like in labels]
+    if not found:
+        return ""
+    each = max(1, _SHOWN // len(found))
+    return "; similar are\n" + _list(
+        names, sum(count for count, _ in found), [o for _, first in found for o in first[:each]]
+    )
+
+
+def _only(name: str, names: NodeNames, count: int, found: Sequence[int]) -> int:
+    if count > 1:
         raise UserError(
-            f"the goal {name!r} means {len(found)} object nodes; paste the one you mean\n"
-            + _list(network, found)
+            f"the goal {name!r} means {count} object nodes; paste the one you mean\n"
+            + _list(names, count, found)
         )
     return found[0]
 
 
-def _list(network: Network, nodes: Sequence[int]) -> str:
-    names = (str(network.objects[o]) for o in nodes[:_SHOWN])
-    lines = [f"  --goal {shlex.quote(name if ';' in name else name + ';')}" for name in names]
-    if len(nodes) > _SHOWN:
-        lines.append(f"  ... and {len(nodes) - _SHOWN} more")
+def _list(names: NodeNames, count: int, first: Iterable[int]) -> str:
+    shown = [names.node(o) for o in [*first][:_SHOWN]]
+    # a semicolon makes the notation of a node that is only a label
+    texts = [f"{node};" if node == ObjectNode(node.label) else str(node) for node in shown]
+    lines = [f"  --goal {shlex.quote(text)}" for text in texts]
+    if count > len(shown):
+        lines.append(f"  ... and {count - len(shown)} more")
     return "\n".join(lines)

@@ -40,7 +40,12 @@ class JsonList:
             for offset, value in self._elements():
                 yield JsonElement(value, self.place(offset))
         except json.JSONDecodeError as problem:
-            self.error(self.place(problem.pos), f"not the JSON that is read here: {problem.msg}")
+            self.error(self.place(problem.pos), f"not JSON: {problem.msg}")
+        except _UnexpectedError as problem:
+            found = self._text[problem.position :].split("\n", 1)[0].rstrip("\r")
+            found = found if len(found) <= 24 else found[:24] + "..."
+            shown = repr(found) if found else "the end of the line"
+            self.error(self.place(problem.position), f"found {shown}, expected {problem.expected}")
         except _RepeatedKeyError as problem:
             self.error(self.place(problem.start), f"found the key {problem.key!r} twice in one object")
         except RecursionError:
@@ -75,7 +80,7 @@ class JsonList:
             start = position
             key, position = self._value(position)
             if not isinstance(key, str):
-                raise json.JSONDecodeError("expected a key in quotes", self._text, start)
+                raise _UnexpectedError("a key in quotes", start)
             if key in seen:
                 raise _RepeatedKeyError(key, start)
             seen.add(key)
@@ -88,11 +93,9 @@ class JsonList:
             if self._text[position : position + 1] != "}":
                 position = self._expect(",", position, "a comma or }")
                 if self._text[position : position + 1] == "}":
-                    raise json.JSONDecodeError("expected a key in quotes", self._text, position)
+                    raise _UnexpectedError("a key in quotes", position)
         if self._key not in seen:
-            raise json.JSONDecodeError(
-                f"expected a list, or an object with the key {self._key!r}", self._text, 0
-            )
+            raise _UnexpectedError(f"a list, or an object with the key {self._key!r}", 0)
         self._nothing_after(position + 1)
 
     def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
@@ -117,13 +120,13 @@ class JsonList:
 
     def _expect(self, character: str, position: int, what: str = "") -> int:
         if self._text[position : position + 1] != character:
-            raise json.JSONDecodeError(f"expected {what or character}", self._text, position)
+            raise _UnexpectedError(what or character, position)
         return self._skip(position + 1)
 
     def _nothing_after(self, end: int) -> None:
         rest = self._skip(end)
         if rest != len(self._text):
-            raise json.JSONDecodeError("expected the end of the file after the list", self._text, rest)
+            raise _UnexpectedError("the end of the file after the list", rest)
 
     def _skip(self, position: int) -> int:
         match = _SPACE.match(self._text, position)
@@ -135,6 +138,13 @@ class JsonNumber:
     """A number as it is written: none is calculated with, and ids and rates are kept to the letter."""
 
     text: str
+
+
+class _UnexpectedError(Exception):
+    def __init__(self, expected: str, position: int) -> None:
+        super().__init__(expected)
+        self.expected = expected
+        self.position = position
 
 
 class _RepeatedKeyError(Exception):

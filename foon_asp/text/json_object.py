@@ -126,6 +126,9 @@ def _left_out(value: dict[str, object]) -> Iterator[str]:
     flag = number(value, "object_in_motion")
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
+    category = number(value, "recipe_category")
+    if category and not flag:
+        yield f"the recipe category {category!r} stands without a motion flag"
     if value.get("has_portions") not in (None, False, "False", ""):
         yield "has_portions left out: FOON text has no place for it"
     for ingredient in _list(value, "ingredients", value.get("ingredients")):

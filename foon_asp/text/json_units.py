@@ -14,6 +14,7 @@ from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import number, optional_name, read_object
 from foon_asp.text.line import MotionLine, StateLine, is_rate
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.motion_times import is_time
 
 _KEYS = {"input_nodes", "motion_node", "output_nodes"}
 _LABELS = {"label", "object_label"}
@@ -115,6 +116,9 @@ def _motion(value: object, remarks: list[str]) -> MotionLine:
         raise ValueError("found a motion without a label, expected a name")
     composite = label.endswith("*") and label.strip("* ") != ""
     start, end = (optional_name(value.get(key), key) for key in ("start_time", "end_time"))
+    remarks += [
+        f"{time!r} is not a time (m:ss or Assumed)" for time in (start, end) if time and not is_time(time)
+    ]
     fields = [time for time in (start or (end and "Assumed"), end) if time]
     rate = value.get("weight_success")
     rate = rate.text if isinstance(rate, JsonNumber) else optional_name(rate, "weight_success")

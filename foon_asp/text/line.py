@@ -142,7 +142,7 @@ def parse_node(notation: str) -> ObjectNode:
 
     Raises :class:`LineError` when the grammar does not accept it.
     """
-    return cast(ObjectNode, _parse("node", re.sub(r"(?<=[\]}]) +(?=;|$)", "", notation).rstrip(" ")))
+    return cast(ObjectNode, _parse("node", notation.rstrip(" ")))
 
 
 def read_state(text: str) -> StateLine:
@@ -246,20 +246,25 @@ class _LineBuilder(Transformer[Token, object]):
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
         label, *notes = (part for part in parts if not isinstance(part, Token) or part.type == "NAME")
         return ObjectNode(
-            str(label).strip(" "),
+            _unquoted(label),
             frozenset(note for note in notes if isinstance(note, str)),
             frozenset(note for note in notes if isinstance(note, Relation)),
             tuple(sorted(note for note in notes if isinstance(note, Contents))),
         )
 
     def note_plain(self, tokens: list[Token]) -> str:
-        return tokens[0].strip(" ")
+        return _unquoted(tokens[0])
 
     def note_related(self, tokens: list[Token]) -> str | Relation | Contents:
         word, bracket = tokens
-        return _bracketed(word.strip(" "), Token(bracket.type, bracket.strip("\t ")), "", []).attribute
+        return _bracketed(_unquoted(word), Token(bracket.type, bracket.strip("\t ")), "", []).attribute
 
     note_holding = note_related
+
+
+def _unquoted(name: object) -> str:
+    """Give a name as it is from how it is written in the notation."""
+    return re.sub(r"\\([;\\])", r"\1", str(name).strip(" "))
 
 
 def is_number(field: str) -> bool:
@@ -440,7 +445,9 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
         names = set(error.expected)
     if in_file:
         names.discard("$END")  # a line ends by its newline
-    rest = text[column - 1 :].removesuffix("\n")
+    rest = text[column - 1 :]
+    if in_file:
+        rest = rest.removesuffix("\n")
     found = "the end of the line"
     if rest:
         found = repr(rest if len(rest) <= 24 else rest[:24] + "...")

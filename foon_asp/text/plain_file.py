@@ -1,4 +1,4 @@
-"""Text files as they come: UTF-8 with or without a byte order mark."""
+"""Text files as they come, UTF-8 with or without a byte order mark; and what is none."""
 
 from codecs import BOM_UTF8
 from pathlib import Path
@@ -6,6 +6,20 @@ from pathlib import Path
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+
+STORE_SUFFIX = ".foon"
+STORE_MAGIC = b"SQLite format 3\0"  # how every database begins
+
+
+def is_store(file: Path) -> bool:
+    """Whether a path is no text but a store: it is named like one, or begins like any database."""
+    if file.suffix == STORE_SUFFIX and not file.is_dir():
+        return True
+    try:
+        with file.open("rb") as opened:
+            return opened.read(len(STORE_MAGIC)) == STORE_MAGIC
+    except OSError:
+        return False
 
 
 def read_plain_text(file: Path) -> str:
@@ -18,6 +32,8 @@ def read_plain_text(file: Path) -> str:
         data = file.read_bytes()
     except OSError as error:
         raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+    if data.startswith(STORE_MAGIC):
+        raise UserError(f"{file}: is a store, expected text; a store is named by --network alone")
     data = data.removeprefix(BOM_UTF8)
     try:
         return data.decode()

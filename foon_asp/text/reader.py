@@ -172,7 +172,6 @@ class _FileReading:
         self.text = text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
         self.videos: tuple[str, ...] = ()
         self.header_open = True  # further "# Source:" lines add to the videos until a unit comes between
-        self.rejected = 0  # how often something was, so far
         self.start = 0  # of the piece being read, in the text
         self.looked_ahead = 0  # how far new lines have been parsed
         self.lines: list[str] = []  # of that piece, when it is read line by line
@@ -302,7 +301,7 @@ class _FileReading:
 
     def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
         """Read the lines between two separators; ``None`` when they hold no unit."""
-        piece = _Piece(end, closed, self.rejected, self.reader.left_out)
+        piece = _Piece(end, closed, self.reader.left_out)
         for index in range(start, end):
             line = self.lines[index]
             letter = line[:1]
@@ -335,7 +334,9 @@ class _FileReading:
         parsed = self.reader.parse(self.lines[index])
         if isinstance(parsed, LineError):
             self._reject("syntax", str(parsed), index, parsed.column)
-            piece.lost = piece.lost or self.lines[index][0] == "O"
+            letter = self.lines[index][0]
+            piece.lost = piece.lost or letter == "O"
+            piece.blamed = piece.blamed or letter != "S"
             return
         self._remark(parsed, index)
         if isinstance(parsed, StateLine):
@@ -344,6 +345,7 @@ class _FileReading:
             elif piece.states is None:
                 message = "found a state line, expected an object line before it"
                 self._reject("state-without-object", message, index)
+                piece.blamed = True
             else:
                 piece.states.append(parsed)
             return
@@ -361,10 +363,11 @@ class _FileReading:
         elif len(piece.motions) > 1:
             message = "found a second motion in one unit, expected an object line or //"
             self._reject("second-motion", message, index)
+            piece.blamed = True
 
     def _no_unit(self, piece: "_Piece") -> None:
         """Say that lines are no unit, unless an error among them already says why."""
-        if self.rejected > piece.rejected and not self.reader.lenient:
+        if piece.blamed and not self.reader.lenient:
             return
         lines, first = self.lines, piece.first
         meaningful = [i for i in range(first, piece.end) if lines[i].strip() and lines[i][0] != "#"]
@@ -403,7 +406,6 @@ class _FileReading:
     def _reject(self, code: str, message: str, index: int, column: int = 1) -> None:
         """Note an error, or under ``lenient`` a warning that the line was left out."""
         reader = self.reader
-        self.rejected += 1
         severity = Severity.ERROR
         if reader.lenient:
             severity = Severity.WARNING
@@ -418,13 +420,12 @@ class _Piece:
     """The lines between two separators, while they are read one by one; places are indices of lines.
 
     ``states`` are those under the object line at hand, ``None`` before the first; ``lost`` says that this
-    object line cannot be read, and that the states under it go with it. ``rejected`` and ``left_out`` are
-    the counts of before.
+    object line cannot be read, and that the states under it go with it. ``blamed`` says that an error among
+    the lines can be why a motion or an object is missing. ``left_out`` is the count of before.
     """
 
     end: int
     closed: bool
-    rejected: int
     left_out: int
     first: int = -1
     motions: list[tuple[int, MotionLine]] = field(default_factory=list)
@@ -433,6 +434,7 @@ class _Piece:
     copies: list[Source] = field(default_factory=list)
     states: list[StateLine] | None = None
     lost: bool = False
+    blamed: bool = False
 
 
 def _settled(blocks: list[ObjectBlock]) -> tuple[ObjectBlock, ...]:

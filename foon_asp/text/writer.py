@@ -1,5 +1,6 @@
 """Writing FOON text: lines as they were read, and units without ids, flags or times."""
 
+import re
 from collections.abc import Iterable
 
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
@@ -42,7 +43,7 @@ def write_unit(unit: FunctionalUnit) -> str:
 def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -> str:
     """Give a whole FOON text: comment lines, ``//``, and the units in order."""
     return (
-        "".join(f"# {line}\n" for comment in comments for line in comment.split("\n"))
+        "".join(f"# {line}\n" for comment in comments for line in re.split("\r\n|\r|\n", comment))
         + "//\n"
         + "".join(map(write_unit, units))
     )

@@ -301,7 +301,6 @@ def test_labels_stand_one_on_each_line(tmp_path: Path) -> None:
     assert read_labels(file) == frozenset()
 
 
-@pytest.mark.xfail(strict=True, reason="FOON text ends lines at a lone carriage return, this list does not")
 def test_labels_have_the_line_ends_of_foon_text(tmp_path: Path) -> None:
     file = tmp_path / "utensils.txt"
     file.write_text("bowl\rknife\r", newline="")

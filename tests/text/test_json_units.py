@@ -671,12 +671,6 @@ def test_units_of_json_that_are_left_out_are_said_and_no_lines_are_counted(text:
     assert reader.left_out == 0  # counts the lines of FOON text
 
 
-# --- gaps
-
-
-@pytest.mark.xfail(
-    strict=True, reason="a category without a flag, and a time that is none, are taken as they are"
-)
 @pytest.mark.parametrize(
     ("inputs", "motion"),
     [

@@ -1,0 +1,57 @@
+"""From one question to one row of results, whatever happens on the way."""
+
+import time
+
+from foon_asp.asp import Outcome, Settings, solve
+from foon_asp.batch.asked import Asked, Asker
+from foon_asp.errors import UserError
+from foon_asp.problem import parse_objectives
+from foon_asp.report.answer import bounds_json, costs_json
+
+Row = dict[str, object]
+
+
+def answer_row(asker: Asker, asked: Asked) -> Row:
+    """Answer a question; an error, of the user's or ours, is a row too.
+
+    Trees in rows were simulated, and are given by unit ids in an order that executes. docs/batch.md
+    describes the keys.
+    """
+    began = time.perf_counter()
+    try:
+        problem = asker.problem(asked)
+        settings = Settings(time_limit=asked.time_limit)
+        row = _answered(asked, solve(problem, parse_objectives([asked.objective]), settings))
+    except UserError as error:
+        row = failed_row(asked, str(error))
+    except Exception as error:
+        row = failed_row(asked, f"a bug of foon-asp: {type(error).__name__}: {error}")
+    row["seconds"] = round(time.perf_counter() - began, 6)
+    return row
+
+
+def failed_row(asked: Asked, error: str) -> Row:
+    """Give the row of a question without an answer."""
+    return {
+        **asked.shown(),
+        "status": "failed",
+        "error": error,
+        "proof": None,
+        "costs": None,
+        "lower_bound": None,
+        "units": None,
+        "seconds": None,
+    }
+
+
+def _answered(asked: Asked, outcome: Outcome) -> Row:
+    network = outcome.problem.network
+    return {
+        **asked.shown(),
+        "status": str(outcome.status),
+        "error": None,
+        "proof": None if outcome.proof is None else str(outcome.proof),
+        "costs": costs_json(outcome.costs),
+        "lower_bound": bounds_json(outcome),
+        "units": None if outcome.units is None else list(map(network.unit_number, outcome.units)),
+    }

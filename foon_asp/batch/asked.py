@@ -1,0 +1,57 @@
+"""One of many questions, and who turns it into a problem."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from foon_asp.problem import Problem
+
+
+class Asked(NamedTuple):
+    """One question of a batch, by names.
+
+    ``goals`` are made by one tree. ``kitchen`` is a file, or ``None`` for that of the data. ``objective`` is
+    a list by commas of which the first counts most. ``time_limit`` is in seconds.
+    """
+
+    goals: tuple[str, ...]
+    objective: str = "units"
+    containers: str = "strict"
+    kitchen: Path | None = None
+    time_limit: float | None = None
+
+    @property
+    def key(self) -> str:
+        """The question in words, the same in every run: what a row of results is known by."""
+        return json.dumps(self.shown(), ensure_ascii=False, separators=(",", ":"))
+
+    def shown(self) -> dict[str, object]:
+        """Give what was asked, in plain values."""
+        return {
+            "goal": self.goals[0] if len(self.goals) == 1 else list(self.goals),
+            "objective": self.objective,
+            "containers": self.containers,
+            "kitchen": None if self.kitchen is None else str(self.kitchen),
+            "time_limit": self.time_limit,
+        }
+
+
+class Asker(Protocol):
+    """Data that is open, and may be asked again and again."""
+
+    def named(self, word: str, containers: str, kitchen: Path | None) -> Sequence[str]:
+        """Give the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+
+    def problem(self, asked: Asked) -> Problem:
+        """Pose a question; raises :class:`UserError` where a goal or a kitchen is not there."""
+
+
+class Opener(Protocol):
+    """Opens the data, once in each worker: it has to pickle, and equal ones open the same."""
+
+    def __call__(self) -> Asker:
+        """Open the data."""
+
+    def __hash__(self) -> int:
+        """Be a key."""

@@ -1,0 +1,116 @@
+"""Files of questions: JSON Lines, one object on each line, which may stand for many questions."""
+
+import itertools
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.batch.asked import Asked, Asker
+from foon_asp.errors import UserError
+from foon_asp.network import Source
+from foon_asp.problem import ContainerRule, parse_objectives
+from foon_asp.text import Diagnostic, InputError, Severity, read_plain_text
+
+_KEYS = ("goal", "objective", "containers", "kitchen", "time_limit")
+
+
+class QuestionLine(NamedTuple):
+    """One line of a file of questions: every combination of its values is asked.
+
+    ``goals`` holds for each tree the names of the goals that it makes; a name that begins with ``@`` stands
+    for many.
+    """
+
+    goals: tuple[tuple[str, ...], ...]
+    objectives: tuple[str, ...]
+    containers: tuple[str, ...]
+    kitchens: tuple[Path | None, ...]
+    time_limit: float | None
+
+
+def read_questions(file: Path, time_limit: float | None) -> list[QuestionLine]:
+    """Read questions; ``time_limit`` is for those that do not say theirs, and kitchens are beside the file.
+
+    Raises :class:`InputError` naming every line that is not one object with the keys that are known.
+    """
+    lines: list[QuestionLine] = []
+    errors: list[Diagnostic] = []
+    for number, text in enumerate(read_plain_text(file).splitlines(), 1):
+        if not text.strip():
+            continue
+        try:
+            lines.append(_line(json.loads(text), file.parent, time_limit))
+        except json.JSONDecodeError as problem:
+            place = Source(str(file), number, problem.colno)
+            errors.append(Diagnostic(Severity.ERROR, "json", f"not JSON: {problem.msg}", place, text))
+        except (UserError, ValueError) as problem:
+            errors.append(Diagnostic(Severity.ERROR, "json", str(problem), Source(str(file), number), text))
+    if errors:
+        raise InputError(errors)
+    if not lines:
+        raise UserError(f'{file}: no questions; one looks like {{"goal": "ice", "objective": "units"}}')
+    return lines
+
+
+def each_question(lines: Iterable[QuestionLine], asker: Asker) -> Iterator[Asked]:
+    """Give every question that the lines stand for, each once and in their order."""
+    seen: set[Asked] = set()
+    for line in lines:
+        for kitchen, rule in itertools.product(line.kitchens, line.containers):
+            goals: list[tuple[str, ...]] = []
+            for names in line.goals:
+                if names[0].startswith("@"):
+                    goals += [(name,) for name in asker.named(names[0], rule, kitchen)]
+                else:
+                    goals.append(names)
+            for objective, names in itertools.product(line.objectives, goals):
+                asked = Asked(names, objective, rule, kitchen, line.time_limit)
+                if asked not in seen:
+                    seen.add(asked)
+                    yield asked
+
+
+def _line(value: object, folder: Path, time_limit: float | None) -> QuestionLine:
+    if not isinstance(value, dict) or "goal" not in value:
+        raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')
+    if unknown := sorted(value.keys() - set(_KEYS)):
+        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(_KEYS)}")
+    goals = tuple(_goal(name) for name in _several(value["goal"]))
+    objectives = tuple(_name(o, "objective") for o in _several(value.get("objective", "units")))
+    for objective in objectives:
+        parse_objectives([objective])
+    rules = tuple(_name(rule, "containers") for rule in _several(value.get("containers", "strict")))
+    for rule in rules:
+        if rule not in {str(known) for known in ContainerRule}:
+            raise ValueError(f"found the containers {rule!r}, expected {' or '.join(ContainerRule)}")
+    kitchens = tuple(
+        None if kitchen is None else folder / _name(kitchen, "kitchen")
+        for kitchen in _several(value.get("kitchen"))
+    )
+    limit = value.get("time_limit", time_limit)
+    if not (limit is None or (isinstance(limit, int | float) and not isinstance(limit, bool) and limit >= 0)):
+        raise ValueError(f"found the time_limit {limit!r}, expected seconds")
+    return QuestionLine(goals, objectives, rules, kitchens, None if limit is None else float(limit))
+
+
+def _several(value: object) -> list[object]:
+    """A list stands for one question after the other; an empty one would ask nothing."""
+    if value == []:
+        raise ValueError("found an empty list, expected at least one value")
+    return value if isinstance(value, list) else [value]
+
+
+def _goal(value: object) -> tuple[str, ...]:
+    """A name is a goal; a list within the list names goals that one tree makes."""
+    names = tuple(_name(name, "goal") for name in _several(value))
+    for name in names:
+        if name.startswith("@") and (len(names) > 1 or name not in {"@goals", "@makeable"}):
+            raise ValueError(f"found the goal {name!r}, expected a name, or @goals or @makeable by itself")
+    return names
+
+
+def _name(value: object, key: str) -> str:
+    if not isinstance(value, str) or not value:
+        raise ValueError(f"found {json.dumps(value)} as {key!r}, expected a name")
+    return value

@@ -1,0 +1,132 @@
+"""``foon-asp batch``: thousands of questions in one run, each answer a row."""
+
+import json
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import click
+
+from foon_asp.batch import (
+    Asked,
+    Row,
+    Tally,
+    Work,
+    answer_all,
+    answer_on_cluster,
+    each_question,
+    open_results,
+    read_questions,
+)
+from foon_asp.cli import options
+from foon_asp.cli.batch_data import Opening, digest
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.progress import bar
+
+
+@click.command("batch")
+@click.argument("questions", type=click.Path(path_type=Path), metavar="QUESTIONS.jsonl")
+@click.option(
+    "--results",
+    "results_file",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="JSON Lines, or for a name in .parquet a folder of Parquet files; run again to go on.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes to use.")
+@click.option("--scheduler", metavar="ADDRESS", help="Use the workers of a Dask cluster: tcp://HOST:PORT.")
+@options.time_limit_option
+@options.format_option("text", "json")
+@options.data_options
+def command(
+    questions: Path,
+    results_file: Path,
+    jobs: int,
+    scheduler: str | None,
+    time_limit: float | None,
+    format_: str,
+    **data: object,
+) -> ExitCode:
+    """Answer every question of a file, and keep each answer as soon as it is there.
+
+    \b
+    foon-asp batch questions.jsonl --results answers.jsonl --jobs 2
+    foon-asp batch questions.jsonl --results answers.parquet --network recipes.foon
+    foon-asp batch questions.jsonl --results answers.jsonl --scheduler tcp://10.0.0.5:8786
+
+    \b
+    A line of the file asks for every combination of its values:
+    {"goal": ["ice", "macaroni"], "objective": ["units", "success,units"]}
+    {"goal": "@makeable", "containers": ["strict", "implied"], "kitchen": "small.json"}
+    {"goal": [["ice", "macaroni"]], "time_limit": 10}
+
+    @goals is the goals file, @makeable all that can be made; a list within the list is one tree for several
+    goals; kitchens are files beside the questions. --time-limit is for each question that names none.
+
+    What was answered is not asked again when the same command is run again. A question that fails is a row
+    that says why. Exits with 0 when every answer is proved, 1 when some failed, and with 3 when a limit
+    stopped some, or ctrl-C the run.
+    """
+    lines = read_questions(questions, time_limit)
+    kitchens = [kitchen for line in lines for kitchen in line.kitchens if kitchen]
+    opening = Opening(tuple(data.items()), digest(data, kitchens))
+    asked = list(each_question(lines, opening(quiet=False)))
+    interrupted = False
+    began = time.monotonic()
+    with open_results(results_file, {"data": opening.digest, "level": data["level"]}) as results:
+        left = [one for one in asked if one.key not in results.done]
+        tally = Tally(results.done[one.key] for one in asked if one.key in results.done)
+        with bar("answering", len(asked), len(asked) - len(left)) as advance:
+            try:
+                for one, row in _rows(opening, left, jobs, scheduler):
+                    results.add(one, row)
+                    tally.add(row)
+                    advance()
+            except KeyboardInterrupt:
+                interrupted = True
+    summary = {
+        "questions": len(asked),
+        **tally.summary(),
+        "seconds": round(time.monotonic() - began, 3),
+    }
+    if format_ == "json":
+        click.echo(json.dumps(summary, indent=2))
+    else:
+        for line in _in_words(summary, tally):
+            click.echo(line)
+        click.echo(f"results: {results_file}")
+    if interrupted:
+        click.echo("interrupted: run the same command again to go on", err=True)
+    return _exit_code(tally, interrupted)
+
+
+def _rows(
+    opening: Opening, asked: Sequence[Asked], jobs: int, scheduler: str | None
+) -> Iterator[tuple[Asked, Row]]:
+    if scheduler is not None:
+        return answer_on_cluster(opening, asked, scheduler)
+    return answer_all(Work(opening), asked, min(jobs, max(1, len(asked))))
+
+
+def _in_words(summary: dict[str, object], tally: Tally) -> Iterator[str]:
+    before = tally.before.total()
+    yield f"{summary['questions']:,} questions" + (f", {before:,} of them answered before" if before else "")
+    counts = tally.statuses + tally.before
+    yield "all in all: " + (", ".join(f"{n:,} {status}" for status, n in sorted(counts.items())) or "none")
+    if tally.statuses:
+        yield f"answered {tally.statuses.total():,} in {summary['seconds']:.1f} s"
+        proofs = ", ".join(f"{count:,} by {proof}" for proof, count in sorted(tally.proofs.items()))
+        yield f"proved: {proofs or 'none'}"
+    if summary["seconds_median"] is not None:
+        yield f"seconds for one: median {summary['seconds_median']:.3f}, worst {summary['seconds_worst']:.3f}"
+    yield from (f"failed: {error}" for error in tally.errors)
+    if tally.statuses["failed"] > len(tally.errors):
+        yield f"... and {tally.statuses['failed'] - len(tally.errors)} more failed: see their rows"
+
+
+def _exit_code(tally: Tally, interrupted: bool) -> ExitCode:
+    counts = tally.statuses + tally.before
+    if interrupted or counts["feasible"] or counts["unknown"]:
+        return ExitCode.LIMIT
+    return ExitCode.NEGATIVE if counts["failed"] else ExitCode.DONE

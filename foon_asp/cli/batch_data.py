@@ -1,0 +1,76 @@
+"""The data of a batch, opened once in every process that answers questions."""
+
+import contextlib
+import hashlib
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from foon_asp.batch import Asked
+from foon_asp.cli import options
+from foon_asp.compare import makeable
+from foon_asp.network import Network
+from foon_asp.problem import Problem
+from foon_asp.text import read_object_list
+
+
+@dataclass(frozen=True)
+class Opening:
+    """How to open the data: the options that name them, and a digest of what is in the files.
+
+    Equal ones open the same data.
+    """
+
+    named: tuple[tuple[str, Any], ...]
+    digest: str
+
+    def __call__(self, quiet: bool = True) -> "BatchData":
+        """Open the data; warnings are shown once, and not by every worker."""
+        with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
+            return BatchData(options.read_question(**dict(self.named)))
+
+
+class BatchData:
+    """Opened data, and the kitchens that were asked about."""
+
+    def __init__(self, question: options.Question) -> None:
+        self._questions: dict[Path | None, options.Question] = {None: question}
+
+    def named(self, word: str, containers: str, kitchen: Path | None) -> Sequence[str]:
+        """Give the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+        question = self._with(kitchen)
+        if word == "@makeable":
+            problem = question.problem((0,), containers, everything=True)
+            return [str(problem.network.objects[goal]) for goal in makeable(problem)]
+        names = question.names
+        goals = dict.fromkeys(question.each_goal(()))
+        if isinstance(names, Network):
+            return [str(names.objects[goal]) for goal in goals]
+        return [str(names.node(goal)) for goal in goals]
+
+    def problem(self, asked: Asked) -> Problem:
+        """Pose a question."""
+        question = self._with(asked.kitchen)
+        return question.problem(question.goals(asked.goals), asked.containers)
+
+    def _with(self, kitchen: Path | None) -> options.Question:
+        question = self._questions.get(kitchen)
+        if question is None:
+            assert kitchen is not None
+            question = self._questions[None].with_kitchen(read_object_list(kitchen))
+            self._questions[kitchen] = question
+        return question
+
+
+def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
+    """Give a digest of everything in the files that the options name, and of kitchens beside them."""
+    named = {key: value for key, value in named.items() if key not in {"level", "lenient"}}
+    files = options.data_files(**named)
+    found = hashlib.sha256()
+    beside = (files.kitchen, files.rates, files.utensils, files.goals)
+    for file in (*files.network, *(file for file in beside if file), *sorted(set(kitchens))):
+        with file.open("rb") as opened:
+            found.update(hashlib.file_digest(opened, "sha256").digest())
+    return found.hexdigest()[:16]

@@ -1,0 +1,57 @@
+"""``foon-asp import``: files into a store, of which a question reads only what it is about."""
+
+from pathlib import Path
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.errors import UserError
+from foon_asp.store import import_files
+from foon_asp.text import find_data, summarize
+
+
+@click.command("import")
+@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|DIR]...")
+@click.option(
+    "--store",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="NAME.foon",
+    help="The store to write; one that is there is replaced when all went well.",
+)
+@options.network_options
+def command(
+    paths: tuple[Path, ...],
+    store: Path,
+    folder: Path | None,
+    network: tuple[Path, ...],
+    kitchen: Path | None,
+    rates: Path | None,
+    utensils: Path | None,
+    goals: Path | None,
+    lenient: bool,
+) -> ExitCode:
+    """Merge networks into a store, for networks too large to read for each question.
+
+    \b
+    foon-asp import recipes/ --store recipes.foon
+    foon-asp import --data my_foon --store my.foon
+    foon-asp solve --network my.foon --goal macaroni
+
+    The kitchen, rates, utensils and goals that are named here are kept in the store, and are what every verb
+    takes that is not given others. Every copy of a unit keeps its file, line and videos.
+    """
+    if folder is None and not paths and not network:
+        raise UserError("name the networks to import, or a folder of data with --data")
+    files = find_data(folder, (*paths, *network), kitchen, rates, utensils, goals)
+    imported = import_files(files, store, lenient)
+    for text in summarize(imported.warnings):
+        click.echo(text, err=True)
+    if imported.left_out:
+        lines = "1 line" if imported.left_out == 1 else f"{imported.left_out} lines"
+        click.echo(f"warning: {lines} left out", err=True)
+    size = store.stat().st_size / 1e6
+    counts = f"{imported.units} units of {imported.copies} read, {imported.objects} object nodes"
+    click.echo(f"{store}: {counts}, {size:.1f} MB")
+    return ExitCode.DONE

@@ -1,0 +1,244 @@
+"""Writing a store, unit by unit."""
+
+import sqlite3
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import islice
+from typing import Any
+
+from foon_asp.network import ObjectNode, Source
+from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, unseal
+from foon_asp.store.label_index import label_blocks, trigram_blocks
+from foon_asp.store.plain_values import entry_values, node_hashes, node_values, pattern_hash
+from foon_asp.text import ListedObject
+
+_LATER_COPIES = 100_000  # copies of units written before, kept back to be written together
+
+
+class StoreBuilder:
+    """Writes units into a database as they come; copies of a unit are merged and all sources kept.
+
+    Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. ``kitchen``
+    are the entries of the kitchen file, or ``None`` where there is none. In memory are the distinct nodes,
+    some numbers for each unit, and the labels; the database is in one transaction, to be committed.
+    """
+
+    def __init__(self, database: sqlite3.Connection, kitchen: Sequence[ListedObject] | None) -> None:
+        self._database = database
+        database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+        database.execute(f"PRAGMA user_version = {VERSION}")
+        for table in Table:
+            database.execute(f"CREATE TABLE {table} (number INTEGER PRIMARY KEY, content BLOB NOT NULL)")
+        self.copies = 0  # of units, added so far
+        self.units = 0  # distinct ones
+        self.matched = [False] * len(kitchen or ())
+        self._kitchen = kitchen
+        self._entries: dict[int, list[int]] = {}  # of the kitchen, by hash
+        for number, (pattern, _) in enumerate(kitchen or ()):
+            self._entries.setdefault(pattern_hash(pattern), []).append(number)
+
+        self._nodes: dict[ObjectNode, int] = {}
+        self._same: dict[int, int] = {}  # ids of nodes by the address of the object in _nodes
+        self._units: dict[tuple[int, ...], int] = {}
+        self._motions: dict[str, int] = {}
+        self._motion_sources: list[Source] = []  # of the first unit with each
+        self._without_outputs: list[int] = []  # units
+        self._origins: dict[tuple[str, tuple[str, ...]], int] = {}
+        self._last_origin: tuple[str, tuple[str, ...]] | None = None
+        self._last_number = -1
+        self._labels: dict[str, list[int]] = {}  # nodes
+        self._hashes = array("I")
+        self._hashed = array("I")  # the node with the hash at the same place
+        self._makers = array("I")  # with the node at the same place in _made
+        self._made = array("I")
+        self._node_block: list[object] = []
+        self._unit_block: list[list[Any]] = []
+        self._later: dict[int, list[int]] = {}  # sources of later copies, by unit
+        self._kept_back = 0
+
+    @property
+    def objects(self) -> int:
+        """How many distinct object nodes there are so far."""
+        return len(self._nodes)
+
+    def add(
+        self,
+        motion: str,
+        inputs: Iterable[ObjectNode],
+        outputs: Iterable[ObjectNode],
+        sources: Sequence[Source],
+    ) -> None:
+        """Add one copy of a unit with the places that it comes from."""
+        # As in NetworkBuilder: inputs before outputs, a node that one side lists twice once.
+        ins = self._ids(inputs)
+        outs = self._ids(outputs)
+        motion_id = self._motions.setdefault(motion, len(self._motions))
+        if motion_id == len(self._motion_sources):
+            self._motion_sources.append(sources[0])
+        places: list[int] = []
+        for file, line, column, videos in sources:
+            if (file, videos) != self._last_origin:
+                self._last_origin = (file, videos)
+                self._last_number = self._origins.setdefault(self._last_origin, len(self._origins))
+            places += (self._last_number, line, column)
+        self.copies += 1
+        key = (motion_id, *sorted(ins), -1, *sorted(outs))
+        unit = self._units.setdefault(key, self.units)
+        block = self._unit_block
+        at_hand = self.units - len(block)  # the first unit of the block
+        if unit == self.units:
+            self.units += 1
+            block.append([motion_id, ins, outs, places])
+            if not outs:
+                self._without_outputs.append(unit)
+            self._made.extend(outs)
+            self._makers.extend([unit] * len(outs))
+            if len(block) == SIZES[Table.UNIT]:
+                self._flush(Table.UNIT, unit, block)
+        elif unit >= at_hand:
+            block[unit - at_hand][3] += places
+        else:
+            self._later.setdefault(unit, []).extend(places)
+            self._kept_back += 1
+            if self._kept_back == _LATER_COPIES:
+                self._write_later()
+
+    def finish(
+        self,
+        goals: Sequence[ListedObject],
+        rates: Mapping[str, Fraction] | None,
+        utensils: Iterable[str] | None,
+        left_out: int,
+    ) -> None:
+        """Write what is left, and the indexes; ``left_out`` counts lines that were not understood."""
+        self._flush(Table.UNIT, self.units - 1, self._unit_block)
+        self._flush(Table.NODE, len(self._nodes) - 1, self._node_block)
+        self._write_later()
+        self._units.clear()  # memory for what follows
+        producers = _by_key(self._made, self._makers, len(self._nodes))
+        self._write_all(Table.PRODUCERS, _in_blocks(producers, SIZES[Table.PRODUCERS]))
+        hashes, hashed = self._hashes, self._hashed
+        buckets = len(hashes) // SIZES[Table.NODE_HASH] + 1
+        by_hash = _by_key(array("I", [h % buckets for h in hashes]), range(len(hashes)), buckets)
+        pairs = ([number for at in places for number in (hashes[at], hashed[at])] for places in by_hash)
+        self._write_all(Table.NODE_HASH, pairs)
+        self._write_all(Table.LABEL, label_blocks(self._labels))
+        trigrams = trigram_blocks(self._labels)
+        self._write_all(Table.TRIGRAM, trigrams)
+        motions = [[motion, *source[:3]] for motion, source in self.motion_sources()]
+        self._write_all(Table.MOTION, _in_blocks(motions, SIZES[Table.MOTION]))
+        origins = [[file, videos] for file, videos in self._origins]
+        self._write_all(Table.ORIGIN, _in_blocks(origins, SIZES[Table.ORIGIN]))
+        entries = map(entry_values, self._kitchen or ())
+        self._write_all(Table.KITCHEN, _in_blocks(entries, SIZES[Table.KITCHEN]))
+        counts: dict[str, object] = {
+            "units": self.units,
+            "objects": len(self._nodes),
+            "labels": len(self._labels),
+            "motions": len(self._motions),
+            "origins": len(self._origins),
+            "hash_blocks": buckets,
+            "trigram_blocks": len(trigrams),
+            "kitchen": None if self._kitchen is None else len(self._kitchen),
+            "left_out": left_out,
+        }
+        beside = [
+            counts,
+            None if rates is None else {motion: str(rate) for motion, rate in rates.items()},
+            None if utensils is None else sorted(utensils),
+            [entry_values(entry) for entry in goals],
+            self._without_outputs,
+        ]
+        self._write_all(Table.ABOUT, beside)
+
+    def motion_sources(self) -> Iterator[tuple[str, Source]]:
+        """Give every motion with the place of the first unit that has it."""
+        return zip(self._motions, self._motion_sources, strict=True)
+
+    def _new_node(self, node: ObjectNode) -> int:
+        number = self._nodes[node] = len(self._nodes)
+        in_kitchen = False
+        hashes = node_hashes(node)
+        self._hashes.extend(hashes)
+        self._hashed.extend([number] * len(hashes))
+        for node_hash in hashes:
+            for entry in self._entries.get(node_hash, ()):
+                if self._kitchen is not None and self._kitchen[entry].pattern.matches(node):
+                    in_kitchen = self.matched[entry] = True
+        labelled = self._labels.get(node.label)
+        if labelled is None:
+            labelled = self._labels[node.label] = []
+        labelled.append(number)
+        self._node_block.append(node_values(node, in_kitchen))
+        if len(self._node_block) == SIZES[Table.NODE]:
+            self._flush(Table.NODE, number, self._node_block)
+        return number
+
+    def _ids(self, nodes: Iterable[ObjectNode]) -> list[int]:
+        ids: list[int] = []
+        for node in nodes:
+            # The reader gives one object for each node: knowing that object is quicker than comparing nodes.
+            number = self._same.get(id(node))
+            if number is None:
+                number = self._nodes.get(node)
+                if number is None:
+                    number = self._new_node(node)
+                    self._same[id(node)] = number  # which is kept from now on, and with it the address
+            if number not in ids:
+                ids.append(number)
+        return ids
+
+    def _flush(self, table: Table, last: int, block: list[Any]) -> None:
+        """Write the block at hand, whose last value belongs to that id."""
+        if block:
+            self._write(table, last // SIZES[table], block)
+            block.clear()
+
+    def _write_later(self) -> None:
+        """Add the sources of later copies to the units they are copies of."""
+        by_block: dict[int, list[int]] = {}
+        for unit in sorted(self._later):
+            by_block.setdefault(unit // SIZES[Table.UNIT], []).append(unit)
+        for number, units in by_block.items():
+            block: Any = unseal(Table.UNIT, number, self._read(Table.UNIT, number))
+            for unit in units:
+                block[unit % SIZES[Table.UNIT]][3] += self._later[unit]
+            content = seal(Table.UNIT, number, block)
+            self._database.execute(f"UPDATE {Table.UNIT} SET content = ? WHERE number = ?", (content, number))
+        self._later.clear()
+        self._kept_back = 0
+
+    def _read(self, table: Table, number: int) -> object:
+        found = self._database.execute(f"SELECT content FROM {table} WHERE number = ?", (number,)).fetchone()
+        return found[0]
+
+    def _write_all(self, table: Table, blocks: Iterable[object]) -> None:
+        for number, block in enumerate(blocks):
+            self._write(table, number, block)
+
+    def _write(self, table: Table, number: int, block: object) -> None:
+        content = seal(table, number, block)
+        self._database.execute(f"INSERT INTO {table} VALUES (?, ?)", (number, content))
+
+
+def _in_blocks(values: Iterable[object], size: int) -> Iterator[list[object]]:
+    waiting = iter(values)
+    while block := list(islice(waiting, size)):
+        yield block
+
+
+def _by_key(keys: Sequence[int], values: Sequence[int], size: int) -> Iterator[list[int]]:
+    """Give for each key from 0 to ``size`` its values, in order: a counting sort."""
+    starts = array("Q", bytes(8 * (size + 1)))
+    for key in keys:
+        starts[key + 1] += 1
+    for key in range(size):
+        starts[key + 1] += starts[key]
+    sorted_values = array("I", bytes(4 * len(keys)))
+    free = starts[:]
+    for key, value in zip(keys, values, strict=True):
+        sorted_values[free[key]] = value
+        free[key] += 1
+    for key in range(size):
+        yield sorted_values[starts[key] : starts[key + 1]].tolist()

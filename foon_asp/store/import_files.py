@@ -1,0 +1,126 @@
+"""From files to a store: whole or not at all."""
+
+import contextlib
+import os
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.problem import require_rates
+from foon_asp.store.builder import StoreBuilder
+from foon_asp.store.store_file import is_database_of_ours
+from foon_asp.text import (
+    STORE_SUFFIX,
+    DataFiles,
+    Diagnostic,
+    FoonReader,
+    is_store,
+    kitchen_item_warning,
+    read_labels,
+    read_object_list,
+    read_rates,
+)
+
+
+class Imported(NamedTuple):
+    """What was imported. ``copies`` counts the units read, ``units`` the distinct ones."""
+
+    copies: int
+    units: int
+    objects: int
+    warnings: tuple[Diagnostic, ...]
+    left_out: int
+
+
+def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Imported:
+    """Read networks and what stands beside them into a store; what was there before stays until the end.
+
+    Raises :class:`InputError` for input that is not understood, and :class:`UserError` where the store
+    cannot be written, is being written by another process, or would replace something that is no store.
+    """
+    if store.suffix != STORE_SUFFIX:
+        raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
+    if store.exists() and not is_database_of_ours(store):
+        raise UserError(f"{store}: there is something else under this name; remove it or choose another")
+    reader = FoonReader(lenient)
+    warnings = reader.diagnostics
+    kitchen = read_object_list(files.kitchen, warnings) if files.kitchen else None
+    goals = read_object_list(files.goals, warnings) if files.goals else []
+    rates = read_rates(files.rates) if files.rates else None
+    utensils = read_labels(files.utensils) if files.utensils else None
+    earlier = len(warnings)
+    try:
+        with _written(store) as database:
+            builder = StoreBuilder(database, kitchen)
+            for file in files.network:
+                if is_store(file):
+                    raise UserError(f"{file}: is a store already; import the files that it was made from")
+                for motion, inputs, outputs, sources in reader.units(reader.text(file), str(file)):
+                    builder.add(motion, inputs, outputs, sources)
+            reader.raise_errors(earlier)
+            if rates is not None:
+                require_rates(builder.motion_sources(), rates)
+            builder.finish(goals, rates, utensils, reader.left_out)
+    except sqlite3.Error as error:
+        raise UserError(f"{store}: cannot be written: {error}") from None
+    except OSError as error:
+        raise UserError(f"{store}: cannot be written: {error.strerror or error}") from None
+    for entry, matched in zip(kitchen or (), builder.matched, strict=True):
+        if not matched:
+            warnings.append(kitchen_item_warning(entry))
+    return Imported(builder.copies, builder.units, builder.objects, tuple(warnings), reader.left_out)
+
+
+@contextlib.contextmanager
+def _written(store: Path) -> Iterator[sqlite3.Connection]:
+    """Give a new database, to be renamed to the store when all went well and to be removed when not.
+
+    One file beside the store, which a later import takes over when this process is killed.
+    """
+    partial = store.with_name(f".{store.name}.partial")
+    if partial.exists():
+        _remove_leftover(partial, store)
+    database = sqlite3.connect(partial, timeout=0, isolation_level=None)
+    locked = False
+    try:
+        # No journal: until the file is renamed, nobody needs it.
+        for setting in (
+            "page_size = 4096",
+            "journal_mode = OFF",
+            "synchronous = OFF",
+            "locking_mode = EXCLUSIVE",
+        ):
+            database.execute(f"PRAGMA {setting}")
+        _lock(database, store)
+        locked = True
+        yield database
+        database.execute("COMMIT")
+        database.close()
+        with partial.open("rb+") as file:
+            os.fsync(file.fileno())
+        partial.replace(store)
+    finally:
+        database.close()
+        if locked:
+            partial.unlink(missing_ok=True)
+
+
+def _remove_leftover(partial: Path, store: Path) -> None:
+    """Remove what a killed import left, but not what another one is at."""
+    database = sqlite3.connect(partial, timeout=0, isolation_level=None)
+    # Cut off in the middle, it may be no database any more.
+    with contextlib.closing(database), contextlib.suppress(sqlite3.DatabaseError):
+        _lock(database, store)
+    partial.unlink(missing_ok=True)
+
+
+def _lock(database: sqlite3.Connection, store: Path) -> None:
+    """Begin to write; raises :class:`UserError` when another process does."""
+    try:
+        database.execute("BEGIN EXCLUSIVE")
+    except sqlite3.OperationalError as error:
+        if error.sqlite_errorcode == sqlite3.SQLITE_BUSY:
+            raise UserError(f"{store}: another import is writing it") from None
+        raise

@@ -1,0 +1,216 @@
+"""A store, opened to ask questions: names, and the part of the network that a question is about."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
+from foon_asp.network.network import UnitKey
+from foon_asp.problem import ContainerRule, needed_inputs
+from foon_asp.store.block import SIZES, Table
+from foon_asp.store.label_index import LabelIndex
+from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
+from foon_asp.store.store_file import StoreFile
+from foon_asp.text import ListedObject
+
+
+class Store:
+    """An opened store. Ids of units and nodes are those that the whole network has when read from text.
+
+    Every method reads what it needs and no more, so that what it costs does not grow with the network.
+    Opening and each method raise :class:`UserError` where the store turns out to be none, newer or damaged.
+    """
+
+    level = 3
+
+    def __init__(self, file: Path) -> None:
+        self._file = StoreFile(file)
+        about = self._file.block(Table.ABOUT, 0)
+        self.units: int = about["units"]
+        self.objects: int = about["objects"]
+        self.left_out: int = about["left_out"]
+        self._kitchen: int | None = about["kitchen"]
+        self._counts = about
+        self._labels = LabelIndex(self._file.block, about["labels"], about["trigram_blocks"])
+        self._nodes: dict[int, ObjectNode] = {}
+
+    @property
+    def has_kitchen(self) -> bool:
+        """Whether a kitchen file was imported, if only an empty one."""
+        return self._kitchen is not None
+
+    @cached_property
+    def rates(self) -> dict[str, Fraction] | None:
+        """The success rates of all motions, or ``None`` when none were imported."""
+        rates = self._file.block(Table.ABOUT, 1)
+        return None if rates is None else {motion: Fraction(rate) for motion, rate in rates.items()}
+
+    @cached_property
+    def utensils(self) -> frozenset[str]:
+        """The labels of utensils."""
+        return frozenset(self._file.block(Table.ABOUT, 2) or ())
+
+    @cached_property
+    def goals(self) -> tuple[ListedObject, ...]:
+        """The entries of the goals file."""
+        return tuple(map(entry_of, self._file.block(Table.ABOUT, 3)))
+
+    def kitchen_items(self) -> tuple[ListedObject, ...]:
+        """Read the entries of the kitchen file: all of them, which only a whole network needs."""
+        return tuple(entry_of(values) for block in self._file.blocks(Table.KITCHEN) for values in block)
+
+    def motion_sources(self) -> list[tuple[str, Source]]:
+        """Read every motion, with the place of the first unit that has it."""
+        motions = range(self._counts["motions"])
+        return [(values[0], Source(*values[1:])) for values in (self._at(Table.MOTION, m) for m in motions)]
+
+    def node(self, object_id: int) -> ObjectNode:
+        """Give the node with that id."""
+        found = self._nodes.get(object_id)
+        if found is None:
+            found = self._nodes[object_id] = node_of(self._at(Table.NODE, object_id))
+        return found
+
+    def in_kitchen(self, object_id: int) -> bool:
+        """Whether the node is in the kitchen that was imported."""
+        return bool(self._at(Table.NODE, object_id)[0])
+
+    def object_id(self, node: ObjectNode) -> int | None:
+        """Give the id of a node, or ``None`` when the network does not have it."""
+        found = self._hashed(node_hashes(node)[0], lambda other: other == node)
+        return found[0] if found else None
+
+    def find(self, pattern: NodePattern) -> list[int]:
+        """Give the ids of the nodes that a kitchen or goals entry stands for."""
+        return self._hashed(pattern_hash(pattern), pattern.matches)
+
+    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
+        """Give how many nodes have a label, and the first of them."""
+        return self._labels.labelled(label)[1:]
+
+    def beginning(self, start: str, most: int) -> list[str]:
+        """Give labels that begin so, in alphabetical order, at most so many."""
+        return self._labels.beginning(start, most)
+
+    def near(self, label: str, most: int) -> list[str]:
+        """Give labels that are like one, the likest first, at most so many."""
+        return self._labels.near(label, most)
+
+    def unit_id(self, unit: FunctionalUnit) -> int | None:
+        """Give the id of a unit, or ``None`` when the network does not have it."""
+        sides = [[self.object_id(node) for node in side] for side in (unit.inputs, unit.outputs)]
+        if None in sides[0] or None in sides[1]:
+            return None
+        outputs = sides[1]
+        candidates = self._file.block(Table.ABOUT, 4) if not outputs else self._producers(outputs[0])  # type: ignore[arg-type]
+        for candidate in candidates:
+            motion, inputs, outputs, _ = self._at(Table.UNIT, candidate)
+            if [set(inputs), set(outputs)] == [set(side) for side in sides] and (
+                self._at(Table.MOTION, motion)[0] == unit.motion
+            ):
+                return candidate
+        return None
+
+    def cone(
+        self,
+        goals: Iterable[int],
+        containers: ContainerRule,
+        utensils: frozenset[str],
+        in_kitchen: Callable[[int], bool] | None = None,
+    ) -> Network:
+        """Read the units that goals can need: backwards through all producers, stopping at the kitchen.
+
+        ``utensils`` are what the container rule looks at, ``in_kitchen`` says of a node whether it is at
+        hand (in the store's kitchen if ``None``). Whatever tree for these goals is best in the whole
+        network, without a unit to spare, is one of this part.
+        """
+        at_hand = in_kitchen or self.in_kitchen
+        goals = list(goals)
+        wanted = {o for o in goals if not at_hand(o)}
+        waiting = list(wanted)
+        units: set[int] = set()
+        while waiting:
+            for unit in self._producers(waiting.pop()):
+                if unit in units:
+                    continue
+                units.add(unit)
+                for o in self._needs(unit, containers, utensils):
+                    if o not in wanted and not at_hand(o):
+                        wanted.add(o)
+                        waiting.append(o)
+        return self.part(units, goals)
+
+    def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
+        """Read some units, the nodes in them, and further nodes, as a part of the whole network."""
+        unit_ids = sorted(set(units))
+        read = [self._at(Table.UNIT, unit) for unit in unit_ids]
+        object_ids = sorted(
+            {*objects, *(o for _, ins, outs, _ in read for side in (ins, outs) for o in side)}
+        )
+        new_ids = {o: place for place, o in enumerate(object_ids)}
+        network = self._network(read, [self.node(o) for o in object_ids], new_ids)
+        return replace(network, unit_numbers=tuple(unit_ids), object_numbers=tuple(object_ids))
+
+    def whole(self) -> tuple[Network, frozenset[int]]:
+        """Read the whole network, and which nodes are in the kitchen."""
+        values = [values for block in self._file.blocks(Table.NODE) for values in block]
+        units = [values for block in self._file.blocks(Table.UNIT) for values in block]
+        if len(values) != self.objects or len(units) != self.units:
+            self._file.damaged(f"{len(units)} of {self.units} units, {len(values)} of {self.objects} nodes")
+        network = self._network(units, [node_of(node) for node in values], range(len(values)))
+        return network, frozenset(o for o, node in enumerate(values) if node[0])
+
+    def _network(
+        self, units: Sequence[Any], objects: Sequence[ObjectNode], ids: Mapping[int, int] | range
+    ) -> Network:
+        """Put a network together; ``ids`` are the new ids of the nodes by the old ones."""
+        motions: list[str] = []
+        inputs: list[tuple[int, ...]] = []
+        outputs: list[tuple[int, ...]] = []
+        sources: list[tuple[Source, ...]] = []
+        unit_ids: dict[UnitKey, int] = {}
+        for motion, ins, outs, places in units:
+            motions.append(self._at(Table.MOTION, motion)[0])
+            inputs.append(tuple([ids[o] for o in ins]))
+            outputs.append(tuple([ids[o] for o in outs]))
+            sources.append(tuple(self._source(*places[i : i + 3]) for i in range(0, len(places), 3)))
+            unit_ids[motions[-1], frozenset(inputs[-1]), frozenset(outputs[-1])] = len(unit_ids)
+        object_ids = {node: place for place, node in enumerate(objects)}
+        return Network(
+            tuple(objects),
+            tuple(motions),
+            tuple(inputs),
+            tuple(outputs),
+            tuple(sources),
+            object_ids,
+            unit_ids,
+        )
+
+    def _source(self, origin: int, line: int, column: int) -> Source:
+        file, videos = self._at(Table.ORIGIN, origin)
+        return Source(file, line, column, tuple(videos))
+
+    def _needs(self, unit: int, containers: ContainerRule, utensils: frozenset[str]) -> list[int]:
+        inputs: list[int] = self._at(Table.UNIT, unit)[1]
+        if containers is ContainerRule.STRICT:
+            return inputs
+        nodes = tuple(map(self.node, inputs))
+        needed = set(needed_inputs(FunctionalUnit("", nodes, ()), containers, utensils))
+        return [o for o, node in zip(inputs, nodes, strict=True) if node in needed]
+
+    def _producers(self, object_id: int) -> list[int]:
+        found: list[int] = self._at(Table.PRODUCERS, object_id)
+        return found
+
+    def _hashed(self, wanted: int, is_it: Callable[[ObjectNode], bool]) -> list[int]:
+        """Give the ids of the nodes that have this hash and that ``is_it`` says yes of."""
+        bucket = self._file.block(Table.NODE_HASH, wanted % self._counts["hash_blocks"])
+        found = zip(bucket[::2], bucket[1::2], strict=True)
+        return [o for known, o in found if known == wanted and is_it(self.node(o))]
+
+    def _at(self, table: Table, number: int) -> Any:
+        block, place = divmod(number, SIZES[table])
+        return self._file.block(table, block)[place]

@@ -1,0 +1,110 @@
+"""The file of a store: what is a store, is it whole, and its blocks."""
+
+import os
+import sqlite3
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+from foon_asp.errors import UserError
+from foon_asp.store.block import APPLICATION_ID, VERSION, Table, unseal
+from foon_asp.text import STORE_MAGIC
+
+_HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where
+
+Value = TypeVar("Value")
+
+
+def is_database_of_ours(file: Path) -> bool:
+    """Whether a file begins like a store of any version, whole or not."""
+    try:
+        with file.open("rb") as opened:
+            header = opened.read(_HEADER)
+    except OSError:
+        return False
+    return header[: len(STORE_MAGIC)] == STORE_MAGIC and int.from_bytes(header[68:72]) == APPLICATION_ID
+
+
+class StoreFile:
+    """An opened store, read only. Any number of processes can have one open, and it is never written.
+
+    Raises :class:`UserError`, here and at every block, for a file that is no store, was made by a newer
+    program, is cut off or damaged. Every block that is read is held against its checksum.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+        self._blocks: dict[tuple[Table, int], Any] = {}
+        self._check_header()
+        try:
+            # immutable: no locks, no files beside it. Who holds it open keeps what an import replaces.
+            uri = f"{file.absolute().as_uri()}?mode=ro&immutable=1"
+            self._database = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
+        except sqlite3.Error as error:
+            raise UserError(f"{file}: cannot be read: {error}") from None
+
+    def block(self, table: Table, number: int) -> Any:
+        """Give a block, which is not to be changed."""
+        found = self._blocks.get((table, number))
+        if found is None:
+            row = self._guarded(lambda: self._row(table, number))
+            if row is None:
+                self.damaged(f"block {number} of {table} is missing")
+            found = self._blocks[table, number] = self._guarded(lambda: unseal(table, number, row[0]))
+        return found
+
+    def blocks(self, table: Table) -> Iterator[Any]:
+        """Give all blocks of a table in order, and keep none of them."""
+        rows = self._guarded(lambda: self._database.execute(f"SELECT * FROM {table} ORDER BY number"))
+        number = 0
+        while (row := self._guarded(rows.fetchone)) is not None:
+            if row[0] != number:
+                self.damaged(f"block {number} of {table} is missing")
+            yield self._guarded(lambda row=row: unseal(table, row[0], row[1]))  # type: ignore[misc]
+            number += 1
+
+    def damaged(self, what: str) -> NoReturn:
+        """Say that the store is of no use."""
+        raise UserError(
+            f"{self.file}: the store is damaged ({what}); import the files again that it was made from"
+        )
+
+    def _row(self, table: Table, number: int) -> Any:
+        statement = f"SELECT content FROM {table} WHERE number = ?"
+        return self._database.execute(statement, (number,)).fetchone()
+
+    def _guarded(self, read: Callable[[], Value]) -> Value:
+        # MemoryError and OverflowError: lengths that are none; ValueError: names and checksums.
+        try:
+            return read()
+        except (sqlite3.Error, MemoryError, OverflowError, ValueError) as error:
+            self.damaged(str(error) or type(error).__name__)
+
+    def _check_header(self) -> None:
+        """Refuse what is no store of ours, before SQLite looks at it."""
+        file = self.file
+        try:
+            with file.open("rb") as opened:
+                header = opened.read(_HEADER)
+                size = opened.seek(0, os.SEEK_END)
+        except OSError as error:
+            raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+        if header[: len(STORE_MAGIC)] != STORE_MAGIC:
+            what = "is empty" if not size else "is no store"
+            raise UserError(f"{file}: {what}; foon-asp import FILES --store {file.name} makes one")
+        if len(header) < _HEADER:
+            self.damaged(f"it ends after {size} bytes")
+        if int.from_bytes(header[68:72]) != APPLICATION_ID:
+            raise UserError(f"{file}: is a database of another program, expected a store of foon-asp")
+        version = int.from_bytes(header[60:64])
+        if version > VERSION:
+            raise UserError(
+                f"{file}: has version {version} of the store format, this foon-asp reads version {VERSION}: "
+                "it needs a newer foon-asp, or a new import of the files that it was made from"
+            )
+        if version != VERSION:
+            self.damaged(f"version {version} of the store format never was")
+        page = int.from_bytes(header[16:18])
+        expected = (65536 if page == 1 else page) * int.from_bytes(header[28:32])
+        if size != expected:
+            self.damaged(f"it has {size} bytes, expected {expected}")

@@ -1,0 +1,685 @@
+"""The store: what comes out is what went in, a question reads its cone, and damage is said in words."""
+
+import json
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from foon_asp.asp import Settings, program_facts, solve
+from foon_asp.errors import UserError
+from foon_asp.network import Network
+from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.store import Store, builder, import_files
+from foon_asp.store.block import SIZES, VERSION, Table, seal
+from foon_asp.text import Data, DataFiles, InputError, find_data, find_goal, read_data, write_units
+from tests.conftest import ROOT, Cli
+from tests.random_problems import random_problem
+
+KITCHEN = ROOT / "data" / "kitchen"
+
+SOUP = """\
+# Source:\thttps://example.org/soup
+O\tleek
+S\twhole
+O\tknife
+M\tchop
+O\tleek
+S\tchopped
+S\ton\t[board]
+//
+O\tleek
+S\tchopped
+S\ton\t[board]
+O\tpot
+S\tcontains\t{water,salt}
+M\tadd
+O\tsoup
+S\traw
+S\tin\t[pot]
+//
+O\tsoup
+S\traw
+S\tin\t[pot]
+M\tcook
+O\tsoup
+S\tcooked
+S\tin\t[pot]
+//
+"""
+# The first unit again, with another video and the inputs the other way round; then a unit that is new.
+MORE = """\
+# Source:\thttps://example.org/more
+# Source:\thttps://example.org/still-more
+O\tknife
+O\tleek
+S\twhole
+M\tchop
+O\tleek
+S\tchopped
+S\ton\t[board]
+//
+O\tsoup
+S\tcooked
+S\tin\t[pot]
+M\teat
+O\tpot
+//
+"""
+ENTRIES = [
+    {"label": "leek", "states": ["whole"], "ingredients": [], "container": None},
+    {"label": "knife", "states": [], "ingredients": [], "container": None},
+    {"label": "pot", "states": [], "ingredients": ["salt", "water"], "container": None},
+]
+SOUP_NODE = "soup; cooked; in [pot]"
+
+
+def write_soup(folder: Path) -> DataFiles:
+    folder.mkdir(exist_ok=True)
+    (folder / "a.txt").write_text(SOUP, encoding="utf-8")
+    (folder / "b.txt").write_text(MORE, encoding="utf-8")
+    (folder / "kitchen.json").write_text(json.dumps(ENTRIES), encoding="utf-8")
+    (folder / "motion.txt").write_text("chop\t0.9\nadd\t0.5\ncook\t1\neat\t0.25\n", encoding="utf-8")
+    (folder / "utensils.txt").write_text("knife\npot\n", encoding="utf-8")
+    goals = [{"label": "soup", "states": ["cooked"], "ingredients": [], "container": "pot"}]
+    (folder / "goal_nodes.json").write_text(json.dumps(goals), encoding="utf-8")
+    return find_data(folder)
+
+
+@pytest.fixture
+def soup(tmp_path: Path) -> tuple[DataFiles, Path]:
+    """Give the files of a small network, and a store made of them."""
+    files = write_soup(tmp_path / "soup")
+    import_files(files, tmp_path / "soup.foon")
+    return files, tmp_path / "soup.foon"
+
+
+@pytest.fixture(scope="module")
+def kitchen_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give a store of the bundled kitchen."""
+    store = tmp_path_factory.mktemp("store") / "kitchen.foon"
+    import_files(find_data(KITCHEN), store)
+    return store
+
+
+def same_network(one: Network, other: Network) -> bool:
+    return (one.objects, one.motions, one.inputs, one.outputs, one.sources) == (
+        other.objects,
+        other.motions,
+        other.inputs,
+        other.outputs,
+        other.sources,
+    )
+
+
+def assert_holds(store: Path, data: Data) -> None:
+    """Hold everything in a store against what was read from the files."""
+    opened = Store(store)
+    network, kitchen = opened.whole()
+    assert same_network(network, data.network)
+    assert kitchen == data.kitchen
+    assert opened.kitchen_items() == data.kitchen_items
+    assert opened.goals == data.goals
+    assert opened.rates == data.rates
+    assert opened.utensils == data.utensils
+    assert (opened.units, opened.objects) == (len(data.network), len(data.network.objects))
+    for unit in range(len(network)):
+        assert network.unit_id(network.unit(unit)) == unit
+        assert opened.unit_id(network.unit(unit)) == unit
+    for o, node in enumerate(network.objects):
+        assert opened.object_id(node) == network.object_id(node) == o
+        assert opened.in_kitchen(o) == (o in kitchen)
+
+
+def cone_problem(store: Path, problem: Problem, own_kitchen: bool) -> Problem:
+    """Ask the same of the store: with the kitchen that is in it, or with one given by id."""
+    opened = Store(store)
+    at_hand = None if own_kitchen else problem.kitchen.__contains__
+    part = opened.cone(problem.goals, problem.containers, problem.utensils, at_hand)
+    numbers = part.object_numbers
+    kitchen = frozenset(place for place, o in enumerate(numbers) if o in problem.kitchen)
+    goals = tuple(numbers.index(goal) for goal in problem.goals)
+    return Problem(part, kitchen, goals, problem.rates, problem.utensils, problem.containers)
+
+
+def import_problem(problem: Problem, folder: Path) -> Path:
+    """Write the network and the kitchen of a problem and import them."""
+    network = problem.network
+    (folder / "FOON.txt").write_text(
+        write_units(network.unit(unit) for unit in range(len(network))), encoding="utf-8"
+    )
+    blocks = []
+    for o in sorted(problem.kitchen):
+        node = network.objects[o]
+        lines = [f"O\t{node.label}", *(f"S\t{state}" for state in sorted(node.states))]
+        lines += [f"S\t{word}\t[{related}]" for word, related in sorted(node.relations)]
+        lines += [f"S\t{word}\t{{{','.join(items)}}}" for word, items in node.contents]
+        blocks.append("\n".join(lines) + "\n")
+    (folder / "kitchen.txt").write_text("".join(blocks), encoding="utf-8")
+    store = folder / "network.foon"
+    import_files(DataFiles((folder / "FOON.txt",), kitchen=folder / "kitchen.txt"), store)
+    return store
+
+
+def test_a_store_holds_what_the_files_do(soup: tuple[DataFiles, Path]) -> None:
+    files, store = soup
+    data = read_data(files)
+    assert len(data.network) == 4
+    assert_holds(store, data)
+
+
+def test_the_bundled_kitchen(kitchen_store: Path) -> None:
+    assert_holds(kitchen_store, read_data(find_data(KITCHEN)))
+
+
+def test_copies_keep_their_places_and_videos(soup: tuple[DataFiles, Path]) -> None:
+    files, store = soup
+    network, _ = Store(store).whole()
+    first, second = network.sources[0]
+    assert (first.file, first.line, first.videos) == (
+        str(files.network[0]),
+        2,
+        ("https://example.org/soup",),
+    )
+    assert (second.file, second.line, second.videos) == (
+        str(files.network[1]),
+        3,
+        ("https://example.org/more", "https://example.org/still-more"),
+    )
+
+
+@pytest.mark.parametrize("kept_back", [1, 3, 100_000])
+def test_copies_that_come_much_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kept_back: int) -> None:
+    monkeypatch.setattr(builder, "_LATER_COPIES", kept_back)
+    unit = "O\tpan\nS\t{}\nM\theat\nO\tpan\nS\t{}\nS\thot\n//\n"
+    once = "".join(unit.format(f"n{i}", f"n{i}") for i in range(3 * SIZES[Table.UNIT] + 5))
+    files = []
+    for number in range(4):
+        files.append(tmp_path / f"{number}.txt")
+        files[-1].write_text(once, encoding="utf-8")
+    store = tmp_path / "many.foon"
+    imported = import_files(DataFiles(tuple(files)), store)
+    assert (imported.copies, imported.units) == (4 * imported.units, 3 * SIZES[Table.UNIT] + 5)
+    assert_holds(store, read_data(DataFiles(tuple(files))))
+
+
+def test_units_without_outputs_and_names_of_any_letters(tmp_path: Path) -> None:
+    file = tmp_path / "odd.txt"
+    file.write_text(
+        'O\tсуп\nS\tнесвежий\nM\tвылить\n//\nO\t鍋 "x" \\\nS\tin\t[🥣]\nM\tmix\nO\tcrème\n//\n',
+        encoding="utf-8",
+    )
+    store = tmp_path / "odd.foon"
+    import_files(DataFiles((file,)), store)
+    assert_holds(store, read_data(DataFiles((file,))))
+
+
+def test_a_network_without_units(tmp_path: Path) -> None:
+    file = tmp_path / "empty.txt"
+    file.write_text("# nothing\n", encoding="utf-8")
+    import_files(DataFiles((file,)), tmp_path / "empty.foon")
+    assert_holds(tmp_path / "empty.foon", read_data(DataFiles((file,))))
+    with pytest.raises(UserError, match="no object node has the label 'soup'"):
+        find_goal("soup", Store(tmp_path / "empty.foon"))
+
+
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_the_cone_has_the_optimum_of_the_whole(rule: ContainerRule, tmp_path: Path) -> None:
+    smaller = 0
+    for seed in range(30):
+        problem = random_problem(seed, rule, units=10)
+        store = import_problem(problem, tmp_path)
+        network, kitchen = Store(store).whole()
+        assert (network.objects, network.inputs, network.outputs) == (
+            problem.network.objects,
+            problem.network.inputs,
+            problem.network.outputs,
+        )
+        assert kitchen == problem.kitchen
+        for own_kitchen in (True, False):
+            part = cone_problem(store, problem, own_kitchen)
+            smaller += len(part.network) < len(network)
+            for objectives in ([Objective.UNITS], [Objective.SUCCESS], [Objective.KITCHEN, Objective.INPUTS]):
+                # The same text goes to clingo, ids and all, so that everything that follows is the same.
+                settings = Settings()
+                assert program_facts(part, objectives, settings) == program_facts(
+                    problem, objectives, settings
+                )
+                found, expected = solve(part, objectives), solve(problem, objectives)
+                assert (found.status, found.costs) == (expected.status, expected.costs), seed
+                if expected.units is not None and found.units is not None:
+                    numbers = tuple(map(part.network.unit_number, found.units))
+                    assert numbers == expected.units
+    assert smaller > 15  # the cone is a part, or this would say nothing
+
+
+def test_a_question_reads_what_it_is_about(tmp_path: Path) -> None:
+    """The same recipe among ten and among a thousand others: as many blocks are read."""
+    counts = []
+    for others in (10, 1000):
+        stews = (SOUP.replace("soup", f"stew {n}").replace("leek", f"herb {n}") for n in range(others))
+        file, kitchen = tmp_path / f"{others}.txt", tmp_path / "kitchen.json"
+        file.write_text("".join([SOUP, *stews]), encoding="utf-8")
+        kitchen.write_text(json.dumps(ENTRIES), encoding="utf-8")
+        store = tmp_path / f"{others}.foon"
+        import_files(DataFiles((file,), kitchen), store)
+        opened = Store(store)
+        goal = find_goal(SOUP_NODE, opened)
+        assert len(opened.cone([goal], ContainerRule.STRICT, frozenset())) == 3
+        counts.append(len(opened._file._blocks))
+    assert counts[0] == counts[1] < 12
+
+
+def message(name: str, names: Any, listed: Any = ()) -> str:
+    with pytest.raises(UserError) as raised:
+        find_goal(name, names, listed)
+    return str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["bowl", "onio", "onoin", "macaronni", "greek salat", "bowl; broken", "xyzzy", "o", "", "; ;"],
+)
+def test_goals_are_not_found_in_the_same_words(kitchen_store: Path, name: str) -> None:
+    network = read_data(find_data(KITCHEN)).network
+    assert message(name, Store(kitchen_store)) == message(name, network)
+
+
+def test_goals_are_found(kitchen_store: Path) -> None:
+    data = read_data(find_data(KITCHEN))
+    store = Store(kitchen_store)
+    for node in data.network.objects:
+        assert find_goal(f"{node};", store) == data.network.object_id(node)
+    for entry in data.goals:
+        label = entry.pattern.label
+        assert find_goal(label, store, store.goals) == find_goal(label, data.network, data.goals)
+    for item in data.kitchen_items:
+        assert tuple(store.find(item.pattern)) == data.network.find(item.pattern)
+
+
+def test_a_label_that_begins_so_is_a_candidate(soup: tuple[DataFiles, Path]) -> None:
+    files, store = soup
+    expected = "no object node has the label 'so'; similar are\n  --goal 'soup; raw; in [pot]'\n"
+    assert message("so", Store(store)).startswith(expected)
+    assert message("so", read_data(files).network).startswith(expected)
+
+
+# What a question prints, from the store as from the text.
+
+QUESTIONS = (
+    ("solve", "--goal", "macaroni"),
+    ("solve", "--goal", "greek salad", "--objective", "success", "--containers", "implied"),
+    ("solve", "--goal", "greek salad", "--goal", "ice", "--format", "foon"),
+    ("solve", "--goal", "macaroni", "--level", "2"),
+    ("solve", "--goal", "ice", "--constraint", "forbid_motion", "-c", "forbidden_motion=crush"),
+    ("solve", "--goal", "bowl"),
+    ("facts", "--goal", "macaroni"),
+    ("facts", "--goal", "macaroni", "--constraint", "forbid_motion"),
+    ("search", "ids", "--goal", "greek salad", "--format", "json"),
+    ("search", "bfs", "--goal", "macaroni", "--containers", "implied"),
+    ("optima", "--objective", "units", "--format", "json"),
+    ("optima", "--goal", "ice", "--objective", "inputs,success", "--format", "json"),
+    ("compare", "--goal", "macaroni", "--goal", "ice", "--format", "csv"),
+    pytest.param(("compare", "--all-makeable", "--search", "bfs"), marks=pytest.mark.slow),
+    ("draw", "--goal", "macaroni"),
+    ("draw", "--unit", "7", "--unit", "3"),
+    ("draw", "--unit", "999999"),
+    ("draw",),
+    ("stats",),
+)
+
+
+def without_times(text: str) -> Any:
+    """Give what was printed, as values where it is JSON, without what differs from run to run."""
+    try:
+        return dropped(json.loads(text))
+    except json.JSONDecodeError:
+        return text
+
+
+def dropped(value: Any) -> Any:
+    if isinstance(value, list):
+        return [dropped(part) for part in value]
+    if isinstance(value, dict):
+        return {key: dropped(part) for key, part in value.items() if key != "seconds"}
+    return value
+
+
+@pytest.mark.parametrize("words", QUESTIONS, ids=" ".join)
+def test_answers_are_those_from_text(cli: Cli, kitchen_store: Path, words: tuple[str, ...]) -> None:
+    from_text = cli(*words, "--data", KITCHEN)
+    from_store = cli(*words, "--network", kitchen_store)
+    assert from_store.code == from_text.code
+    assert without_times(from_store.out) == without_times(from_text.out)
+    assert from_store.err == from_text.err
+
+
+def test_json_answers_have_the_ids_of_the_whole_network(cli: Cli, kitchen_store: Path) -> None:
+    words = ("solve", "--goal", "greek salad", "--format", "json")
+    from_text, from_store = cli(*words, "--data", KITCHEN).json, cli(*words, "--network", kitchen_store).json
+    for answer in (from_text, from_store):
+        assert answer.pop("seconds")["read"] > 0
+    assert from_store == from_text
+    assert max(unit["id"] for unit in from_store["units"]) > len(from_store["units"])
+
+
+def test_a_tree_is_checked_and_drawn(cli: Cli, kitchen_store: Path, tmp_path: Path) -> None:
+    tree = tmp_path / "tree.txt"
+    tree.write_text(cli("solve", "--goal", "macaroni", "--format", "foon").out, encoding="utf-8")
+    strange = tmp_path / "strange.txt"
+    strange.write_text(tree.read_text(encoding="utf-8") + MORE, encoding="utf-8")
+    for file in (tree, strange):
+        for words in (("check", file, "--goal", "macaroni"), ("draw", "--tree", file, "--goal", "macaroni")):
+            from_text, from_store = cli(*words, "--data", KITCHEN), cli(*words, "--network", kitchen_store)
+            assert from_store == from_text
+    assert cli("check", strange, "--goal", "macaroni", "--network", kitchen_store).code == 1
+
+
+def test_what_is_named_beside_the_store_replaces_what_is_in_it(
+    cli: Cli, soup: tuple[DataFiles, Path], tmp_path: Path
+) -> None:
+    _, store = soup
+    words = ("solve", "--network", store, "--goal", SOUP_NODE, "--format", "json")
+    assert cli(*words).json["costs"]["units"] == 3
+    kitchen = tmp_path / "other.json"
+    raw = {"label": "soup", "states": ["raw"], "ingredients": [], "container": "pot"}
+    kitchen.write_text(json.dumps([raw, {"label": "spoon"}]), encoding="utf-8")
+    rates = tmp_path / "rates.txt"
+    rates.write_text("chop\t1\nadd\t1\ncook\t0.75\neat\t1\n", encoding="utf-8")
+    ran = cli(*words, "--kitchen", kitchen, "--rates", rates)
+    assert ran.json["costs"]["units"] == 1
+    assert ran.json["costs"]["success"]["exact"] == "3/4"
+    assert "'spoon' matches no object node of the network" in ran.err
+    rates.write_text("cook\t0.75\n", encoding="utf-8")
+    ran = cli(*words, "--rates", rates)  # motions that this goal does not need count too, as from text
+    assert ran.code == 2
+    assert "b.txt:11:1: error: the motion 'eat' has no success rate" in ran.err
+
+
+def test_a_store_without_a_kitchen(cli: Cli, soup: tuple[DataFiles, Path], tmp_path: Path) -> None:
+    files, _ = soup
+    store = tmp_path / "bare.foon"
+    ran = cli("import", *files.network, "--store", store)
+    assert ran.code == 0
+    assert ran.out.startswith(f"{store}: 4 units of 5 read, 7 object nodes, ")
+    ran = cli("solve", "--network", store, "--goal", SOUP_NODE)
+    assert ran.code == 1
+    assert "no kitchen is given" in ran.err
+    ran = cli("solve", "--network", store, "--goal", SOUP_NODE, "--kitchen", files.kitchen or "")
+    assert ran.code == 0
+
+
+def test_a_store_is_read_by_itself(cli: Cli, soup: tuple[DataFiles, Path]) -> None:
+    files, store = soup
+    ran = cli("solve", "--network", store, "--network", files.network[0], "--goal", "soup")
+    assert ran.code == 2
+    assert "a store is read by itself" in ran.err
+    ran = cli("import", store, files.network[0], "--store", store)
+    assert ran.code == 2
+    assert "is a store already" in ran.err
+    ran = cli("fmt", store)
+    assert ran.code == 2
+    assert "is a store, expected text" in ran.err
+    assert_holds(store, read_data(files))
+
+
+def test_bad_names(cli: Cli, soup: tuple[DataFiles, Path], tmp_path: Path) -> None:
+    files, _ = soup
+    assert "ends in .foon" in cli("import", files.network[0], "--store", tmp_path / "x.db").err
+    taken = tmp_path / "notes.foon"
+    taken.write_text("my notes", encoding="utf-8")
+    ran = cli("import", files.network[0], "--store", taken)
+    assert ran.code == 2
+    assert "there is something else under this name" in ran.err
+    assert taken.read_text(encoding="utf-8") == "my notes"
+    assert cli("import", files.network[0], "--store", tmp_path / "no" / "x.foon").code == 2
+    assert cli("import", "--store", tmp_path / "x.foon").code == 2
+    assert cli("solve", "--network", tmp_path / "none.foon", "--goal", "x").code == 2
+
+
+DIRTY = SOUP + "O\tsalt\nX nonsense\nM\tshake\nO\tsalt\nS\tshaken\n//\n"
+
+
+def test_dirty_files(cli: Cli, soup: tuple[DataFiles, Path], tmp_path: Path) -> None:
+    _, store = soup
+    before = store.read_bytes()
+    dirty = tmp_path / "dirty.txt"
+    dirty.write_text(DIRTY, encoding="utf-8")
+    ran = cli("import", dirty, "--store", store)
+    assert ran.code == 2
+    assert "dirty.txt:29:1: error:" in ran.err
+    assert store.read_bytes() == before
+    ran = cli("import", dirty, "--store", store, "--lenient")
+    assert ran.code == 0
+    assert "warning: 1 line left out" in ran.err
+    with pytest.raises(InputError):
+        import_files(DataFiles((dirty,)), tmp_path / "new.foon")
+    assert not (tmp_path / "new.foon").exists()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["dirty.txt", "soup", "soup.foon"]
+    assert_holds(store, read_data(DataFiles((dirty,)), lenient=True))
+    ran = cli("solve", "--network", store, "--goal", "salt; shaken")
+    assert "1 line left out when the store was made" in ran.err
+
+
+def test_rates_have_to_be_there_for_every_motion(cli: Cli, soup: tuple[DataFiles, Path]) -> None:
+    files, store = soup
+    before = store.read_bytes()
+    assert files.rates is not None
+    files.rates.write_text("chop\t0.9\n", encoding="utf-8")
+    ran = cli("import", "--data", files.rates.parent, "--store", store)
+    assert ran.code == 2
+    assert "a.txt:10:1: error: the motion 'add' has no success rate" in ran.err
+    assert store.read_bytes() == before
+
+
+def killed_import(source: Path, store: Path) -> None:
+    """Begin to import, and kill the process in the middle of writing."""
+    words = [sys.executable, "-m", "foon_asp", "import", str(source), "--store", str(store)]
+    partial = store.with_name(f".{store.name}.partial")
+    process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while not (partial.exists() and partial.stat().st_size > 100_000):
+        assert process.poll() is None, "the import was over before it could be killed"
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert process.returncode == -signal.SIGKILL
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no SIGKILL here")
+def test_a_killed_import_leaves_the_old_store_or_none(soup: tuple[DataFiles, Path], tmp_path: Path) -> None:
+    files, store = soup
+    large = tmp_path / "large.txt"
+    unit = "O\tpan\nS\tstate {}\nS\ton\t[table {}]\nM\theat\nO\tpan\nS\thot {}\n//\n"
+    large.write_text("".join(unit.format(i, i, i) for i in range(40_000)), encoding="utf-8")
+    before = store.read_bytes()
+    killed_import(large, store)
+    assert store.read_bytes() == before
+    assert_holds(store, read_data(files))
+    new = tmp_path / "new.foon"
+    killed_import(large, new)
+    assert not new.exists()
+    assert (tmp_path / ".new.foon.partial").exists()  # or there was nothing to kill
+    import_files(files, new)  # takes the leftover away
+    assert_holds(new, read_data(files))
+    assert not (tmp_path / ".new.foon.partial").exists()
+
+
+def test_two_imports_at_once(soup: tuple[DataFiles, Path]) -> None:
+    files, store = soup
+    partial = store.with_name(f".{store.name}.partial")
+    other = sqlite3.connect(partial, isolation_level=None)
+    other.execute("PRAGMA journal_mode = OFF")
+    other.execute("BEGIN EXCLUSIVE")
+    other.execute("CREATE TABLE unit (number INTEGER)")
+    with pytest.raises(UserError, match="another import is writing it"):
+        import_files(files, store)
+    assert partial.exists()
+    other.close()
+    import_files(files, store)
+    assert not partial.exists()
+
+
+def test_readers_at_once_and_a_new_import_under_them(soup: tuple[DataFiles, Path]) -> None:
+    files, store = soup
+    data = read_data(files)
+    opened = Store(store)
+    with ThreadPoolExecutor(4) as pool:
+        assert all(same_network(network, data.network) for network, _ in pool.map(read_whole, [store] * 16))
+    import_files(DataFiles(files.network[1:]), store)
+    assert same_network(opened.whole()[0], data.network)  # the old one, as long as it is open
+    assert len(Store(store).whole()[0]) == 2
+
+
+def read_whole(store: Path) -> tuple[Network, frozenset[int]]:
+    return Store(store).whole()
+
+
+# Damage.
+
+
+def everything(store: Path) -> list[object]:
+    """Ask all that can be asked."""
+    opened = Store(store)
+    network, kitchen = opened.whole()
+    answers: list[object] = [
+        network.objects,
+        network.motions,
+        network.inputs,
+        network.outputs,
+        network.sources,
+    ]
+    goal = find_goal(SOUP_NODE, opened, opened.goals)
+    cone = opened.cone([goal], ContainerRule.IMPLIED, opened.utensils)
+    answers += [kitchen, goal, cone.unit_numbers, cone.inputs, opened.rates, opened.utensils, opened.goals]
+    answers += [
+        opened.kitchen_items(),
+        opened.motion_sources(),
+        opened.near("sop", 3),
+        opened.beginning("s", 9),
+    ]
+    answers += [opened.labelled("soup"), [opened.unit_id(network.unit(u)) for u in range(len(network))]]
+    answers += [opened.left_out, opened.has_kitchen]
+    return answers
+
+
+def test_damaged_bytes_are_seen_or_do_no_harm(soup: tuple[DataFiles, Path]) -> None:
+    _, store = soup
+    whole = store.read_bytes()
+    expected = everything(store)
+    rng = random.Random(7)
+    used = [place for place, byte in enumerate(whole) if byte]  # most of the file is empty
+    refused = 0
+    for _ in range(600):
+        damaged = bytearray(whole)
+        for place in rng.sample(used, rng.choice((1, 1, 1, 2, 20))):
+            damaged[place] = rng.randrange(256)
+        store.write_bytes(damaged)
+        try:
+            assert everything(store) == expected
+        except UserError as error:
+            refused += str(store) in str(error)
+    assert refused > 300
+
+
+def test_a_truncated_store_is_refused(soup: tuple[DataFiles, Path], cli: Cli) -> None:
+    _, store = soup
+    whole = store.read_bytes()
+    for length in (*range(0, 120, 7), *range(4096, len(whole), 3001), len(whole) - 1):
+        store.write_bytes(whole[:length])
+        with pytest.raises(UserError, match=r"damaged|is empty|is no store"):
+            Store(store)
+    ran = cli("solve", "--network", store, "--goal", "soup")
+    assert ran.code == 2
+    assert "the store is damaged (it has" in ran.err
+    assert "Traceback" not in ran.err
+    store.write_bytes(whole + b"\0" * 100)
+    with pytest.raises(UserError, match="damaged"):
+        Store(store)
+
+
+def test_a_block_in_the_place_of_another_is_damage(soup: tuple[DataFiles, Path]) -> None:
+    _, store = soup
+    with sqlite3.connect(store) as database:
+        block = database.execute("SELECT content FROM unit WHERE number = 0").fetchone()[0]
+        database.execute("UPDATE node SET content = ? WHERE number = 0", (block,))
+    database.close()
+    with pytest.raises(UserError, match="block 0 of node does not agree with its checksum"):
+        Store(store).node(0)
+
+
+def test_a_missing_block_is_damage(soup: tuple[DataFiles, Path]) -> None:
+    _, store = soup
+    with sqlite3.connect(store) as database:
+        database.execute("DELETE FROM producers")
+    database.close()
+    opened = Store(store)
+    with pytest.raises(UserError, match="block 0 of producers is missing"):
+        opened.cone([find_goal(SOUP_NODE, opened)], ContainerRule.STRICT, frozenset())
+
+
+@pytest.mark.parametrize("number", [0, VERSION + 1, 999])
+def test_another_version_is_refused(soup: tuple[DataFiles, Path], cli: Cli, number: int) -> None:
+    _, store = soup
+    with sqlite3.connect(store) as database:
+        database.execute(f"PRAGMA user_version = {number}")
+    database.close()
+    ran = cli("solve", "--network", store, "--goal", "soup")
+    assert ran.code == 2
+    words = (
+        f"has version {number} of the store format" if number else "version 0 of the store format never was"
+    )
+    assert words in ran.err
+
+
+def test_foreign_files_are_refused(tmp_path: Path, cli: Cli) -> None:
+    store = tmp_path / "foreign.foon"
+    with sqlite3.connect(store) as database:
+        database.execute("CREATE TABLE bookmarks (address TEXT)")
+    database.close()
+    assert "is a database of another program" in cli("solve", "--network", store, "--goal", "x").err
+    renamed = store.rename(tmp_path / "foreign.txt")  # whatever it is called
+    assert "is a database of another program" in cli("solve", "--network", renamed, "--goal", "x").err
+    store.write_text(SOUP, encoding="utf-8")
+    ran = cli("solve", "--network", store, "--goal", "x")
+    assert ran.code == 2
+    assert f"{store}: is no store" in ran.err
+    store.write_bytes(os.urandom(5000))
+    assert "is no store" in cli("solve", "--network", store, "--goal", "x").err
+    store.write_bytes(b"")
+    assert "is empty" in cli("solve", "--network", store, "--goal", "x").err
+
+
+def test_a_checksum_knows_its_place() -> None:
+    assert seal(Table.UNIT, 1, [1]) != seal(Table.UNIT, 2, [1]) != seal(Table.NODE, 2, [1])
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_units(tmp_path: Path, cli: Cli) -> None:
+    folder = tmp_path / "generated"
+    script = ROOT / "benchmarks" / "generate.py"
+    words = ["--family", "recipe-like", "--units", "100000", "--out", str(folder)]
+    subprocess.run([sys.executable, str(script), *words], check=True, stdout=subprocess.DEVNULL)
+    store = tmp_path / "large.foon"
+    files = find_data(folder)
+    import_files(files, store)
+    data = read_data(files)
+    opened = Store(store)
+    network, kitchen = opened.whole()
+    assert same_network(network, data.network)
+    assert kitchen == data.kitchen
+    for entry in data.goals[::4]:
+        (goal,) = data.network.find(entry.pattern)
+        problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils)
+        part = cone_problem(store, problem, own_kitchen=True)
+        found, expected = solve(part), solve(problem)
+        assert (found.status, found.costs) == (expected.status, expected.costs)
