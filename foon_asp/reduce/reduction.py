@@ -152,7 +152,7 @@ class _Reducer:
             self.costs = costs = ExactCosts(self.problem, self.objectives, self.left)
         except TooFineError:
             costs = None
-        if costs is not None and not isinstance(self.left, range):
+        if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
             self._offer(derive(self.graph, self.left, costs, added=True).tree(self.graph, self.graph.goals))
         thorough = False  # as a last resort
         for _ in range(_ROUNDS):
