@@ -20,6 +20,7 @@ FLOORS = (
     {"errors", "resources"},
     {"network"},
     {"text", "problem", "bounds"},
+    {"reduce"},
     {"asp", "search", "proof", "store"},
     {"explain", "compare", "lint", "certificate", "engines"},
     {"report"},

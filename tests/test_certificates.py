@@ -299,7 +299,9 @@ def test_solve_writes_a_certificate_that_verify_accepts(cli: Cli, tmp_path: Path
     exact = ran.json["costs"]["success"]["exact"]
     assert exact in checked.out
     assert cli("verify", file, "--format", "json").json["costs"] == {"success": exact, "units": 31}
-    assert cli("solve", "--goal", "ice", "--format", "json").json["proof"] == "solver"
+    assert cli("solve", "--goal", "ice", "--format", "json").json["proof"] == "cuts"
+    plain = cli("solve", "--goal", "ice", "--reduce", "none", "--format", "json")
+    assert plain.json["proof"] == "solver"
 
 
 def test_verify_refuses_other_data_and_changes(cli: Cli, tmp_path: Path) -> None:
@@ -371,8 +373,8 @@ def test_the_answer_stands_when_the_search_for_a_certificate_is_interrupted(
     file = tmp_path / "proof.json"
     ran = cli("solve", "--goal", "ice", "--certificate", file, "--format", "json")
     assert ran.code == 0
-    assert (ran.json["status"], ran.json["proof"]) == ("optimal", "solver")
-    assert "proof: solver (no certificate was found, and nothing is written)" in ran.err
+    assert (ran.json["status"], ran.json["proof"]) == ("optimal", "cuts")
+    assert "proof: cuts (no certificate was found, and nothing is written)" in ran.err
     assert not file.exists()
 
 

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foon_asp.lint import CATALOG, lint, mended
-from foon_asp.lint.dead_cycles import dead_cycles
 from foon_asp.lint.near_names import near_names
 from foon_asp.network import Network, NetworkBuilder, ObjectNode
+from foon_asp.network.dead_cycles import dead_cycles
 from foon_asp.report.lint_text import lint_text
 from foon_asp.text import Diagnostic, FoonReader, Severity
 from tests.conftest import CORPUS, Cli

@@ -1,12 +1,13 @@
 """The solver against the brute-force oracle, on small random networks with cycles."""
 
 import random
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.network import FunctionalUnit
+from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from tests import oracle
 from tests.random_problems import MOTIONS, random_problem
@@ -72,6 +73,22 @@ def constraint(seed: int, problem: Problem) -> tuple[str, list[str], oracle.Allo
     def has(unit: FunctionalUnit) -> bool:
         return any(node.label == label for node in (*unit.inputs, *unit.outputs))
 
+    food = rng.choice(["flour", "salt", "dough", "butter"])
+    rates = problem.rates or {}
+
+    def holds(node: ObjectNode) -> bool:
+        return node.label == food or any(food in contents.ingredients for contents in node.contents)
+
+    def nodes_of(tree: Tree) -> list[ObjectNode]:
+        return [node for unit in tree for node in (*unit.inputs, *unit.outputs)]
+
+    def no_food(tree: Tree) -> bool:
+        goals = [problem.network.objects[goal] for goal in problem.goals]
+        return not any(map(holds, [*nodes_of(tree), *goals]))
+
+    def utensils(tree: Tree) -> set[str]:
+        return {node.label for node in nodes_of(tree)} & problem.utensils
+
     drawn: list[tuple[str, list[str], oracle.Allowed]] = [
         ("forbid_motion", [f"forbidden_motion={motion}"], lambda t: all(u.motion != motion for u in t)),
         ("forbid_object", [f"forbidden_object={label}"], lambda t: not any(map(has, t))),
@@ -82,8 +99,43 @@ def constraint(seed: int, problem: Problem) -> tuple[str, list[str], oracle.Allo
             [f"limited_motion={motion}", f"max_uses={bound // 2}"],
             lambda t: sum(u.motion == motion for u in t) <= bound // 2,
         ),
+        ("require_object", [f"required_object={label}"], lambda t: any(map(has, t))),
+        ("forbid_ingredient", [f"forbidden_ingredient={food}"], no_food),
+        ("require_ingredient", [f"required_ingredient={food}"], lambda t: any(map(holds, nodes_of(t)))),
+        ("at_most_utensils", [f"max_utensils={bound // 2}"], lambda t: len(utensils(t)) <= bound // 2),
+        ("least_rate", ["least_rate=250000"], lambda t: all(rates[u.motion] >= Fraction(1, 4) for u in t)),
+        (
+            "before",
+            [f"earlier_motion={motion}", f"later_motion={other}"],
+            lambda t: motion == other or waits(problem, t, motion, other),
+        ),
+        ("require_intermediate", [f"required_intermediate={label}"], lambda t: passed_on(problem, t, label)),
     ]
     return rng.choice(drawn)
+
+
+def waits(problem: Problem, tree: Tree, earlier: str, later: str) -> bool:
+    """Whether no order that begins without the earlier motion comes to run the later one, naively."""
+    at_hand = {problem.network.objects[o] for o in problem.kitchen}
+    others = [unit for unit in tree if unit.motion != earlier]
+    for _ in others:
+        for unit in others:
+            if oracle.needed(unit, problem.containers, problem.utensils) <= at_hand:
+                at_hand |= set(unit.outputs)
+    ran = [u for u in others if oracle.needed(u, problem.containers, problem.utensils) <= at_hand]
+    return all(unit.motion != later for unit in ran)
+
+
+def passed_on(problem: Problem, tree: Tree, label: str) -> bool:
+    """Whether some unit makes, out of something else, what another unit needs and the kitchen lacks."""
+    at_hand = {problem.network.objects[o] for o in problem.kitchen}
+    return any(
+        node in oracle.needed(user, problem.containers, problem.utensils)
+        for maker in tree
+        for node in set(maker.outputs) - set(maker.inputs) - at_hand
+        if node.label == label
+        for user in tree
+    )
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -1,10 +1,12 @@
 """The facts handed to clingo, as text."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
+from pathlib import PurePath
 
 from foon_asp.asp.exact_success import RateScale
 from foon_asp.errors import UserError
+from foon_asp.network import Source
 from foon_asp.problem import Objective, Problem
 
 # Every predicate written here, with its arity; encodings/README.md gives the meanings.
@@ -22,6 +24,7 @@ FACT_PREDICATES = {
     "kitchen": 1,
     "goal": 1,
     "utensil": 1,
+    "source": 2,
     "inputs": 2,
     "ingredients": 2,
     "rate": 2,
@@ -30,6 +33,22 @@ FACT_PREDICATES = {
     "exponent": 3,
     "seen": 3,
     "wanted": 2,
+    "for_sale": 2,
+    "second_choice": 1,
+    "found_list": 1,
+    "on_list": 2,
+    "constraint": 2,
+    "kept": 1,
+    "correction": 2,
+    "soft": 2,
+    "broken": 2,
+    "greatest_penalty": 1,
+    "tree_size": 1,
+    "in_tree": 1,
+    "avoid": 2,
+    "tree": 1,
+    "distance": 3,
+    "chosen_trees": 1,
 }
 
 OBJECTIVE_TERMS = {
@@ -43,11 +62,14 @@ OBJECTIVE_TERMS = {
 _LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
 
 
-def write_facts(problem: Problem, units: Sequence[int], scale: RateScale | None) -> str:
+def write_facts(
+    problem: Problem, units: Sequence[int], scale: RateScale | None, with_sources: bool = False
+) -> str:
     """Describe the given units of a problem, their object nodes, the kitchen and the goals.
 
     One line per unit and per object node; ids are those of the whole network. ``scale`` gives the weights
-    of ``risk/2``; ``None`` where no rates are known.
+    of ``risk/2``; ``None`` where no rates are known. ``with_sources`` adds where each unit was read, which
+    only constraints look at.
     """
     network, rates = problem.network, problem.rates
     number, name = network.unit_number, network.object_number
@@ -66,6 +88,8 @@ def write_facts(problem: Problem, units: Sequence[int], scale: RateScale | None)
         if scale and rates:
             rate = rates[network.motions[unit]]
             facts.append(f"rate({u},{_millionths(rate)}). risk({u},{_check(scale.weights[rate])}).")
+        if with_sources:
+            facts += [f"source({u},{quote(source)})." for source in _source_names(network.sources[unit])]
         lines.append(" ".join(facts))
     described.update(dict.fromkeys(problem.goals))
     labels: set[str] = set()
@@ -113,9 +137,72 @@ def write_wanted(exponents: Mapping[int, int]) -> str:
     return "".join(f"wanted({factor},{_check(exponent)}).\n" for factor, exponent in exponents.items())
 
 
+def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
+    """Say which object nodes can be bought at which price, a whole number, and which only if need be."""
+    facts = [f"for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
+    return "".join([*facts, *(f"second_choice({o}).\n" for o in second_choices)])
+
+
+def write_list(number: int, items: Iterable[int]) -> str:
+    """Give a shopping list that was found before."""
+    return f"found_list({number}).\n" + "".join(f"on_list({number},{o}).\n" for o in items)
+
+
+def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
+    """Say what it costs to drop each constraint, by number, and which are not dropped."""
+    facts = [f"constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
+    return "".join([*facts, *(f"kept({number}).\n" for number in kept)])
+
+
+def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
+    """Give sets of constraints, by number, each of which leaves a tree when it is dropped."""
+    return "".join(
+        f"correction({place},{number}).\n"
+        for place, correction in enumerate(corrections)
+        for number in correction
+    )
+
+
+def write_soft(weights: Mapping[int, int]) -> str:
+    """Give the weight of each soft constraint, by number."""
+    return "".join(f"soft({number},{_check(weight)}).\n" for number, weight in weights.items())
+
+
+def write_greatest_penalty(penalty: int) -> str:
+    """Bound the sum of the weights of what is broken."""
+    return f"greatest_penalty({_check(penalty)}).\n"
+
+
+def write_tree(units: Collection[int]) -> str:
+    """Ask for a tree of exactly these units."""
+    return f"tree_size({len(units)}).\n" + "".join(f"in_tree({unit}).\n" for unit in units)
+
+
+def write_avoided(number: int, units: Iterable[int]) -> str:
+    """Rule out a tree, by the ids of its units in the whole network, and all that hold it."""
+    return "".join(f"avoid({number},{_check(unit)}).\n" for unit in units)
+
+
+def write_distances(trees: Sequence[Collection[int]], chosen: int) -> str:
+    """Ask for so many of some trees, given by their units."""
+    sets = list(map(frozenset, trees))
+    facts = [f"chosen_trees({chosen}).", *(f"tree({number})." for number in range(len(sets)))]
+    for number, one in enumerate(sets):
+        facts += [
+            f"distance({number},{other},{len(one ^ sets[other])})." for other in range(number + 1, len(sets))
+        ]
+    return "\n".join(facts) + "\n"
+
+
 def quote(text: str) -> str:
     """Give a clingo string."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+
+
+def _source_names(sources: Iterable[Source]) -> dict[str, None]:
+    """Give the names by which a constraint can mean the places of a unit: files, with folders and without."""
+    names = (name for s in sources for name in (s.file, PurePath(s.file).name, *s.videos))
+    return dict.fromkeys(names)
 
 
 def _millionths(rate: Fraction) -> int:

@@ -22,9 +22,14 @@ class Status(StrEnum):
 
 
 class Proof(StrEnum):
-    """What a claim rests on: an exhausted search, or a certificate that was verified without a solver."""
+    """What a claim rests on.
+
+    ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search; see
+    docs/reductions.md. ``certificate``: a certificate that was verified without either.
+    """
 
     SOLVER = "solver"
+    CUTS = "cuts"
     CERTIFICATE = "certificate"
 
 
@@ -38,6 +43,9 @@ class Outcome(NamedTuple):
     ``proof`` is what an ``optimal`` or ``infeasible`` answer rests on, ``None`` for the others.
     ``encodings`` is the folder whose encodings replaced ours, if one did: what is best is then what they say.
     ``certified`` are the objectives, from the first on, for which a certificate proves the tree best.
+    ``left`` counts the units that the search had to choose from, 0 where nothing was left to search.
+    ``cuts`` are the sets of object nodes whose landmarks the reductions bounded costs with; see
+    :mod:`foon_asp.bounds`.
     """
 
     problem: Problem
@@ -50,3 +58,5 @@ class Outcome(NamedTuple):
     encodings: Path | None = None
     proof: Proof | None = None
     certified: tuple[Objective, ...] = ()
+    left: int = 0
+    cuts: tuple[tuple[int, ...], ...] = ()

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
@@ -31,13 +32,26 @@ _RESERVED = (
 )
 
 
+class Relaxed(NamedTuple):
+    """Constraint files that are loaded in other words.
+
+    ``files`` are looked over like other constraints, but ``rules`` stand in for what they say, together with
+    ``encoding``, one of ours (``encodings/questions``).
+    """
+
+    files: tuple[Path, ...]
+    rules: str
+    encoding: Path
+
+
 class Settings(NamedTuple):
     """How to solve, and under which constraints.
 
     ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
-    interrupted.
+    interrupted. ``reductions`` come before the search, unless there are constraints or other encodings.
+    ``relaxed`` are constraints in other words.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -45,19 +59,23 @@ class Settings(NamedTuple):
     constants: tuple[str, ...] = ()
     clingo_options: tuple[str, ...] = ()
     time_limit: float | None = None
+    reductions: frozenset[Reduction] = ALL
+    relaxed: Relaxed | None = None
 
 
 class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
-    ``exact_success`` is loaded beside ``files`` when products of rates are compared exactly. ``own`` says
-    that every rule is ours, so that what the goals do not need cannot matter.
+    ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates
+    are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
+    matter.
     """
 
     files: tuple[Path, ...]
     exact_success: Path
     arguments: tuple[str, ...]
     own: bool
+    rules: str = ""
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
@@ -70,12 +88,18 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     folder = _find_encodings(settings.encodings, ours)
     base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
     added = tuple(dict.fromkeys(find_constraint(path) for path in settings.constraints))
+    relaxed = settings.relaxed
+    loaded = added
+    if relaxed is not None:
+        loaded = (*(file for file in added if file not in relaxed.files), relaxed.encoding)
+        added = tuple(dict.fromkeys((*added, *relaxed.files)))
     constants: list[str] = []
     if added or settings.encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
 
-        parsed = [encoding.read_encoding(file) for file in base]
+        ours_too = () if relaxed is None else (relaxed.encoding,)
+        parsed = [encoding.read_encoding(file) for file in (*base, *ours_too)]
         extra = [encoding.read_encoding(file) for file in added]
         for diagnostic in encoding.check_added(extra, parsed):
             warn(str(diagnostic))
@@ -83,10 +107,11 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
     return Program(
-        (*base, *added),
+        (*base, *loaded),
         ours / _EXACT_SUCCESS,
         (*constants, *_clingo_options(settings.clingo_options)),
         own=not added and settings.encodings is None,
+        rules="" if relaxed is None else relaxed.rules,
     )
 
 

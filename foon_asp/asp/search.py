@@ -1,49 +1,27 @@
 """One run of clingo over encodings and facts, with limits and without any claim of its own."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from clingo import Control, Model
 from clingo.symbol import SymbolType
 
+from foon_asp.asp.deadline import Deadline
+from foon_asp.asp.run import Run
 from foon_asp.errors import UserError
 
 
-@dataclass
-class Run:
-    """What a run of clingo ended with.
+def check(arguments: Sequence[str]) -> None:
+    """Raise :class:`UserError` for options that clingo does not take."""
+    messages: list[str] = []
+    try:
+        Control(list(arguments), logger=lambda _, text: messages.append(text))
+    except RuntimeError as error:
+        from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
-    ``units`` is the last (best) answer or ``None``, ``cost`` its cost vector as clingo reports it, which
-    wraps at 32 bits. ``exhausted`` says that the search space was, so that
-    the answer is optimal, or that there is none. ``lower`` holds the proved lower bound of each priority,
-    highest first, as far as known.
-    """
-
-    units: frozenset[int] | None = None
-    cost: tuple[int, ...] = ()
-    exhausted: bool = False
-    lower: list[int] = field(default_factory=list)
-    ground_seconds: float = 0.0
-    solve_seconds: float = 0.0
-
-
-class Deadline:
-    """A moment after which to stop, shared by all runs of one question; ``None`` is never."""
-
-    def __init__(self, seconds: float | None) -> None:
-        self._end = None if seconds is None else time.monotonic() + seconds
-        self.interrupted = False
-
-    @property
-    def passed(self) -> bool:
-        """Whether to stop, by time or by ctrl-C."""
-        return self.interrupted or (self._end is not None and time.monotonic() >= self._end)
-
-    def slice(self, longest: float = 0.2) -> float:
-        """Give how long to wait before looking at the clock again."""
-        return longest if self._end is None else max(0.0, min(longest, self._end - time.monotonic()))
+        raise fault(messages, str(error)) from None
 
 
 def run(
@@ -54,10 +32,12 @@ def run(
     opt_mode: str = "opt",
     on_tree: Callable[[frozenset[int]], None] | None = None,
     on_bound: Callable[[list[int]], None] | None = None,
+    predicates: Sequence[str] = (),
 ) -> Run:
     """Ground the files and facts and search for the best answer.
 
-    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do). Raises
+    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
+    ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. Raises
     what :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
     """
     messages: list[str] = []
@@ -84,6 +64,7 @@ def run(
         try:
             result.units = _used(model)
             result.cost = tuple(model.cost)
+            result.atoms = {name: _numbers(model, name) for name in predicates}
             if on_tree:
                 on_tree(result.units)
         except UserError as error:
@@ -130,3 +111,8 @@ def _used(model: Model) -> frozenset[int]:
                 raise UserError(f"the encodings made {symbol}, expected use(U) with the number of a unit")
             units.add(argument.number)
     return frozenset(units)
+
+
+def _numbers(model: Model, name: str) -> Counter[int]:
+    atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.name == name and symbol.positive)
+    return Counter(symbol.arguments[0].number for symbol in atoms)

@@ -4,14 +4,16 @@ import time
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
+from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_exponents, write_facts, write_objectives, write_seen, write_wanted
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.program import Program, Settings, assemble
-from foon_asp.asp.search import Deadline, Run, run
+from foon_asp.asp.run import Run
 from foon_asp.errors import BugError, UserError
-from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach
 from foon_asp.proof import Verdict, simulate_for
+from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
 
 Units = frozenset[int]
 
@@ -49,7 +51,7 @@ def program_facts(problem: Problem, objectives: Sequence[Objective], settings: S
 
     With them, bare clingo finds the same optimum from the same encodings.
     """
-    solver = _Solver(problem, tuple(objectives), settings, Reporter())
+    solver = _Solver(problem, tuple(objectives), settings._replace(reductions=NONE), Reporter())
     solver.cut()
     return solver.facts() + write_objectives(solver.levels)
 
@@ -70,6 +72,7 @@ class _Solver:
         self.reporter = reporter
         self.deadline = Deadline(settings.time_limit)
         self.units: tuple[int, ...] = ()
+        self.reduced: Reduced | None = None
         self.scale: RateScale | None = None
         self.seconds: dict[str, float] = {}
         self._facts: str | None = None
@@ -79,22 +82,36 @@ class _Solver:
                 "the objective success needs the success rates of the motions; give a rates file with --rates"
             )
         self.program: Program = assemble(settings, reporter.warning)
+        if settings.clingo_options:  # looked at now, since clingo may have nothing to do
+            from foon_asp.asp.search import check  # noqa: PLC0415
+
+            check(self.program.arguments)
 
     def solve(self) -> Outcome:
         first = self.cut()
         if first is None:
             return self._outcome(Status.INFEASIBLE, None, {})
         if self.program.own:
-            incumbent = Units(first)
+            incumbent = first
         else:  # the user's rules decide what a tree is: let them find the first one
             some = self._run(self.levels, opt_mode="ignore")
             if some.units is None:
                 return self._outcome(Status.INFEASIBLE if some.exhausted else Status.UNKNOWN, None, {})
             incumbent = some.units
         self._report_tree(incumbent)
+        if self.reduced and self.reduced.settled:
+            return self._optimal(incumbent)
+        return self._search(incumbent)
 
-        ended = self._run(self.levels)
+    def _search(self, incumbent: Units) -> Outcome:
+        """Ask clingo for what is better than the tree in hand."""
+        if self.reduced and self.deadline.passed:
+            return self._outcome(Status.FEASIBLE, incumbent, self._bounds([]))
+        wanted, strict = self._wanted(incumbent)
+        ended = self._run(self.levels, opt_mode=wanted, report=True)
         if ended.units is None and ended.exhausted:
+            if strict:
+                return self._optimal(incumbent)
             raise BugError("a tree is at hand, but the encodings say that there is none")
         best = self._better(incumbent, ended.units)
         if not ended.exhausted:
@@ -104,44 +121,83 @@ class _Solver:
             best, settled = self._settle_success(best)
             if not settled:
                 return self._outcome(Status.FEASIBLE, best, self._bounds(ended.lower))
-        costs = self.problem.costs(best)
-        return self._outcome(Status.OPTIMAL, best, {o: costs.measure(o) for o in self.levels})
+        return self._optimal(best)
 
-    def cut(self) -> tuple[int, ...] | None:
+    def cut(self) -> Units | None:
         """Cut the network down to what can matter; give some tree, or ``None`` when there is none.
 
-        Without constraints of the user's, that is what the goals can need; with them, all that can be
-        made, since a constraint may ask for units that no goal does.
+        Without constraints of the user's, that is what the goals can need, less what the reductions leave
+        out; with them, all that can be made, since a constraint may ask for units that no goal does.
         """
         began = time.perf_counter()
-        reached = reach(self.problem)
-        first = first_tree(self.problem, reached)
-        if first is not None:
-            self.units = relevant(self.problem, reached) if self.program.own else tuple(sorted(reached.units))
-            if self.problem.rates is not None:
-                self.scale = problem_scale(self.problem, self.units)
+        first: Units | None
+        if self.program.own:
+            self.reduced = reduce(
+                self.problem,
+                self.levels,
+                self.settings.reductions,
+                lambda: self.deadline.passed,
+                _Heard(self),
+            )
+            self.deadline.interrupted |= self.reduced.interrupted
+            self.units, first = self.reduced.units, self.reduced.tree
+        else:
+            reached = reach(self.problem)
+            some = first_tree(self.problem, reached)
+            first = None if some is None else Units(some)
+            if first is not None:
+                self.units = tuple(sorted(reached.units))
         self._spent("cut", began)
         return first
+
+    def _wanted(self, incumbent: Units) -> tuple[str, bool]:
+        """Give clasp's mode of search, and whether it leaves out trees that are only as good as this one.
+
+        After the reductions, trees that are only as good need not be among the units left. Where rates
+        multiply, rounded weights cannot tell what is better: then what weighs the same is left in.
+        """
+        if self.reduced is None or Reduction.BOUNDS not in self.settings.reductions:
+            return "opt", False
+        costs = self.problem.costs(incumbent)
+        if Objective.SUCCESS in self.levels:
+            before = self.levels[: self.levels.index(Objective.SUCCESS)]
+            return ",".join(["opt", *(str(costs.measure(o)) for o in before)]), False
+        figures = [int(costs.measure(o)) for o in self.levels]
+        while figures and not figures[-1]:
+            figures.pop()  # nothing is below 0
+        if not figures:
+            return "opt", False
+        figures[-1] -= 1
+        return ",".join(["opt", *map(str, figures)]), True
+
+    def _optimal(self, units: Units) -> Outcome:
+        costs = self.problem.costs(units)
+        return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
 
     def facts(self) -> str:
         if self._facts is None:
             began = time.perf_counter()
-            self._facts = write_facts(self.problem, self.units, self.scale)
+            if self.problem.rates is not None:
+                self.scale = problem_scale(self.problem, self.units)
+            self._facts = write_facts(self.problem, self.units, self.scale, with_sources=not self.program.own)
             self._spent("facts", began)
         return self._facts
 
-    def _run(self, objectives: Sequence[Objective], extra: str = "", opt_mode: str = "opt") -> Run:
-        facts = self.facts() + write_objectives(objectives) + extra
+    def _run(
+        self, objectives: Sequence[Objective], extra: str = "", opt_mode: str = "opt", report: bool = False
+    ) -> Run:
+        from foon_asp.asp.search import run  # noqa: PLC0415 (slow to import, and often there is nothing left)
+
+        facts = self.facts() + self.program.rules + write_objectives(objectives) + extra
         files = (*self.program.files, self.program.exact_success) if extra else self.program.files
-        first = opt_mode == "opt" and not extra
         ended = run(
             files,
             facts,
             self.program.arguments,
             self.deadline,
             opt_mode,
-            on_tree=(lambda units: self._report_tree(self._ids(units))) if first else None,
-            on_bound=self._report_bound if first else None,
+            on_tree=(lambda units: self._report_tree(self._ids(units))) if report else None,
+            on_bound=self._report_bound if report else None,
         )
         self.seconds["ground"] = self.seconds.get("ground", 0.0) + ended.ground_seconds
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
@@ -240,14 +296,33 @@ class _Solver:
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
 
-        Where it has none yet, no cost is below 0 and no success above 1.
+        Where it has none yet, no cost is below 0 and no success above 1. A bound on trees that are better
+        than the one in hand is no bound beyond that one. What the cuts say of the first objective counts.
         """
-        return {
-            objective: self.scale.success_bound(max(0, value))
-            if objective is Objective.SUCCESS and self.scale
-            else max(0, value)
+        bounds: dict[Objective, int | Fraction] = {
+            objective: max(0, value)
+            if objective is not Objective.SUCCESS
+            else self.scale.success_bound(max(0, value))
+            if self.scale
+            else Fraction(1)
             for objective, value in zip(self.levels, lower or [0], strict=False)
         }
+        first = self.levels[0]
+        reduced = self.reduced
+        if reduced is None or reduced.costs is None:
+            return bounds
+        proved = reduced.costs.first(reduced.bound)
+        if first is Objective.SUCCESS:
+            bounds[first] = min(bounds[first], proved)
+        elif self._best is not None:
+            have = self._best.measure(first)
+            bounds[first] = min(max(bounds[first], proved), have)
+            if len(bounds) > 1 and bounds[first] < have:
+                return {first: bounds[first]}
+            for objective in self.levels[1:]:
+                if objective in bounds and objective is not Objective.SUCCESS:
+                    bounds[objective] = min(bounds[objective], self._best.measure(objective))
+        return bounds
 
     def _report_tree(self, units: Units) -> None:
         costs = self.problem.costs(units)
@@ -264,6 +339,9 @@ class _Solver:
     ) -> Outcome:
         """Check the tree by simulation and state the outcome."""
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
+        if status is Status.OPTIMAL and self.reduced and self.reduced.settled:
+            proof = Proof.CUTS
+        left = 0 if proof is Proof.CUTS else len(self.units)
         if units is None:
             return Outcome(
                 self.problem,
@@ -293,6 +371,7 @@ class _Solver:
             raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
         self._spent("check", began)
         costs = problem.costs(listed)
+        cuts = self.reduced.cuts.cuts if self.reduced and self.reduced.cuts else ()
         return Outcome(
             problem,
             self.objectives,
@@ -303,7 +382,23 @@ class _Solver:
             self.seconds,
             self.settings.encodings,
             proof,
+            left=left,
+            cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
         )
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
+
+
+class _Heard(Listener):
+    """Passes on what the reductions find."""
+
+    def __init__(self, solver: _Solver) -> None:
+        self._solver = solver
+
+    def tree(self, units: Units) -> None:
+        self._solver._report_tree(units)
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        solver = self._solver
+        solver.reporter.bound(solver.levels[0], costs.first(bound))

@@ -6,6 +6,7 @@ objects are there from the start, some are targets. What the numbers stand for i
 
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut, landmark_cuts
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.bounds.lower_bound import Branch, CheaperError, Hopeless, Packing, Proof, Prover
 
@@ -13,6 +14,7 @@ __all__ = [
     "Branch",
     "CheaperError",
     "Cut",
+    "Cuts",
     "Cutter",
     "Hopeless",
     "Hypergraph",
@@ -21,4 +23,6 @@ __all__ = [
     "Proof",
     "Prover",
     "Vector",
+    "WeightedCut",
+    "landmark_cuts",
 ]

@@ -98,6 +98,29 @@ class Cutter:
         first = next(o for o in self.targets if not reached[o])
         return self._shrink(first, refused, reached, makers)
 
+    def widened(self, objects: Iterable[int]) -> Cut:
+        """Give the cut of some objects before the targets, with more where that keeps its landmark small.
+
+        An action that can never run lacks an object that nothing makes: with it in the cut, the action is no
+        member. So a cut found among those actions that can run has the same members here.
+        """
+        graph, reachable = self._graph, self._reachable
+        inside = {o for o in objects if not graph.at_start[o]}
+        stack = list(inside)
+        makers: set[int] = set()
+        while stack:
+            for action in graph.makers[stack.pop()]:
+                if action in makers or action in self._forbidden:
+                    continue
+                makers.add(action)
+                if inside.isdisjoint(graph.needs[action]):
+                    lacking = [o for o in graph.needs[action] if not reachable[o]]
+                    if lacking:
+                        inside.add(lacking[0])
+                        stack.append(lacking[0])
+        landmark = sorted(a for a in makers if inside.isdisjoint(graph.needs[a]))
+        return Cut(tuple(sorted(inside)), tuple(landmark))
+
     def _shrink(self, target: int, members: set[int], reached: bytearray, weight: list[int]) -> Cut:
         """Go back from an object that is not reached, only as far as is needed for the cut to hold.
 

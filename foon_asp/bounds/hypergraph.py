@@ -1,6 +1,6 @@
 """Actions that need objects and give objects, as plain lists of numbers."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,13 +10,16 @@ class Hypergraph:
     """Actions ``0 .. len(needs) - 1`` over objects ``0 .. size - 1``.
 
     Action ``a`` can run once every object of ``needs[a]`` is at hand, and then those of ``gives[a]`` are.
-    ``start`` lists the objects that are at hand from the beginning; no object is ever used up.
+    ``start`` are the objects that are at hand from the beginning; no object is ever used up.
+    ``known_makers`` are the actions that give each object, where they are known already: those of objects
+    that are there from the start may be among them.
     """
 
     size: int
     needs: Sequence[Sequence[int]]
     gives: Sequence[Sequence[int]]
-    start: Sequence[int]
+    start: Collection[int]
+    known_makers: Sequence[Sequence[int]] | None = None
 
     @cached_property
     def at_start(self) -> bytearray:
@@ -27,9 +30,9 @@ class Hypergraph:
         return flags
 
     @cached_property
-    def makers(self) -> list[list[int]]:
+    def makers(self) -> Sequence[Sequence[int]]:
         """For each object that is not there from the start, the actions that give it."""
-        return self._owners(self.gives)
+        return self._owners(self.gives) if self.known_makers is None else self.known_makers
 
     @cached_property
     def takers(self) -> list[list[int]]:

@@ -43,7 +43,7 @@ class Lexicographic:
         """Add up costs."""
         return tuple(sum(parts, Fraction(0)) for parts in zip(self.zero, *vectors, strict=True))
 
-    def sign(self, vector: Sequence[Fraction]) -> int:
+    def sign(self, vector: Sequence[Fraction | int]) -> int:
         """Give -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly."""
         place = 0
         for rates, logarithms in zip(self.levels, self._logarithms, strict=True):
@@ -87,14 +87,14 @@ def _logarithms(rate: Fraction) -> tuple[Fraction, Fraction]:
     return Fraction(denominator), Fraction(numerator)
 
 
-def _product_sign(rates: Sequence[Fraction], exponents: Sequence[Fraction]) -> int:
+def _product_sign(rates: Sequence[Fraction], exponents: Sequence[Fraction | int]) -> int:
     """Compare 1 with a product of rational powers: -1 where the product is above 1."""
     total = error = Fraction(0)
     for rate, exponent in zip(rates, exponents, strict=True):
         if exponent:
             below, above = _logarithms(rate)
-            total += exponent * (below - above)
-            error += abs(exponent) * (below + above) * _FINE
+            total += (below - above) * exponent
+            error += (below + above) * _FINE * (exponent if exponent > 0 else -exponent)
     if abs(total) > error:
         return 1 if total > 0 else -1
     common = math.lcm(*(e.denominator for e in exponents))

@@ -72,7 +72,9 @@ class Prover:
         order: Lexicographic,
         forbidden: frozenset[int] = frozenset(),
         expired: Callable[[], bool] = lambda: False,
+        known: Iterable[Iterable[int]] = (),
     ) -> None:
+        self._known = tuple(known)
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(1)
@@ -127,11 +129,18 @@ class Prover:
         cutter = Cutter(self._graph, targets, forbidden)
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
+        root = not used and forbidden == self._forbidden
+        known = [cutter.widened(objects) for objects in self._known] if root else []
         base = self._total(used)
         left = tuple(g - b for g, b in zip(goal, base, strict=True))
         if self._order.sign(left) <= 0:
             return Packing(())
+        packing = self._share_out(known)
+        total = self._order.total(weight for _, weight in packing.weights)
+        if self._order.sign(_minus(total, left)) >= 0:
+            return packing
         node = _Node(self, cutter, frozenset() if derivation & forbidden else derivation, used)
+        node.add(known)
         exact = node.relax(left)
         if exact is not None and self._order.sign(_minus(exact.value, left)) >= 0:
             return node.packing(exact)
@@ -146,6 +155,21 @@ class Prover:
             self._prove(derivation, goal, used, forbidden | {action}),
             self._prove(derivation, goal, used | {action}, forbidden),
         )
+
+    def _share_out(self, cuts: Iterable[Cut]) -> Packing:
+        """Give each cut in turn the weight that its members have left of their costs."""
+        left: dict[int, Vector] = {}
+        weights: list[tuple[Cut, Vector]] = []
+        for cut in cuts:
+            rests = [left.get(a, self._costs[a]) for a in cut.members]
+            weight = rests[0]
+            for rest in rests[1:]:
+                if rest != weight and self._order.sign(_minus(rest, weight)) < 0:
+                    weight = rest
+            if self._order.sign(weight) > 0:
+                weights.append((cut, weight))
+                left.update((a, _minus(rest, weight)) for a, rest in zip(cut.members, rests, strict=True))
+        return Packing(tuple(weights))
 
     def _total(self, actions: Iterable[int]) -> Vector:
         return self._order.total(self._costs[a] for a in actions)
@@ -213,6 +237,20 @@ class _Node:
     def _shares(self, exact: ExactOptimum) -> list[float]:
         return [float(exact.x.get(place, 0)) for place in range(len(self._actions))]
 
+    def add(self, cuts: Iterable[Cut]) -> None:
+        """Add cuts that are not there yet, and solve the relaxation with them."""
+        new = [cut for cut in cuts if cut.objects not in self._seen]
+        for cut in new:
+            self._admit(cut, [self._places[a] for a in cut.members])
+        if new:
+            self._relaxed = self._covering.solve()
+
+    def _admit(self, cut: Cut, row: list[int]) -> None:
+        self._seen.add(cut.objects)
+        self._cuts.append(cut)
+        self._rows.append(row)
+        self._covering.add(row)
+
     def _separate(self, x: Sequence[float]) -> bool:
         """Look for cuts whose landmarks have shares of less than 1; whether there were any."""
         found = False
@@ -228,10 +266,7 @@ class _Node:
                 row = [self._places[a] for a in cut.members]
                 if sum(x[place] for place in row) < _HIT:
                     found = True
-                    self._seen.add(cut.objects)
-                    self._cuts.append(cut)
-                    self._rows.append(row)
-                    self._covering.add(row)
+                    self._admit(cut, row)
             if found:
                 return True
         return False

@@ -59,12 +59,14 @@ def certify(
     units: Sequence[int],
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
+    cuts: Sequence[Sequence[int]] = (),
 ) -> Certificate | None:
     """Prove a tree optimal by a lexicographic list of objectives, or by as many from the first as can be.
 
     ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that
     is not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
-    trees: then the certificate proves a bound on all of them. ``None`` where nothing is found before
+    trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
+    each, that are tried first: :attr:`foon_asp.asp.Outcome.cuts`. ``None`` where nothing is found before
     ``expired`` says so, for ``success`` with rates of 0, and where products of rates are too close to be
     compared.
     """
@@ -73,7 +75,7 @@ def certify(
     guide = tuple(units)
     for count in range(len(objectives), 0, -1):
         question = Question(problem, objectives[:count], covered)
-        prover = _prover(question, expired)
+        prover = _prover(question, expired, cuts)
         try:
             proof = prover.prove(question.actions(units))
         except CheaperError as cheaper:
@@ -100,8 +102,10 @@ def certify_infeasible(problem: Problem, covered: Coverage = NOTHING) -> Certifi
     return None if cut is None else _write(question, covered, "infeasible", None, Hopeless(cut))
 
 
-def _prover(question: Question, expired: Callable[[], bool]) -> Prover:
-    return Prover(question.graph, question.goals, question.costs, question.order, question.forbidden, expired)
+def _prover(question: Question, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
+    return Prover(
+        question.graph, question.goals, question.costs, question.order, question.forbidden, expired, cuts
+    )
 
 
 def _write(

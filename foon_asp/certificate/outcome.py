@@ -26,7 +26,14 @@ def certify_outcome(
         found = certify_infeasible(outcome.problem, covered)
     elif outcome.status is Status.OPTIMAL and outcome.units is not None:
         try:
-            found = certify(outcome.problem, levels(outcome.objectives), outcome.units, covered, expired)
+            found = certify(
+                outcome.problem,
+                levels(outcome.objectives),
+                outcome.units,
+                covered,
+                expired,
+                outcome.cuts,
+            )
         except NotBestError as better:
             raise BugError(
                 f"the solver calls the tree {list(outcome.units)} optimal by "

@@ -11,6 +11,7 @@ from typing import Any
 from foon_asp.batch import Asked
 from foon_asp.cli import options
 from foon_asp.compare import makeable
+from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
 from foon_asp.text import read_object_list
@@ -71,6 +72,8 @@ def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
     found = hashlib.sha256()
     beside = (files.kitchen, files.rates, files.utensils, files.goals)
     for file in (*files.network, *(file for file in beside if file), *sorted(set(kitchens))):
+        if not file.is_file():
+            raise UserError(f"{file}: expected a file, since every process reads it anew")
         with file.open("rb") as opened:
             found.update(hashlib.file_digest(opened, "sha256").digest())
     return found.hexdigest()[:16]

@@ -22,6 +22,14 @@ _VERBS = (
     "certify",
     "verify",
     "draw",
+    "why-not",
+    "shopping-list",
+    "clash",
+    "alternatives",
+    "regret",
+    "menu",
+    "diff",
+    "constraints",
     "facts",
     "stats",
     "lint",
@@ -42,7 +50,7 @@ class _Verbs(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in _VERBS:
             return None
-        module = _MODULES.get(cmd_name, cmd_name)
+        module = _MODULES.get(cmd_name, cmd_name.replace("-", "_"))
         command: click.Command = importlib.import_module(f"foon_asp.cli.{module}").command
         return command
 

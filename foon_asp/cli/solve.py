@@ -1,5 +1,7 @@
 """``foon-asp solve``: the optimal task tree, and what is proved of it."""
 
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
@@ -10,8 +12,10 @@ from foon_asp.cli.certify import expiry, find_certificate, write_certificate
 from foon_asp.cli.cross_check import check_across, checkable
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.progress import Progress
+from foon_asp.cli.weighted_files import weighted_files
 from foon_asp.errors import UserError
-from foon_asp.problem import parse_objectives, reach
+from foon_asp.problem import Objective, Problem, parse_objectives, reach
+from foon_asp.reduce import Reduction, parse_reductions
 from foon_asp.report import answer
 from foon_asp.report.certified import certificate_lines
 
@@ -22,7 +26,21 @@ from foon_asp.report.certified import certificate_lines
 @options.containers_option
 @options.constraint_options
 @options.constant_option
+@click.option(
+    "--soft",
+    multiple=True,
+    metavar="FILE.lp=WEIGHT",
+    help="Constraints that may be broken, each way at that price; the least sum comes first.",
+)
 @options.time_limit_option
+@click.option(
+    "--reduce",
+    "reductions",
+    default="all",
+    show_default=True,
+    metavar="all|safe|none|LIST",
+    help=f"What comes before the search; safe keeps every optimal tree. LIST of: {', '.join(Reduction)}.",
+)
 @click.option(
     "--certificate",
     "certificate_file",
@@ -45,7 +63,9 @@ def command(
     constraints: tuple[Path, ...],
     encodings: Path | None,
     constants: tuple[str, ...],
+    soft: tuple[str, ...],
     time_limit: float | None,
+    reductions: str,
     certificate_file: Path | None,
     cross_check: bool,
     format_: str,
@@ -58,6 +78,10 @@ def command(
     foon-asp solve --goal 'greek salad'
     foon-asp solve --goal macaroni --objective success --containers implied
     foon-asp solve --goal ice --constraint forbid_motion -c forbidden_motion=crush
+    foon-asp solve --goal ice --soft forbid_motion.lp=3 -c forbidden_motion=crush
+
+    The rules without a head of a --soft file may be broken: each way, by other values of the variables, costs
+    the weight. The least sum of weights comes before all objectives.
 
     Exits with 0 when the tree is proved optimal, 1 when no tree exists, 2 for bad input, 3 when stopped
     at a limit.
@@ -66,12 +90,20 @@ def command(
         raise UserError(f"found {clingo_options[0]!r}, expected an option; a goal is named by --goal NAME")
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(
-        question.goals(goals_named),
-        containers,
-        everything=bool(constraints or encodings or certificate_file or cross_check),
+    # What is asked by rules of the user's, and what a certificate speaks about, is the whole network.
+    everything = bool(constraints or encodings or soft) or certificate_file is not None
+    problem = question.problem(question.goals(goals_named), containers, everything)
+    settings = Settings(
+        constraints, encodings, constants, clingo_options, time_limit, parse_reductions(reductions)
     )
-    settings = Settings(constraints, encodings, constants, clingo_options, time_limit)
+    if soft:
+        if certificate_file is not None or cross_check:
+            raise UserError(
+                "soft constraints have neither certificates nor a cross-check; leave one of them out"
+            )
+        return _solve_soft(
+            problem, chosen, settings, weighted_files(soft, "--soft"), question.read_seconds, format_
+        )
     expired = expiry(time_limit)
     covered = checkable(settings) if cross_check else None
     with Progress() as progress:
@@ -93,4 +125,34 @@ def command(
         remarks += check_across(outcome, covered, time_limit)
     for line in remarks:
         click.echo(line, err=format_ != "text")
+    return of_status(outcome.status)
+
+
+def _solve_soft(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    settings: Settings,
+    weights: Mapping[Path, int],
+    read_seconds: float,
+    format_: str,
+) -> ExitCode:
+    from foon_asp.asp.soft import solve_soft
+    from foon_asp.report.clash import soft_dict, soft_lines
+
+    with Progress() as progress:
+        found = solve_soft(problem, objectives, settings, weights, progress)
+    outcome = found.outcome
+    outcome.seconds["read"] = read_seconds
+    if format_ == "json":
+        click.echo(json.dumps(soft_dict(found), indent=2, ensure_ascii=False))
+    else:
+        remarks = list(soft_lines(found))
+        if format_ == "text":
+            click.echo(answer.outcome_text(outcome, remarks), nl=False)
+        else:
+            click.echo(answer.outcome_foon(outcome), nl=False)
+            click.echo("\n".join([answer.headline(outcome), *remarks]), err=True)
+    if outcome.status is Status.INFEASIBLE and format_ == "text":
+        for line in answer.why_infeasible(problem, reach(problem).available):
+            click.echo(line)
     return of_status(outcome.status)

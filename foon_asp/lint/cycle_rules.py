@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from foon_asp.lint.dead_cycles import DeadCycle, dead_cycles
 from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
 from foon_asp.text import Diagnostic
 
 _SHOWN = 4  # steps of a cycle

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterable, Iterator
 
-_DOUBLED = re.compile(r"([^\W\d_])\1+")
-_BETWEEN = re.compile(r"[\s\-_'’.]+")
+from foon_asp.network.spelling import joined, one_letter_apart, without_doubles
+
 _LONGEST = 60  # letters: what is longer is no name, and comparing it takes long
 _SHORTEST_DOUBLED = 5  # letters: off and of, bell and bel are words of their own
 _PLURAL_ENDING = re.compile(r"e?s$")
@@ -55,22 +55,14 @@ def _spelt_two_ways(counts: dict[str, int]) -> Iterator[tuple[str, str]]:
     spellings: dict[str, list[str]] = {}
     for name in counts:
         if len(name) <= _LONGEST:
-            spellings.setdefault(_skeleton(name), []).append(name)
+            spellings.setdefault(without_doubles(name), []).append(name)
     for skeleton, names in spellings.items():
         if len(names) < 2:
             continue
         most = max(names, key=lambda name: counts[name])
         for name in names:
-            if name != most and (len(skeleton) >= _SHORTEST_DOUBLED or _joined(name) == _joined(most)):
+            if name != most and (len(skeleton) >= _SHORTEST_DOUBLED or joined(name) == joined(most)):
                 yield name, most
-
-
-def _joined(name: str) -> str:
-    return _BETWEEN.sub("", name.casefold()) or name
-
-
-def _skeleton(name: str) -> str:
-    return _DOUBLED.sub(r"\1", _joined(name))
 
 
 def _without_a_letter(name: str) -> Iterable[str]:
@@ -88,7 +80,7 @@ def _is_slip(rare: str, frequent: str, counts: dict[str, int], verbs: bool) -> b
     word, other = differing[0]
     ending = _VERB_ENDING if verbs else _PLURAL_ENDING
     is_grammar = ending.sub("", word) == ending.sub("", other)
-    if is_grammar or word[:1] != other[:1] or not _one_letter_apart(word, other):
+    if is_grammar or word[:1] != other[:1] or not one_letter_apart(word, other):
         return False
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     ratio = counts[frequent] / counts[rare]
@@ -100,15 +92,3 @@ def _is_slip(rare: str, frequent: str, counts: dict[str, int], verbs: bool) -> b
     if ratio >= _HIGHEST_RATIO:
         return shortest >= _SHORT
     return shortest >= _LONG and ratio >= _RATIO
-
-
-def _one_letter_apart(word: str, other: str) -> bool:
-    """Whether adding, leaving out or changing one letter, or swapping two, leads from one to the other."""
-    start = 0
-    while start < min(len(word), len(other)) and word[start] == other[start]:
-        start += 1
-    a, b = word[start:], other[start:]
-    while a and b and a[-1] == b[-1]:
-        a, b = a[:-1], b[:-1]
-    swapped = len(a) == 2 and a == b[::-1]
-    return (swapped or max(len(a), len(b)) == 1) and (a + b).isalpha()

@@ -3,7 +3,7 @@
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from foon_asp.network.functional_unit import FunctionalUnit
@@ -84,6 +84,22 @@ class Network:
             return None
         inputs, outputs = (frozenset(ids[node] for node in side) for side in (unit.inputs, unit.outputs))
         return self._unit_ids.get((unit.motion, inputs, outputs))
+
+    def without(self, units: Iterable[int]) -> "Network":
+        """Give the same network without some units, as a part of this one: nodes keep their ids."""
+        gone = set(units)
+        kept = [unit for unit in range(len(self)) if unit not in gone]
+        places = {unit: place for place, unit in enumerate(kept)}
+        return replace(
+            self,
+            motions=tuple(self.motions[unit] for unit in kept),
+            inputs=tuple(self.inputs[unit] for unit in kept),
+            outputs=tuple(self.outputs[unit] for unit in kept),
+            sources=tuple(self.sources[unit] for unit in kept),
+            _unit_ids={key: places[unit] for key, unit in self._unit_ids.items() if unit in places},
+            stands_for=tuple(self.stands_for[unit] for unit in kept) if self.stands_for else (),
+            unit_numbers=tuple(self.unit_number(unit) for unit in kept),
+        )
 
     @cached_property
     def producers(self) -> tuple[tuple[int, ...], ...]:

@@ -45,10 +45,12 @@ class Simulation(NamedTuple):
 
 def simulate_for(problem: Problem, tree: TaskTree) -> Simulation:
     """Execute a tree from the kitchen of a problem, for its goals and under its container rule."""
-    objects = problem.network.objects
-    kitchen = frozenset(objects[o] for o in problem.kitchen)
-    goals = tuple(objects[goal] for goal in problem.goals)
-    return simulate(tree, kitchen, goals, problem.containers, problem.utensils, problem.network)
+    network = problem.network
+    goals = tuple(network.objects[goal] for goal in problem.goals)
+    # Only what the tree or a goal asks for: a large kitchen takes longer to hash than a tree to execute.
+    asked = {*goals, *(node for unit in tree for node in unit.inputs)}
+    kitchen = frozenset(node for node in asked if network.object_id(node) in problem.kitchen)
+    return simulate(tree, kitchen, goals, problem.containers, problem.utensils, network)
 
 
 def simulate(

@@ -1,7 +1,7 @@
 """An outcome for people, for programs and as FOON text."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
@@ -77,7 +77,7 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
         "status": str(outcome.status),
         "proof": None if outcome.proof is None else str(outcome.proof),
         "proof_by_objective": {
-            str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else Proof.SOLVER)
+            str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else outcome.proof)
             for objective in levels(outcome.objectives)
             if outcome.status is Status.OPTIMAL
         },
@@ -99,10 +99,10 @@ def outcome_foon(outcome: Outcome) -> str:
     return write_units(map(outcome.problem.network.unit, outcome.units), comments)
 
 
-def outcome_text(outcome: Outcome) -> str:
-    """Give an outcome for people: what was proved, and the steps with where each input comes from."""
+def outcome_text(outcome: Outcome, remarks: Iterable[str] = ()) -> str:
+    """Give an outcome for people: what was proved, remarks, the steps with where each input comes from."""
     problem = outcome.problem
-    lines = [*goal_lines(problem), headline(outcome)]
+    lines = [*goal_lines(problem), headline(outcome), *remarks]
     if outcome.status is Status.FEASIBLE:
         lines.append(_bound_line(outcome))
     if outcome.units is not None:
@@ -122,7 +122,7 @@ def goal_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
         if network.detailed is None:
             continue
         details = network.objects_stand_for[goal]
-        yield f"  stands for {_count(len(details), 'object node')} at level 3:"
+        yield f"  stands for {counted(len(details), 'object node')} at level 3:"
         yield from (f"    {network.detailed.objects[detail]}" for detail in details[:shown])
         if len(details) > shown:
             yield f"    ... and {len(details) - shown} more; --format json lists all"
@@ -155,7 +155,7 @@ def headline(outcome: Outcome) -> str:
 
 def costs_text(costs: Costs) -> str:
     """Give the measures of a tree in a few words."""
-    text = f"{_count(costs.units, 'unit')}, {_count(costs.inputs, 'input')}"
+    text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
     if costs.success is not None:
         text += f", success {success_text(costs.success)}"
     return text
@@ -167,7 +167,8 @@ def success_text(success: Fraction) -> str:
     return shown if Fraction(shown) == success else f"≈ {shown}"
 
 
-def _count(number: int, noun: str) -> str:
+def counted(number: int, noun: str) -> str:
+    """Give a number with its noun: ``1 unit``, ``2 units``."""
     return f"{number} {noun}" + ("" if number == 1 else "s")
 
 
@@ -181,8 +182,11 @@ def _bound_line(outcome: Outcome) -> str:
     return "proved so far: " + (", ".join(bounds) or "nothing")
 
 
-def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
-    """Number the units, and say of every input whether it is from the kitchen or from which step."""
+def steps(problem: Problem, units: tuple[int, ...], bought: Collection[int] = ()) -> Iterator[str]:
+    """Number the units, and say of every input whether it is from the kitchen or from which step.
+
+    ``bought`` are the items of the kitchen, by id, that were not there before.
+    """
     network = problem.network
     maker: dict[int, int] = {}
     for number, unit in enumerate(units, 1):
@@ -190,7 +194,7 @@ def steps(problem: Problem, units: tuple[int, ...]) -> Iterator[str]:
         for o in network.inputs[unit]:
             origin = "implied"
             if o in problem.kitchen:
-                origin = "kitchen"
+                origin = "bought" if o in bought else "kitchen"
             elif o in maker:
                 origin = f"step {maker[o]}"
             yield f"       {network.objects[o]}  ({origin})"
@@ -206,7 +210,7 @@ def _details(network: Network, unit: int, shown: int = 5) -> Iterator[str]:
     if detailed is None:
         return
     details = network.stands_for[unit]
-    yield f"     stands for {_count(len(details), 'unit')} at level 3:"
+    yield f"     stands for {counted(len(details), 'unit')} at level 3:"
     for detail in details[:shown]:
         yield f"       {detail}    [{detailed.sources[detail][0]}]  {detailed.unit(detail)}"
     if len(details) > shown:
@@ -222,6 +226,8 @@ def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> It
     network = problem.network
     if all(available[goal] for goal in problem.goals):
         yield "without the constraints there is one: together they rule out every tree"
+        yield "foon-asp clash says which do, and which to drop"
+        return
     for goal in problem.goals:
         if available[goal]:
             continue
@@ -235,3 +241,4 @@ def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> It
             yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
         if len(producers) > shown:
             yield f"  ... and {len(producers) - shown} more units"
+    yield "foon-asp why-not says what is behind it, and foon-asp shopping-list what would help"

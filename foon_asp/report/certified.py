@@ -17,15 +17,15 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
     if outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]
     if certificate is None:
-        return ["proof: solver (no certificate was found, and nothing is written)"]
+        return [f"proof: {outcome.proof} (no certificate was found, and nothing is written)"]
     if certificate.claim == "bound":
         return [
-            f"proof: solver; the certificate {file} proves a bound on all trees, "
+            f"proof: {outcome.proof}; the certificate {file} proves a bound on all trees, "
             "constraints it does not cover left aside: " + bound_text(certificate.content)
         ]
     if certificate.claim == "optimal" and outcome.proof.value != "certificate":
         sure = ", ".join(certificate.certified)
-        return [f"proof: solver; the certificate {file} proves the tree best by {sure} alone"]
+        return [f"proof: {outcome.proof}; the certificate {file} proves the tree best by {sure} alone"]
     lines = [f"proof: certificate ({file}, {_cuts(len(certificate.content['cuts']))})"]
     if certificate.content["not_covered"] and certificate.claim == "optimal":
         lines.append("  it is best among all trees; that it keeps to the constraints is the solver's word")

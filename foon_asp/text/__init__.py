@@ -20,6 +20,7 @@ from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store, read_plain_text
+from foon_asp.text.price_list import Price, read_prices
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_node, write_unit, write_units
@@ -41,6 +42,7 @@ __all__ = [
     "LineError",
     "ListedObject",
     "NodeNames",
+    "Price",
     "Severity",
     "excerpt_with_caret",
     "find_data",
@@ -59,6 +61,7 @@ __all__ = [
     "read_labels",
     "read_object_list",
     "read_plain_text",
+    "read_prices",
     "read_rates",
     "summarize",
     "write_node",

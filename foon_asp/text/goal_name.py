@@ -51,10 +51,11 @@ def find_goal(name: str, network: Network | NodeNames, listed: Sequence[ListedOb
     """
     names = _names(network)
     try:
-        node = node_at_level(parse_node(name), names.level)
+        named = parse_node(name)
     except LineError as error:
         raise UserError(f"the goal {name!r} cannot be read: at column {error.column}, {error}") from None
-    bare = node == ObjectNode(node.label) and not _is_closed(name, node)
+    bare = named == ObjectNode(named.label) and not _is_closed(name, named)
+    node = node_at_level(named, names.level)
     entries = [entry for entry in listed if bare and entry.pattern.label == node.label]
     if entries:
         found = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))

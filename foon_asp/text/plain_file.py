@@ -15,7 +15,7 @@ def is_store(file: Path) -> bool:
     """Whether a path is no text but a store: it is named like one, or begins like any database."""
     if file.suffix == STORE_SUFFIX and not file.is_dir():
         return True
-    if not file.is_file():  # a pipe could not be read a second time
+    if not file.is_file():  # a pipe can be read once only
         return False
     try:
         with file.open("rb") as opened:

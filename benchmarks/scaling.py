@@ -1,0 +1,127 @@
+"""Cost against size: reading, indexing, the cone, the reductions and the search, and how each grows.
+
+    python benchmarks/scaling.py                                     a quick run
+    python benchmarks/scaling.py --units 1000 --units 10000 --units 100000 --units 1000000 --plot FILE.svg
+
+Each size is a generated network in a process of its own. Reading and indexing happen once for each network;
+the other steps are medians over its harder half of goals, those whose cones grow with the network. The *cone*
+is what the plain program leaves, units that can run and that the goal can need; the program itself never
+looks at all of the network to answer. *Reduction* is from the indexed network to what clingo gets, *search*
+is all after that, simulating the tree included.
+
+The exponent is the slope of a straight line through the logarithms of size and seconds, by least squares:
+1 is linear, 0 a cost that does not grow.
+"""
+
+import argparse
+import gc
+import json
+import math
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from contest.page import put, table
+from contest.plot import draw_growth
+from generate import Family, generate
+
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.problem import Objective, Problem, reach, relevant
+from foon_asp.text import find_data, find_goal, read_data
+
+STEPS = ("reading", "indexing", "cone", "reduction", "search")
+
+
+def measure(folder: Path, objective: Objective, limit: float) -> dict[str, float]:
+    """Give the seconds of each step on the network in a folder, and how many questions were not proved."""
+    began = time.perf_counter()
+    data = read_data(find_data(folder))
+    read = time.perf_counter()
+    network = data.network
+    network.producers, network.consumers, network.by_label  # noqa: B018 (made when first asked for)
+    indexed = time.perf_counter()
+    gc.freeze()  # the network stays; only what is made for a question is looked at for what to free
+    entries = json.loads((folder / "goal_nodes.json").read_text(encoding="utf-8"))
+    steps: dict[str, list[float]] = {"cone": [], "reduction": [], "search": []}
+    unproved = 0
+    for entry in entries[(len(entries) + 1) // 2 :]:
+        goal = find_goal(entry["label"], network, data.goals)
+        problem = Problem(network, data.kitchen, (goal,), data.rates, data.utensils)
+        start = time.perf_counter()
+        relevant(problem, reach(problem))
+        cut = time.perf_counter()
+        outcome = solve(problem, (objective,), Settings(time_limit=limit))
+        whole = time.perf_counter() - cut
+        unproved += outcome.status is not Status.OPTIMAL
+        steps["cone"].append(cut - start)
+        steps["reduction"].append(outcome.seconds["cut"])
+        steps["search"].append(whole - outcome.seconds["cut"])
+    medians = {step: statistics.median(seconds) for step, seconds in steps.items()}
+    return {"reading": read - began, "indexing": indexed - read, **medians, "unproved": unproved}
+
+
+def slope(points: Sequence[tuple[int, float]]) -> float:
+    """Give the exponent of a power law, by least squares on logarithms; needs two sizes at least."""
+    xs, ys = [math.log(size) for size, _ in points], [math.log(seconds) for _, seconds in points]
+    return statistics.linear_regression(xs, ys).slope
+
+
+def main() -> None:
+    """Measure every size and print the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--family", type=Family, choices=list(Family), default=Family.RECIPE_LIKE)
+    parser.add_argument("--units", type=int, action="append")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--objective", type=Objective, default=Objective.UNITS)
+    parser.add_argument("--limit", type=float, default=20.0, help="seconds for each question")
+    parser.add_argument("--runs", type=int, default=3, help="processes for each size; medians are taken")
+    parser.add_argument("--plot", type=Path, help="a file for the plot")
+    parser.add_argument("--page", type=Path, help="a page whose section gets the table")
+    parser.add_argument("--section", default="scaling")
+    parser.add_argument("--run", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.run:
+        print(json.dumps(measure(options.run, options.objective, options.limit)))
+        return
+
+    curves: dict[str, list[tuple[int, float]]] = {step: [] for step in STEPS}
+    unproved = 0.0
+    for size in sorted(options.units or [1000, 3000, 10_000]):
+        with tempfile.TemporaryDirectory() as folder:
+            generate(options.family, size, options.seed, Path(folder))
+            words = [sys.executable, __file__, "--run", folder, "--objective", options.objective]
+            words += ["--limit", str(options.limit)]
+            outputs = [
+                subprocess.run(words, check=True, capture_output=True, text=True).stdout
+                for _ in range(options.runs)
+            ]
+        found = [json.loads(output) for output in outputs]
+        unproved += found[0]["unproved"]
+        for step in STEPS:
+            curves[step].append((size, statistics.median(one[step] for one in found)))
+        print(f"{options.family}: {size} units measured", file=sys.stderr)
+    sizes = [size for size, _ in curves["reading"]]
+    header = ["step", *(f"{size:,} units" for size in sizes), "exponent"]
+    lines = [
+        [step, *(f"{seconds:.3g} s" for _, seconds in points), f"{slope(points):.2f}"]
+        for step, points in curves.items()
+    ]
+    title = f"{options.family}, {options.objective}"
+    text = f"**{title}**, median of {options.runs} runs\n\n{table(header, lines)}"
+    if unproved:
+        text += f"\n\nNot proved within {options.limit:g} s: {unproved:g} questions."
+    print(text)
+    if options.page:
+        put(options.page, options.section, text)
+    if options.plot:
+        draw_growth(curves, title, options.plot)
+
+
+if __name__ == "__main__":
+    main()

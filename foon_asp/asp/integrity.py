@@ -1,0 +1,144 @@
+"""Integrity constraints of the user's files, one by one, and the same relaxed."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from clingo import Control
+from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
+
+from foon_asp.asp.encoding import fault, read_encoding, refuse_scripts
+from foon_asp.asp.program import Relaxed, find_constraint
+from foon_asp.network import Source
+from foon_asp.resources import encodings_folder
+
+_PASSED_OVER = {ASTType.Program, ASTType.Comment}
+
+
+class IntegrityConstraint(NamedTuple):
+    """One rule without a head: its number, the file it was asked for in, where it stands, and its text there.
+
+    ``constants`` are the constants in it that were set, as ``NAME=VALUE``.
+    """
+
+    number: int
+    file: Path
+    source: Source
+    text: str
+    constants: tuple[str, ...]
+
+
+def relax(
+    files: Sequence[Path], constants: Sequence[str], soft: bool
+) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
+    """Number the integrity constraints of some files, from 1, and put all that they say in other words.
+
+    Without ``soft``, constraint number C holds unless ``dropped(C)`` does (``questions/clash.lp``). With it,
+    it is a rule for ``broken(C,Way)``, where ``Way`` has the values of its variables (``questions/soft.lp``).
+    Other rules stay as they are. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
+    """
+    found: list[IntegrityConstraint] = []
+    rules: list[str] = []
+    paths = tuple(dict.fromkeys(find_constraint(file) for file in files))
+    for path in paths:
+        _look_over(path)
+        statements: list[AST] = []
+        parse_files([str(path)], statements.append)
+        for statement in statements:
+            if statement.ast_type in _PASSED_OVER:
+                continue
+            if not _is_constraint(statement):
+                rules.append(str(statement))
+                continue
+            number = len(found) + 1
+            names = set(_names(statement))
+            given = tuple(setting for setting in constants if setting.partition("=")[0] in names)
+            found.append(IntegrityConstraint(number, path, _source(statement), _text(statement), given))
+            rules.append(_broken(statement, number) if soft else _unless_dropped(statement, number))
+    encoding = encodings_folder() / "questions" / ("soft.lp" if soft else "clash.lp")
+    return tuple(found), Relaxed(paths, "".join(f"{rule}\n" for rule in rules), encoding)
+
+
+def _look_over(path: Path) -> None:
+    """Raise what is wrong with a file while it still has its places: in other words it is only text."""
+    refuse_scripts([read_encoding(path)])
+    messages: list[str] = []
+    try:
+        control = Control(logger=lambda _, text: messages.append(text), message_limit=1000)
+        control.load(str(path))
+        control.ground([("base", [])])  # without facts, for unsafe variables alone
+    except RuntimeError as error:
+        raise fault(messages, str(error)) from None
+
+
+def _is_constraint(statement: AST) -> bool:
+    if statement.ast_type != ASTType.Rule or statement.head.ast_type != ASTType.Literal:
+        return False
+    atom = statement.head.atom
+    return atom.ast_type == ASTType.BooleanConstant and not atom.value
+
+
+def _unless_dropped(rule: AST, number: int) -> str:
+    return str(rule.update(body=[*rule.body, *_parsed(f":- not dropped({number}).").body]))
+
+
+def _broken(rule: AST, number: int) -> str:
+    way = ",".join(sorted(set(_global_variables(rule.body))))
+    head = _parsed(f"broken({number},way({way})).") if way else _parsed(f"broken({number},way).")
+    return str(rule.update(head=head.head))
+
+
+def _parsed(text: str) -> AST:
+    statements: list[AST] = []
+    parse_string(text, statements.append)
+    return statements[-1]
+
+
+def _global_variables(body: Sequence[AST]) -> Iterator[str]:
+    """Give the variables that a whole rule has in common: not those within an aggregate or a condition."""
+    for literal in body:
+        if literal.ast_type == ASTType.ConditionalLiteral:
+            continue
+        atom = literal.atom
+        if atom.ast_type in {ASTType.Aggregate, ASTType.BodyAggregate}:
+            for guard in (atom.left_guard, atom.right_guard):
+                if guard is not None:
+                    yield from _variables(guard)
+        elif atom.ast_type != ASTType.TheoryAtom:
+            yield from _variables(atom)
+
+
+def _variables(node: AST) -> Iterator[str]:
+    return (part.name for part in _walk(node) if part.ast_type == ASTType.Variable and part.name != "_")
+
+
+def _names(statement: AST) -> Iterator[str]:
+    """Give the names of constants and functions in a statement; a constant has no arguments."""
+    for part in _walk(statement):
+        if part.ast_type == ASTType.Function and not part.arguments:
+            yield part.name
+        elif part.ast_type == ASTType.SymbolicTerm:
+            yield str(part.symbol)
+
+
+def _walk(node: AST) -> Iterator[AST]:
+    yield node
+    for key in node.child_keys:
+        child = getattr(node, key)
+        for part in child if isinstance(child, ASTSequence) else [child]:
+            if isinstance(part, AST):
+                yield from _walk(part)
+
+
+def _source(statement: AST) -> Source:
+    begin = statement.location.begin
+    return Source(begin.filename, begin.line, begin.column)
+
+
+def _text(statement: AST) -> str:
+    """Give a statement as it stands in its file, on one line."""
+    begin, end = statement.location.begin, statement.location.end
+    lines = Path(begin.filename).read_bytes().split(b"\n")[begin.line - 1 : end.line]
+    lines[-1] = lines[-1][: end.column - 1]  # columns of clingo count bytes
+    lines[0] = lines[0][begin.column - 1 :]
+    return " ".join(b" ".join(lines).decode("utf-8", "replace").split())

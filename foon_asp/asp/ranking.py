@@ -1,0 +1,133 @@
+"""Trees in order of their costs, one by one, none of which holds another."""
+
+from collections.abc import Iterator, Sequence
+
+from foon_asp.asp.deadline import Deadline
+from foon_asp.asp.exact_success import RateScale, problem_scale
+from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
+from foon_asp.asp.program import Settings, assemble
+from foon_asp.asp.run import Run
+from foon_asp.asp.search import run
+from foon_asp.asp.solver import Reporter
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, reach, relevant
+from foon_asp.resources import encodings_folder
+
+Rounded = tuple[int, ...]  # costs as clingo adds them up: success in rounded logarithms
+
+
+class Ranked:
+    """The trees of a question from the best on, under a lexicographic list of objectives.
+
+    A tree that holds all the units of one before it, and others to spare, is not among them. Iterate to get
+    each tree as unit ids in an executable order, with its costs. ``complete`` says afterwards that there are
+    no others; it is false where the time limit came first. Raises :class:`UserError` like
+    :func:`foon_asp.asp.solve`.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        objectives: Sequence[Objective],
+        settings: Settings,
+        reporter: Reporter | None = None,
+    ) -> None:
+        self.problem = problem
+        self.levels = levels(tuple(objectives))
+        self.complete = False
+        self._deadline = Deadline(settings.time_limit)
+        self._program = assemble(settings, (reporter or Reporter()).warning)
+        self._scale: RateScale | None = None
+        if Objective.SUCCESS in self.levels and problem.rates is None:
+            raise UserError(
+                "the objective success needs the success rates of the motions; give a rates file with --rates"
+            )
+        reached = reach(problem)
+        self._units: tuple[int, ...] = ()
+        if all(reached.available[goal] for goal in problem.goals):
+            own = self._program.own
+            self._units = relevant(problem, reached) if own else tuple(sorted(reached.units))
+            if problem.rates is not None:
+                self._scale = problem_scale(problem, self._units)
+        else:
+            self.complete = True
+
+    def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
+        """Give tree after tree.
+
+        clingo gives them in the order of rounded costs. A tree is given out when no tree that clingo may
+        still find can come before it: where rates multiply, one whose weight is higher by no more than there
+        are units whose rates were rounded may (docs/exact-success.md).
+        """
+        if self.complete:
+            return
+        found: list[tuple[Costs, Rounded, tuple[int, ...]]] = []
+        avoided = ""
+        number = 0
+        while True:
+            ended = self._next(avoided)
+            if not ended.exhausted:
+                return
+            if ended.units is None:
+                break
+            units = self._in_order(ended.units)
+            costs = self.problem.costs(units)
+            rounded = self._rounded(units, costs)
+            while found and self._is_settled(found[0], rounded):
+                yield found[0][2], found[0][0]
+                del found[0]
+            found.append((costs, rounded, units))
+            found.sort(key=lambda each: (each[0].key(self.levels), sorted(each[2])))
+            avoided += write_avoided(number, map(self.problem.network.unit_number, units))
+            number += 1
+            if not units:  # every other tree holds it
+                break
+        self.complete = True
+        yield from ((units, costs) for costs, _, units in found)
+
+    def _next(self, avoided: str) -> Run:
+        if self._deadline.passed:
+            return Run()
+        facts = write_facts(self.problem, self._units, self._scale, with_sources=not self._program.own)
+        files = (*self._program.files, encodings_folder() / "questions" / "other_trees.lp")
+        return run(
+            files,
+            facts + self._program.rules + write_objectives(self.levels) + avoided,
+            self._program.arguments,
+            self._deadline,
+        )
+
+    def _in_order(self, numbers: frozenset[int]) -> tuple[int, ...]:
+        network = self.problem.network
+        units = [network.unit_of_number(number) for number in sorted(numbers)]
+        known = [unit for unit in units if unit is not None]
+        order = executable_order(self.problem, known) if len(known) == len(units) else None
+        if order is None:
+            if self._program.own:
+                raise BugError("a tree was found that does not execute")
+            raise UserError("a tree was found that does not execute: check the encodings that were replaced")
+        return order
+
+    def _rounded(self, units: Sequence[int], costs: Costs) -> Rounded:
+        return tuple(
+            sum(self._weight(unit) for unit in units)
+            if objective is Objective.SUCCESS
+            else int(costs.measure(objective))
+            for objective in self.levels
+        )
+
+    def _is_settled(self, tree: tuple[Costs, Rounded, tuple[int, ...]], last: Rounded) -> bool:
+        """Whether all trees from these rounded costs on come after a tree, or are as good as it."""
+        if Objective.SUCCESS not in self.levels:
+            return True
+        place = self.levels.index(Objective.SUCCESS)
+        _, rounded, units = tree
+        if last[:place] > rounded[:place]:
+            return True
+        doubt = sum(self._weight(unit) > 0 for unit in units)
+        return last[place] > rounded[place] + doubt
+
+    def _weight(self, unit: int) -> int:
+        if self._scale is None:
+            return 0
+        return self._scale.weights[(self.problem.rates or {})[self.problem.network.motions[unit]]]

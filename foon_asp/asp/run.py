@@ -1,0 +1,24 @@
+"""What a run of clingo ended with."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Run:
+    """What a run of clingo ended with.
+
+    ``units`` is the last (best) answer or ``None``, ``cost`` its cost vector as clingo reports it, which
+    wraps at 32 bits. ``exhausted`` says that the search space was, so that
+    the answer is optimal, or that there is none. ``lower`` holds the proved lower bound of each priority,
+    highest first, as far as known. ``atoms`` says for each predicate that was
+    asked for how many of its atoms in the answer begin with each number.
+    """
+
+    units: frozenset[int] | None = None
+    cost: tuple[int, ...] = ()
+    exhausted: bool = False
+    lower: list[int] = field(default_factory=list)
+    atoms: dict[str, Counter[int]] = field(default_factory=dict)
+    ground_seconds: float = 0.0
+    solve_seconds: float = 0.0

@@ -1,0 +1,133 @@
+"""Lower bounds by landmark cuts, found where they are needed only.
+
+Landmarks as in :mod:`foon_asp.bounds.cut`: of the actions that give an object of a set with a goal in it and
+need none of the set, every derivation uses one. Costs are divided among landmarks as LM-cut does (Helmert and
+Domshlak 2009): each takes from all of its members what the cheapest has left.
+"""
+
+from collections.abc import Callable, Container, Iterable, Mapping
+from typing import NamedTuple
+
+from foon_asp.bounds.hypergraph import Hypergraph
+
+_FRESH = 64  # cuts after which what is thought of how dear objects are is too old
+
+
+class WeightedCut(NamedTuple):
+    """A cut: its objects, its landmark, the member that had least cost left, and that cost as its weight."""
+
+    objects: frozenset[int]
+    members: tuple[int, ...]
+    cheapest: int
+    weight: int
+
+
+class Cuts(NamedTuple):
+    """Weighted cuts: their sum ``bound`` is what every derivation costs at least.
+
+    ``left[a]`` is what the cuts leave of the cost of action ``a``; where it is not there, they take nothing.
+    ``hopeless`` says that there is no derivation at all by the actions allowed.
+    """
+
+    bound: int
+    left: dict[int, int]
+    cuts: list[WeightedCut]
+    hopeless: bool = False
+
+
+def landmark_cuts(
+    graph: Hypergraph,
+    targets: Iterable[int],
+    allowed: Container[int],
+    cost: Callable[[int], int],
+    dear: Mapping[int, int],
+    expired: Callable[[], bool],
+    guide: Callable[[Callable[[int], int]], Mapping[int, int]] | None = None,
+) -> Cuts:
+    """Find weighted cuts before the targets, until what is left of the costs gives them all for nothing.
+
+    Only ``allowed`` actions count, and all costs are above zero. ``dear`` says how dear each object is
+    thought to be, those not in it dearer than all: a cut passes through the dearest object that an action
+    needs. ``guide`` tells the same from the costs of actions, and is asked now and then by what the cuts
+    leave of them. What is made for nothing only grows, so that the time goes with what the cuts touch and not
+    with the size of the graph.
+    """
+    needs, makers = graph.needs, graph.makers
+    left: dict[int, int] = {}
+    free = _Free(graph)
+    dearest = 1 + max(dear.values(), default=0)
+    found: list[WeightedCut] = []
+    bound = 0
+
+    def rest_of(action: int) -> int:
+        return left[action] if action in left else cost(action)
+
+    remaining = sorted(targets, key=lambda o: (dear.get(o, dearest), o))
+    while remaining and not expired():
+        if remaining[-1] in free.objects:
+            remaining.pop()
+            continue
+        if guide is not None and found and len(found) % _FRESH == 0:
+            dear = guide(rest_of)
+            dearest = 1 + max(dear.values(), default=0)
+        zone = {remaining[-1]}
+        stack = [remaining[-1]]
+        edge: dict[int, None] = {}
+        passed: set[int] = set()
+        while stack:
+            for action in makers[stack.pop()]:
+                if action in passed or action in edge or action not in allowed:
+                    continue
+                if left.get(action, 1):
+                    edge[action] = None
+                    continue
+                passed.add(action)
+                needed = needs[action]
+                if zone.isdisjoint(needed):
+                    o = max(free.lacking(action), key=lambda o: (dear.get(o, dearest), o))
+                    zone.add(o)
+                    stack.append(o)
+        members = tuple(action for action in edge if zone.isdisjoint(needs[action]))
+        if not members:
+            return Cuts(bound, left, found, hopeless=True)
+        rests = [rest_of(a) for a in members]
+        weight = min(rests)
+        bound += weight
+        found.append(WeightedCut(frozenset(zone), members, members[rests.index(weight)], weight))
+        for action, rest in zip(members, rests, strict=True):
+            left[action] = rest - weight
+            if rest == weight:
+                free.release(action)
+    return Cuts(bound, left, found)
+
+
+class _Free:
+    """What can be made for nothing, growing as actions run out of cost."""
+
+    def __init__(self, graph: Hypergraph) -> None:
+        self._graph = graph
+        self.objects: set[int] = set()
+        self._missing: dict[int, int] = {}
+        self._waiting: dict[int, list[int]] = {}
+
+    def lacking(self, action: int) -> list[int]:
+        """Give what an action needs and what is neither free nor there from the start."""
+        free, start = self.objects, self._graph.start
+        return [o for o in self._graph.needs[action] if o not in free and o not in start]
+
+    def release(self, action: int) -> None:
+        """Let an action that has no cost left run as soon as all it needs is free."""
+        lacking = self.lacking(action)
+        self._missing[action] = len(lacking)
+        for o in lacking:
+            self._waiting.setdefault(o, []).append(action)
+        gives, start, free = self._graph.gives, self._graph.start, self.objects
+        stack = [] if lacking else [action]
+        while stack:
+            for o in gives[stack.pop()]:
+                if o not in free and o not in start:
+                    free.add(o)
+                    for taker in self._waiting.pop(o, ()):
+                        self._missing[taker] -= 1
+                        if not self._missing[taker]:
+                            stack.append(taker)

@@ -1,0 +1,77 @@
+"""Object nodes that are one edit away from another one."""
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from foon_asp.network import NodePattern, ObjectNode
+from foon_asp.network.spelling import one_letter_apart, without_doubles
+
+# What a node is made of: the kind of a name, and the name. A container stands for a relation of any word.
+_Part = tuple[str, str]
+
+
+class Slip(NamedTuple):
+    """The one name in which two nodes differ: ``kind`` is label, state, relation, container or ingredient."""
+
+    kind: str
+    name: str
+    other: str
+
+
+def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
+    """Give the name in which two nodes differ, where it is one and its spellings are one edit apart.
+
+    One edit is a letter too many, too few, another or swapped with the next; doubled letters, capitals,
+    blanks and hyphens count as one edit together. Two relations to one object by different words
+    (``in [bowl]``, ``on [bowl]``) are one edit apart too.
+    """
+    loose = isinstance(other, NodePattern) and not other.relations
+    here, there = _parts(node, loose), _parts(other, loose)
+    for part in list(here):
+        if part in there:
+            here.remove(part)
+            there.remove(part)
+    if len(here) != 1 or len(there) != 1:
+        return None
+    (kind, name), (other_kind, other_name) = here[0], there[0]
+    if kind != other_kind:
+        return None
+    if kind == "relation":
+        if name.partition("[")[2] == other_name.partition("[")[2]:
+            return Slip(kind, name, other_name)
+        if name.partition("[")[0] != other_name.partition("[")[0]:
+            return None
+    if one_letter_apart(name, other_name) or without_doubles(name) == without_doubles(other_name):
+        return Slip(kind, name, other_name)
+    return None
+
+
+def nearest(node: ObjectNode, others: Iterable[ObjectNode], most: int) -> list[ObjectNode]:
+    """Give the few nodes with the same label that have most else in common with a node, the nearest first."""
+    wanted = set(_parts(node, loose=False))
+    ranked = sorted(
+        (len(wanted.symmetric_difference(_parts(other, loose=False))), str(other), other)
+        for other in others
+        if other.label == node.label and other != node
+    )
+    return [other for _, _, other in ranked[:most]]
+
+
+def _parts(node: ObjectNode | NodePattern, loose: bool) -> list[_Part]:
+    return list(_named(node, loose))
+
+
+def _named(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_Part]:
+    yield "label", node.label
+    yield from (("state", state) for state in sorted(node.states))
+    yield from (("ingredient", ingredient) for ingredient in node.ingredients)
+    if loose:
+        if isinstance(node, NodePattern):
+            if node.container is not None:
+                yield "container", node.container
+        else:
+            yield from (("container", name) for name in sorted({r.object for r in node.relations}))
+    else:
+        yield from (
+            ("relation", f"{relation.word} [{relation.object}]") for relation in sorted(node.relations)
+        )

@@ -1,0 +1,235 @@
+"""Why there is no tree: what cannot be made, what is at the root of it, and the way there."""
+
+import heapq
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+from enum import StrEnum
+from typing import NamedTuple
+
+from foon_asp.explain.near_nodes import Slip, nearest, slip_between
+from foon_asp.network import ObjectNode, pattern_at_level
+from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
+from foon_asp.problem import Problem, reach
+from foon_asp.text import ListedObject
+
+_ALIKE = 2  # nodes with the same label that are named beside a missing one
+
+
+class Cause(StrEnum):
+    """Why an object node is at the root of a dead end.
+
+    ``missing``: it is not in the kitchen, and no unit makes it (one that needs it only hands it on).
+    ``cycle``: every unit that makes it needs one of a set of nodes that can only be made from each other.
+    """
+
+    MISSING = "missing"
+    CYCLE = "cycle"
+
+
+class NearName(NamedTuple):
+    """A node at hand whose name is one edit away from a missing one.
+
+    ``place`` is the entry of the kitchen file where that entry matches no node; else ``object`` is a node of
+    the network that is at hand or can be made.
+    """
+
+    name: str
+    slip: Slip
+    object: int | None
+    place: str | None
+
+
+class Root(NamedTuple):
+    """An object node at the root of a dead end.
+
+    ``stops`` are the units that lack it on the way to a goal, ``on_the_way`` says whether it is on the way
+    that takes the fewest things. ``cycle`` is the set of nodes that feeds only itself, for that cause.
+    ``near`` are names one edit away, ``alike`` a few nodes at hand or makeable with the same label.
+    """
+
+    object: int
+    cause: Cause
+    stops: tuple[int, ...]
+    on_the_way: bool
+    cycle: DeadCycle | None = None
+    near: tuple[NearName, ...] = ()
+    alike: tuple[int, ...] = ()
+
+
+class Blocked(NamedTuple):
+    """A unit that cannot run, and those of its needed inputs that cannot be had."""
+
+    unit: int
+    lacks: tuple[int, ...]
+
+
+class Explanation(NamedTuple):
+    """Why some goals cannot be made.
+
+    ``goals`` are those that cannot. ``dead_ends`` has every object node that is needed for one of them, on
+    any way, and cannot be had, with the units that would make it, those first that take the fewest things
+    more. ``roots`` are what is behind all of them, those on the easiest way first. ``available`` has a 1 for
+    every node, by id, that is at hand or can be made.
+    """
+
+    problem: Problem
+    goals: tuple[int, ...]
+    dead_ends: dict[int, tuple[Blocked, ...]]
+    roots: tuple[Root, ...]
+    available: bytearray
+
+
+def why_not(problem: Problem, kitchen_items: Sequence[ListedObject] = ()) -> Explanation:
+    """Explain which goals cannot be made from the kitchen and why, whatever constraints say.
+
+    ``kitchen_items`` are the entries of the kitchen file: those that match no node may be misspelt. Where
+    every goal can be made, nothing is listed. Takes time about linear in the network.
+    """
+    available = reach(problem).available
+    goals = tuple(goal for goal in problem.goals if not available[goal])
+    makers = _dead_ends(problem, goals, available)
+    cycles: list[DeadCycle] = []
+    things, easiest = _things_more(makers, ())
+    while len(things) < len(makers):  # the others wait for each other, also with all that is missing at hand
+        cycles += _cycles(problem, makers.keys() - things)
+        things, easiest = _things_more(makers, [node for cycle in cycles for node in cycle.nodes])
+    cycle_of = {node: cycle for cycle in cycles for node in cycle.nodes}
+    ordered = {o: _in_order(found, things, easiest.get(o)) for o, found in makers.items()}
+    way = _way(goals, ordered, cycle_of)
+    users: dict[int, list[int]] = {}
+    for blocked in {b.unit: b for found in ordered.values() for b in found}.values():
+        for lack in blocked.lacks:
+            users.setdefault(lack, []).append(blocked.unit)
+    roots = [
+        Root(o, Cause.MISSING, tuple(sorted(users.get(o, ()))), o in way)
+        for o, found in ordered.items()
+        if not found
+    ]
+    for cycle in cycles:
+        entered = [o for o, _ in cycle.steps if o in way] + sorted(way & cycle.nodes)
+        node = entered[0] if entered else cycle.steps[0][0]
+        stops = {unit for o in cycle.nodes for unit in users.get(o, ())}
+        roots.append(Root(node, Cause.CYCLE, tuple(sorted(stops)), bool(entered), cycle))
+    roots.sort(key=lambda root: not root.on_the_way)
+    spellings = _Spellings(problem, kitchen_items, available)
+    return Explanation(problem, goals, ordered, tuple(map(spellings.look_up, roots)), available)
+
+
+def _dead_ends(
+    problem: Problem, goals: Sequence[int], available: bytearray
+) -> dict[int, tuple[Blocked, ...]]:
+    """Go backwards from the goals through all that cannot be had."""
+    network, needs = problem.network, problem.needs
+    makers: dict[int, tuple[Blocked, ...]] = {}
+    stack = list(reversed(goals))
+    while stack:
+        o = stack.pop()
+        if o in makers:
+            continue
+        makers[o] = tuple(
+            Blocked(unit, tuple(need for need in needs[unit] if not available[need]))
+            for unit in network.producers[o]
+            if o not in needs[unit]
+        )
+        stack += [lack for blocked in reversed(makers[o]) for lack in reversed(blocked.lacks)]
+    return makers
+
+
+def _in_order(found: tuple[Blocked, ...], things: dict[int, int], easiest: int | None) -> tuple[Blocked, ...]:
+    """Put the easiest unit first, and then those that take the fewest things more."""
+    return tuple(
+        sorted(found, key=lambda b: (b.unit != easiest, sum(things[lack] for lack in b.lacks), b.unit))
+    )
+
+
+def _cycles(problem: Problem, waiting: Collection[int]) -> list[DeadCycle]:
+    """Find sets of nodes that can only be made from each other, among those given; all else is at hand."""
+    others = [o for o in range(len(problem.network.objects)) if o not in waiting]
+    return dead_cycles(replace(problem.network, inputs=problem.needs), others)
+
+
+def _things_more(
+    makers: dict[int, tuple[Blocked, ...]], in_cycles: Collection[int]
+) -> tuple[dict[int, int], dict[int, int]]:
+    """Estimate for each dead end how many things it takes, a shared one counted each time it is needed.
+
+    A missing node and a node of a cycle are one thing, others as many as the unit that takes the fewest
+    (Knuth, A generalization of Dijkstra's algorithm, 1977). What waits for itself, and is not
+    ``in_cycles``, is left out. Beside the numbers is the unit that takes the fewest; following these never
+    leads in a circle.
+    """
+    lacking = {blocked.unit: len(blocked.lacks) for found in makers.values() for blocked in found}
+    made_by: dict[int, list[int]] = {}
+    for o, found in makers.items():
+        for blocked in found:
+            made_by.setdefault(blocked.unit, []).append(o)
+    users: dict[int, list[int]] = {}
+    for blocked in {b.unit: b for found in makers.values() for b in found}.values():
+        for lack in blocked.lacks:
+            users.setdefault(lack, []).append(blocked.unit)
+    sums = dict.fromkeys(lacking, 0)
+    settled: dict[int, int] = {}
+    easiest: dict[int, int] = {}
+    queue = [(1, -1, o) for o, found in makers.items() if not found]
+    queue += [(1, -1, o) for o in in_cycles if o in makers]
+    heapq.heapify(queue)
+    while queue:
+        count, maker, o = heapq.heappop(queue)
+        if o in settled:
+            continue
+        settled[o] = count
+        if maker >= 0:
+            easiest[o] = maker
+        for unit in users.get(o, ()):
+            sums[unit] += count
+            lacking[unit] -= 1
+            if not lacking[unit]:
+                for made in made_by[unit]:
+                    heapq.heappush(queue, (sums[unit], unit, made))
+    return settled, easiest
+
+
+def _way(
+    goals: Sequence[int], makers: dict[int, tuple[Blocked, ...]], cycle_of: dict[int, DeadCycle]
+) -> set[int]:
+    """Give the dead ends on the easiest way: through the first unit each time, and not around a cycle."""
+    way: set[int] = set()
+    stack = list(goals)
+    while stack:
+        o = stack.pop()
+        if o not in way:
+            way.add(o)
+            if makers[o] and o not in cycle_of:
+                stack += makers[o][0].lacks
+    return way
+
+
+class _Spellings:
+    """What is at hand, to be compared with what is missing."""
+
+    def __init__(self, problem: Problem, items: Sequence[ListedObject], available: bytearray) -> None:
+        self.objects = problem.network.objects
+        self.had = [o for o, there in enumerate(available) if there]
+        network = problem.network
+        entries = ((item.source, pattern_at_level(item.pattern, network.level)) for item in items)
+        self.unmatched = [(source, pattern) for source, pattern in entries if not network.find(pattern)]
+
+    def look_up(self, root: Root) -> Root:
+        """Add near names and nodes alike to a missing node."""
+        if root.cause is not Cause.MISSING:
+            return root
+        node = self.objects[root.object]
+        ids = {self.objects[o]: o for o in self.had if self.objects[o].label == node.label}
+        alike = tuple(ids[other] for other in nearest(node, ids, _ALIKE))
+        near = tuple(self._near(node))
+        return root._replace(near=near, alike=tuple(o for o in alike if o not in {n.object for n in near}))
+
+    def _near(self, node: ObjectNode) -> Iterator[NearName]:
+        for source, pattern in self.unmatched:
+            slip = slip_between(node, pattern)
+            if slip:
+                yield NearName(str(pattern), slip, None, str(source))
+        for o in self.had:
+            slip = slip_between(node, self.objects[o])
+            if slip:
+                yield NearName(str(self.objects[o]), slip, o, None)

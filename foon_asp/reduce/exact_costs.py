@@ -1,0 +1,231 @@
+"""What actions cost under a lexicographic list of objectives, as whole numbers."""
+
+import math
+from collections.abc import Collection, Iterable, Sequence
+from decimal import ROUND_CEILING, Context, Decimal
+from fractions import Fraction
+
+from foon_asp.bounds import Cuts, Lexicographic
+from foon_asp.problem import Objective, Problem
+
+_COARSE = 1000  # steps of -ln(rate) to 1, where a cost need not be exact
+_SCALE = 10**40  # steps of logarithms where rounding must not decide
+_ROUNDED = 10**20  # of these, more than rounding can add up to
+_FINEST = 10**9  # the largest number in a rate that is told apart from others without asking how far
+
+_LONGEST = 50_000  # factors of the products of rates that are compared
+
+
+class TooFineError(Exception):
+    """There are rates of 0, or some with so many digits that rounding could hide a difference."""
+
+
+class ExactCosts:
+    """Costs of actions as one whole number each.
+
+    A counted objective is multiplied by more than the sum of everything after it, so that sums are compared
+    as the lexicographic list compares. Where rates multiply, each of a set of coprime factors has a rounded
+    logarithm of forty digits: equal products are then equal sums, and ``doubt`` is by how much two sums have
+    to differ for rounding not to matter. It is 0 where nothing is rounded.
+    """
+
+    def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
+        self._problem, self._objectives = problem, tuple(objectives)
+        network = problem.network
+        self._units = units = len(network)
+        self._rates = problem.rates or {}
+        self._weights: dict[Fraction, int] = {}
+        if Objective.SUCCESS in objectives:
+            motions = {network.motions[a] for a in actions if a < units}
+            self._weights = _weights({self._rates[motion] for motion in motions})
+        self._factors: list[int] = []
+        factor = 1
+        self.doubt = 0
+        for objective in reversed(self._objectives):
+            self._factors.append(factor)
+            if objective is Objective.SUCCESS:
+                self.doubt = _ROUNDED * factor
+            if objective is not self._objectives[0]:
+                factor *= 1 + self._most(objective, actions)
+        self._factors.reverse()
+        self._known: dict[int, int] = {}
+
+    def _most(self, objective: Objective, actions: Collection[int]) -> int:
+        """Give what no set of actions costs more than by one objective."""
+        if objective in {Objective.UNITS, Objective.KITCHEN}:
+            return len(actions)
+        if objective is Objective.SUCCESS:
+            return len(actions) * max(self._weights.values(), default=0)
+        return sum(self._figure(objective, a) for a in actions)
+
+    def __call__(self, action: int) -> int:
+        """Give what an action costs."""
+        cost = self._known.get(action)
+        if cost is None:
+            figures = (self._figure(objective, action) for objective in self._objectives)
+            cost = sum(figure * factor for figure, factor in zip(figures, self._factors, strict=True))
+            self._known[action] = cost
+        return cost
+
+    def first(self, total: int) -> int | Fraction:
+        """Turn a lower bound on sums into one on the first objective (on success: from above)."""
+        figure = total // self._factors[0]
+        if self._objectives[0] is not Objective.SUCCESS:
+            return figure
+        context = Context(prec=60, rounding=ROUND_CEILING)
+        exponent = context.divide(Decimal(min(0, _ROUNDED - figure)), Decimal(_SCALE))
+        value = context.next_plus(context.exp(exponent))
+        places = Decimal(1).scaleb(value.adjusted() - 17)
+        return min(Fraction(1), Fraction(value.quantize(places, rounding=ROUND_CEILING, context=context)))
+
+    def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
+        """Whether cuts prove that no tree is better than this one, without any rounding.
+
+        Weights are sums and differences of costs: each is what its cheapest member had left. Where rates
+        multiply they are computed again as exponents of rates, which are exact, and what is within rounding
+        of overloading an action is looked at anew.
+        """
+        total = sum(map(self, tree))
+        if not self.doubt:
+            return cuts.bound >= total
+        if cuts.bound + self.doubt < total:
+            return False
+        rates = sorted({rate for rate in self._weights if rate != 1})
+        order = Lexicographic([rates if o is Objective.SUCCESS else None for o in self._objectives])
+        places = {rate: place for place, rate in enumerate(rates)}
+        vectors = _Vectors(self, places)
+        tight = {a for a, left in cuts.left.items() if left <= self.doubt} | {c.cheapest for c in cuts.cuts}
+        rests = {action: vectors.of(action) for action in tight}
+        proved = [0] * order.width
+        for cut in cuts.cuts:
+            weight = tuple(rests[cut.cheapest])
+            if _large(weight) or (cut.weight <= self.doubt and order.sign(weight) < 0):
+                return False
+            for place, part in enumerate(weight):
+                if part:
+                    proved[place] += part
+                    for action in cut.members:
+                        if action in tight:
+                            rests[action][place] -= part
+        if any(_large(rest) or order.sign(rest) < 0 for rest in rests.values()):
+            return False
+        for action in tree:
+            proved = [have - need for have, need in zip(proved, vectors.of(action), strict=True)]
+        return not _large(proved) and order.sign(proved) >= 0
+
+    def figures(self, action: int) -> list[tuple[Objective, int]]:
+        """Give what an action costs by each objective; for ``success`` in rounded logarithms."""
+        return [(objective, self._figure(objective, action)) for objective in self._objectives]
+
+    def rate(self, action: int) -> Fraction:
+        """Give the rate of an action; taking an item from the kitchen never fails."""
+        if action >= self._units:
+            return Fraction(1)
+        return self._rates[self._problem.network.motions[action]]
+
+    def _figure(self, objective: Objective, action: int) -> int:
+        network = self._problem.network
+        if action >= self._units:
+            return int(objective is Objective.KITCHEN)
+        if objective is Objective.SUCCESS:
+            return self._weights[self._rates[network.motions[action]]]
+        return _count(problem=self._problem, objective=objective, unit=action)
+
+
+def _large(vector: Sequence[int]) -> bool:
+    return sum(map(abs, vector)) > _LONGEST
+
+
+class _Vectors:
+    """Costs as vectors of whole numbers: one for an objective that counts, one for each rate else."""
+
+    def __init__(self, costs: ExactCosts, places: dict[Fraction, int]) -> None:
+        self._costs, self._places = costs, places
+
+    def of(self, action: int) -> list[int]:
+        vector: list[int] = []
+        for objective, figure in self._costs.figures(action):
+            if objective is Objective.SUCCESS:
+                parts = [0] * len(self._places)
+                if figure:
+                    parts[self._places[self._costs.rate(action)]] = 1
+                vector += parts
+            else:
+                vector.append(figure)
+        return vector
+
+
+def _count(problem: Problem, objective: Objective, unit: int) -> int:
+    network = problem.network
+    if objective is Objective.UNITS:
+        return 1
+    if objective is Objective.KITCHEN:
+        return 0
+    inputs = network.inputs[unit]
+    if objective is Objective.INPUTS:
+        return len(inputs)
+    return len(inputs) + sum(len(network.objects[o].ingredients) for o in inputs)
+
+
+class CoarseCosts:
+    """The first objective alone, in small whole numbers and never above what it is: a guide for estimates."""
+
+    def __init__(self, problem: Problem, objective: Objective) -> None:
+        self._problem, self._objective = problem, objective
+        self._by_motion: dict[str, int] = {}
+        if objective is Objective.SUCCESS:
+            self._by_motion = {
+                motion: int(-math.log(rate) * _COARSE) if rate > 0 else 100 * _COARSE
+                for motion, rate in (problem.rates or {}).items()
+            }
+
+    def __call__(self, action: int) -> int:
+        """Give about what an action costs."""
+        if action >= len(self._problem.network):
+            return int(self._objective is Objective.KITCHEN)
+        if self._objective is Objective.SUCCESS:
+            return self._by_motion[self._problem.network.motions[action]]
+        return _count(self._problem, self._objective, action)
+
+
+def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
+    """Give for each rate the sum of the scaled logarithms of its coprime factors, rounded each."""
+    if not all(0 < rate <= 1 and rate.denominator <= _FINEST for rate in rates):
+        raise TooFineError
+    base = _coprime(n for rate in rates for n in (rate.numerator, rate.denominator))
+    fine = Context(prec=60)
+    logarithms = {f: int(fine.multiply(fine.ln(Decimal(f)), Decimal(_SCALE))) for f in base}
+    return {
+        rate: sum(
+            (_power(rate.denominator, f) - _power(rate.numerator, f)) * logarithm
+            for f, logarithm in logarithms.items()
+        )
+        for rate in rates
+    }
+
+
+def _coprime(numbers: Iterable[int]) -> list[int]:
+    """Give pairwise coprime factors above 1 of which every number is a product of powers."""
+    base: list[int] = []
+    pending = sorted(set(numbers))
+    while pending:
+        a = pending.pop()
+        if a == 1:
+            continue
+        for place, b in enumerate(base):
+            common = math.gcd(a, b)
+            if common > 1:
+                del base[place]
+                pending += [a // common, b // common, common]
+                break
+        else:
+            base.append(a)
+    return sorted(base)
+
+
+def _power(number: int, factor: int) -> int:
+    count = 0
+    while number % factor == 0:
+        number //= factor
+        count += 1
+    return count

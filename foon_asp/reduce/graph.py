@@ -1,0 +1,65 @@
+"""A question as plain arrays: actions that need and give objects, towards some goals."""
+
+from collections.abc import Container, Iterable, Sequence
+from dataclasses import dataclass
+
+from foon_asp.bounds import Hypergraph
+from foon_asp.problem import Objective, Problem
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Graph(Hypergraph):
+    """A hypergraph with goals; nothing is copied where the network has it already.
+
+    Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
+    taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is
+    empty; elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
+    ``goals`` are those not there from the start.
+    """
+
+    units: int
+    goals: tuple[int, ...]
+    start: frozenset[int]
+
+    def cone(self, allowed: Container[int] | None = None) -> tuple[list[int], set[int]]:
+        """Go backwards from the goals through all (allowed) actions, and stop at the start.
+
+        Gives the actions that something wanted can come from, in no order, and the objects that are wanted.
+        """
+        needs, makers, start = self.needs, self.makers, self.start
+        wanted = set(self.goals)
+        stack = list(wanted)
+        chosen: set[int] = set()
+        while stack:
+            for action in makers[stack.pop()]:
+                if action not in chosen and (allowed is None or action in allowed):
+                    chosen.add(action)
+                    for o in needs[action]:
+                        if o not in wanted and o not in start:
+                            wanted.add(o)
+                            stack.append(o)
+        return list(chosen), wanted
+
+
+def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
+    """Give the graph of a problem under a list of objectives."""
+    network, kitchen = problem.network, problem.kitchen
+    units, size = len(network), len(network.objects)
+    goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
+    if Objective.KITCHEN not in objectives:
+        return Graph(
+            size,
+            problem.needs,
+            network.outputs,
+            start=kitchen,
+            known_makers=network.producers,
+            units=units,
+            goals=goals,
+        )
+    makers = list(network.producers)
+    for o in kitchen:
+        makers[o] = (units + o,)
+    gives: list[Sequence[int]] = [[o for o in given if o not in kitchen] for given in network.outputs]
+    gives += [(o,) for o in range(size)]
+    needs = [*problem.needs, *([()] * size)]
+    return Graph(size, needs, gives, start=frozenset(), known_makers=makers, units=units, goals=goals)

@@ -1,0 +1,59 @@
+"""What a derivation of less than a given cost can still use, by what cuts leave of the costs."""
+
+from collections.abc import Callable, Container, Mapping
+from heapq import heappop, heappush
+
+from foon_asp.reduce.graph import Graph
+
+
+def near(
+    graph: Graph,
+    allowed: Container[int],
+    rest: Callable[[int], int],
+    limit: int,
+    before: Mapping[int, int] | None = None,
+    most: int | None = None,
+) -> set[int]:
+    """Give the allowed actions that a derivation without spare actions, of rests up to ``limit``, can have.
+
+    ``rest(a)`` is what the cuts leave of the cost of action ``a``. Such a derivation leads from each of its
+    actions to a goal, each needing what the one before gives, so the rests along the way count (no action
+    that ``a`` builds upon is among them). With ``before``, the least rests of an action with all that it
+    needs, those count instead of its own. Dijkstra's algorithm from the goals, which goes no farther than
+    the limit lets it, and with ``most`` only until it has so many actions.
+    """
+    needs, makers, start = graph.needs, graph.makers, graph.start
+    distance = dict.fromkeys(graph.goals, 0)
+    buckets: dict[int, list[int]] = {0: list(graph.goals)}
+    figures = [0]
+    kept: set[int] = set()
+    while figures:
+        figure = heappop(figures)
+        bucket = buckets[figure]
+        for target in bucket:  # grows while it is walked through
+            if distance[target] < figure:
+                continue
+            for action in makers[target]:
+                if action in kept or action not in allowed:
+                    continue
+                total = figure + rest(action)
+                if total > limit:
+                    continue
+                if before is not None:
+                    least = before.get(action)
+                    if least is None or figure + least > limit:
+                        continue
+                kept.add(action)
+                for o in needs[action]:
+                    if o not in start and distance.get(o, total + 1) > total:
+                        distance[o] = total
+                        waiting = buckets.get(total)
+                        if waiting is None:
+                            buckets[total] = [o]
+                            heappush(figures, total)
+                        else:
+                            waiting.append(o)
+        del buckets[figure]
+        if most is not None and len(kept) >= most:
+            break
+    return kept

@@ -1,0 +1,255 @@
+"""A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
+
+import gc
+import sys
+from collections.abc import Callable, Collection, Sequence
+from typing import NamedTuple
+
+from foon_asp.bounds import Cuts, landmark_cuts
+from foon_asp.problem import Objective, Problem
+from foon_asp.reduce.derivation import derive
+from foon_asp.reduce.dominance import undominated
+from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
+from foon_asp.reduce.forced import beside_forced
+from foon_asp.reduce.graph import Graph, graph_of
+from foon_asp.reduce.narrow import narrow
+from foon_asp.reduce.near import near
+from foon_asp.reduce.reductions import ALL, Reduction
+from foon_asp.reduce.upper_bound import improved, without_spare
+
+_LARGE = 40_000  # actions from which on it pays not to look at all of them
+_FIRST = 4000  # actions nearest to the goals, among which a tree is looked for before all others count
+_MANY = 2000  # actions among which better trees are looked for
+_EASY = 600  # actions that clingo chooses from faster than better trees are looked for here
+_ROUNDS = 24  # of cuts, trees and what they leave
+
+
+class Reduced(NamedTuple):
+    """What is left of a question.
+
+    ``tree`` are the units of a tree, or ``None`` where there is none. ``units`` are those that a better tree
+    can have and those of the tree, ascending. ``settled`` says that the tree is proved optimal. ``costs``
+    compares trees exactly and ``bound`` is a lower bound by it on every tree; ``None`` and 0 where there is
+    none. ``cuts`` are the weighted cuts that gave it, over the units left at the time. ``interrupted`` says
+    that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
+    """
+
+    tree: frozenset[int] | None
+    units: tuple[int, ...]
+    settled: bool
+    costs: ExactCosts | None
+    bound: int
+    cuts: Cuts | None
+    interrupted: bool = False
+
+
+class Listener:
+    """Hears of trees and bounds as they are found; override what you want to know."""
+
+    def tree(self, units: frozenset[int]) -> None:
+        """Hear of a tree that is better than the one before."""
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        """Hear of a lower bound on all trees."""
+
+
+def reduce(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    reductions: Collection[Reduction] = ALL,
+    expired: Callable[[], bool] = lambda: False,
+    listener: Listener | None = None,
+) -> Reduced:
+    """Leave of a problem what a search for the best tree still has to look at.
+
+    ``objectives`` is the list as it is optimized, ``units`` being in it, so that every unit costs
+    something. Without reductions that is what can be made from the kitchen and the goals can need.
+    """
+    reducer = _Reducer(problem, tuple(objectives), frozenset(reductions), expired, listener or Listener())
+    collecting = gc.isenabled()
+    gc.disable()  # nothing here is circular, and a collection walks over the whole network
+    try:
+        return reducer.reduce()
+    finally:
+        if collecting:
+            gc.enable()
+
+
+class _Reducer:
+    def __init__(
+        self,
+        problem: Problem,
+        objectives: tuple[Objective, ...],
+        reductions: frozenset[Reduction],
+        expired: Callable[[], bool],
+        listener: Listener,
+    ) -> None:
+        self.problem, self.objectives, self.reductions = problem, objectives, reductions
+        self.expired, self.listener = expired, listener
+        self.graph: Graph = graph_of(problem, objectives)
+        self.coarse = CoarseCosts(problem, objectives[0])
+        self.left: Collection[int] = ()
+        self.tree: set[int] = set()
+        self.costs: ExactCosts | None = None
+        self.bound = 0
+        self.cuts: Cuts | None = None
+
+    def reduce(self) -> Reduced:
+        try:
+            guide = self._near_goals() or self._whole()
+            if guide is None:
+                return Reduced(None, (), False, None, 0, None)
+            if not self.reductions:
+                return self._result(settled=False)
+            self.tree = without_spare(self.graph, self.tree, self.coarse)
+            self.listener.tree(self._units(self.tree))
+            settled = self._narrow(guide)
+        except KeyboardInterrupt:
+            if not self.tree:
+                raise
+            return self._result(settled=False)._replace(interrupted=True)
+        return self._result(settled)
+
+    def _near_goals(self) -> dict[int, int] | None:
+        """Find a tree among the actions nearest to the goals, with all others still to be counted in.
+
+        Most of a large network is too far from the goals for a good tree, and never looked at then. Gives how
+        dear objects are, or ``None`` where that does not help.
+        """
+        graph = self.graph
+        size = len(graph.needs)
+        if not self.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= _LARGE:
+            return None
+        everything = range(size)
+        few = near(graph, everything, self.coarse, sys.maxsize, most=_FIRST)
+        found = narrow(graph, few, self.coarse, size // 4) if len(few) >= _FIRST else None
+        if found is None:
+            return None
+        made, self.tree = found
+        self.left = everything
+        return made.cost
+
+    def _whole(self) -> dict[int, int] | None:
+        """Leave all that can be made and that the goals can need; gives how dear objects are.
+
+        ``None`` where there is no tree.
+        """
+        graph = self.graph
+        cone, _ = graph.cone()
+        made = derive(graph, cone, self.coarse, added=False)
+        tree = made.tree(graph, graph.goals)
+        if tree is None:
+            return None
+        self.left = made.before
+        if len(made.before) < len(cone):  # what cannot run may have been all that some others are for
+            self.left, _ = graph.cone(made.before)
+        self.tree = self.tree or tree
+        return made.cost
+
+    def _narrow(self, guide: dict[int, int] | None) -> bool:
+        """Go around until nothing changes; whether the tree is proved optimal."""
+        try:
+            self.costs = costs = ExactCosts(self.problem, self.objectives, self.left)
+        except TooFineError:
+            costs = None
+        if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
+            self._offer(derive(self.graph, self.left, costs, added=True).tree(self.graph, self.graph.goals))
+        thorough = False  # as a last resort
+        for _ in range(_ROUNDS):
+            before = len(self.left), self.tree
+            if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
+                if self._bound(costs, guide or {}, thorough):
+                    return True
+                self._drop_dear(costs)
+            if self.expired():
+                break
+            if isinstance(self.left, range):
+                self._whole()
+            if costs is not None and Reduction.DOMINATED in self.reductions:
+                self.left = undominated(self.graph, self.left, costs)
+            changed = (len(self.left), self.tree) != before
+            if not changed and Reduction.FORCED in self.reductions and len(self.left) <= _MANY:
+                self.left = beside_forced(self.graph, self.left)
+                changed = len(self.left) < before[0]
+            if not changed and (thorough or len(self.left) <= _EASY):
+                break
+            thorough = not changed
+            guide = derive(self.graph, self.left, costs or self.coarse, added=False).cost
+        return False
+
+    def _bound(self, costs: ExactCosts, guide: dict[int, int], thorough: bool) -> bool:
+        """Find cuts, and better trees near what they leave; whether bounds meet."""
+        searched = Reduction.BOUNDS in self.reductions
+        lazy = isinstance(self.left, range)  # a guide to all of them would have to look at all of them
+        self.cuts = cuts = landmark_cuts(
+            self.graph,
+            self.graph.goals,
+            self.left,
+            costs,
+            guide,
+            self.expired,
+            None if lazy else lambda rest: derive(self.graph, self.left, rest, added=False).cost,
+        )
+        total = self._total(costs)
+        bound = total if cuts.hopeless else min(cuts.bound, total)
+        if bound > self.bound:
+            self.bound = bound
+            self.listener.bound(costs, bound)
+        if searched and (cuts.hopeless or costs.met(cuts, self.tree)):
+            return True
+
+        def rest(action: int) -> int:
+            return cuts.left[action] if action in cuts.left else costs(action)
+
+        few = near(self.graph, self.left, rest, total - cuts.bound, most=_MANY)
+        better = improved(self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough)
+        if better is not self.tree:
+            self.tree = better
+            self.listener.tree(self._units(better))
+        return searched and costs.met(cuts, better)
+
+    def _offer(self, tree: set[int] | None) -> None:
+        """Take a tree in hand if it is better than the one there, once spare units are left out of it."""
+        if tree is None or self.costs is None:
+            return
+        slim = without_spare(self.graph, tree, self.costs)
+        if sum(map(self.costs, slim)) < self._total(self.costs):
+            self.tree = slim
+            self.listener.tree(self._units(slim))
+
+    def _drop_dear(self, costs: ExactCosts) -> None:
+        """Leave out what only trees have that are no better than the one in hand."""
+        if Reduction.DEAR not in self.reductions or self.cuts is None:
+            return
+        cuts = self.cuts
+
+        def rest(action: int) -> int:
+            return cuts.left[action] if action in cuts.left else costs(action)
+
+        limit = self._total(costs) - cuts.bound + costs.doubt
+        if Reduction.BOUNDS in self.reductions and not costs.doubt:
+            limit -= 1
+        left = near(self.graph, self.left, rest, limit)
+        while True:
+            made = derive(self.graph, left, rest, added=False)
+            nearer = near(self.graph, left, rest, limit, made.before)
+            if len(nearer) == len(left):
+                break
+            left = nearer
+        self.left = left
+
+    def _total(self, costs: ExactCosts) -> int:
+        return sum(map(costs, self.tree))
+
+    def _units(self, actions: Collection[int]) -> frozenset[int]:
+        return frozenset(a for a in actions if a < self.graph.units)
+
+    def _result(self, settled: bool) -> Reduced:
+        tree = self._units(self.tree)
+        early = isinstance(self.left, range)  # nothing was left out, and there is no time to begin with it
+        left = set() if settled or early else set(self._units(self.left))
+        if self.reductions:
+            left |= tree
+        return Reduced(
+            tree, tuple(sorted(left)), settled, self.costs, self.bound, self.cuts, early and not settled
+        )

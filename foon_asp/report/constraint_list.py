@@ -1,0 +1,46 @@
+"""The ready-made constraints for people and for programs."""
+
+import json
+import shlex
+import textwrap
+from collections.abc import Sequence
+
+from foon_asp.asp.constraint_library import LibraryConstraint
+
+_WIDTH = 100
+
+
+def constraints_text(constraints: Sequence[LibraryConstraint]) -> str:
+    """Give of each its name, what it demands, and how it is called."""
+    blocks = []
+    for constraint in constraints:
+        call = f"--constraint {constraint.name}"
+        for parameter in constraint.parameters:
+            call += f" -c {parameter.name}={shlex.quote(parameter.example)}"
+        purpose = textwrap.wrap(constraint.purpose, _WIDTH - 4)
+        blocks.append("\n".join([constraint.name, *(f"    {line}" for line in purpose), f"  {call}"]))
+    return "\n\n".join(blocks) + "\n"
+
+
+def constraints_json(constraints: Sequence[LibraryConstraint]) -> str:
+    """Give a list of objects; an own value of ``null`` means that the parameter is not set by the file."""
+    listed = [
+        {
+            "name": constraint.name,
+            "file": str(constraint.file),
+            "title": constraint.title,
+            "purpose": constraint.purpose,
+            "parameters": [
+                {
+                    "name": parameter.name,
+                    "own_value": None
+                    if parameter.own_value in {'""', "#sup", "#inf"}
+                    else parameter.own_value,
+                    "example": parameter.example,
+                }
+                for parameter in constraint.parameters
+            ],
+        }
+        for constraint in constraints
+    ]
+    return json.dumps(listed, indent=2, ensure_ascii=False) + "\n"

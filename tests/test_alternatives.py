@@ -1,0 +1,212 @@
+"""All optimal trees, the k best, those that differ most, regrets and menus: held against brute force."""
+
+import random
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from foon_asp import (
+    ContainerRule,
+    FunctionalUnit,
+    NetworkBuilder,
+    Objective,
+    ObjectNode,
+    Problem,
+    Settings,
+    Source,
+    Status,
+)
+from foon_asp.explain.alternatives import Alternatives, all_optimal, best_trees, most_different
+from foon_asp.explain.menu import menu
+from foon_asp.explain.regret import Part, regrets
+from tests import oracle
+from tests.random_problems import MOTIONS, RATES, UTENSILS, random_problem
+
+RULES = list(ContainerRule)
+Units = frozenset[FunctionalUnit]
+
+
+def choosing(seed: int, rule: ContainerRule) -> Problem:
+    """Make a problem with several makers for each of three steps, or a small one of any kind."""
+    if seed % 4 == 0:
+        return random_problem(seed, rule)
+    rng = random.Random(seed)
+    steps = [ObjectNode.of("dough", [state]) for state in ("raw", "mixed", "risen", "baked")]
+    others = [ObjectNode.of(label) for label in ("salt", "yeast", "bowl")]
+    builder = NetworkBuilder()
+    for line in range(8):
+        step = line % 3 if line < 6 else rng.randrange(3)
+        inputs = [steps[step], *rng.sample(others, rng.randrange(3))]
+        outputs = [steps[step + 1], *rng.sample(others, rng.choice((0, 0, 1)))]
+        builder.add(rng.choice(MOTIONS), inputs, outputs, Source("random", line + 1))
+    network = builder.build()
+    at_hand = [steps[0], *others[: rng.choice((2, 3, 3))]]
+    kitchen = frozenset(o for node in at_hand if (o := network.object_id(node)) is not None)
+    rates = {motion: Fraction(rng.choice(RATES)) for motion in MOTIONS}
+    goal = network.object_id(steps[3])
+    assert goal is not None
+    return Problem(network, kitchen, (goal,), rates, UTENSILS, rule)
+
+
+def minimal_trees(problem: Problem, allowed: oracle.Allowed = lambda _: True) -> list[Units]:
+    """Give every allowed tree that holds no other allowed one."""
+    found = [frozenset(tree) for tree in oracle.trees(problem, allowed)]
+    return [tree for tree in found if not any(other < tree for other in found)]
+
+
+def key(problem: Problem, tree: Units, objectives: Sequence[str]) -> tuple[Fraction, ...]:
+    return oracle.key(problem, tuple(tree), list(objectives))
+
+
+def sets_of(found: Alternatives) -> list[Units]:
+    return [frozenset(map(found.problem.network.unit, tree.units)) for tree in found.trees]
+
+
+def drawn(seed: int) -> list[str]:
+    if seed % 2:
+        return ["units"]
+    return random.Random(seed).sample(sorted(map(str, Objective)), random.Random(seed).choice((1, 1, 2)))
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_all_optimal_trees_and_the_best_in_order(rule: ContainerRule) -> None:
+    several = 0
+    for seed in range(7000, 7018):
+        problem = choosing(seed, rule)
+        objectives = drawn(seed)
+        expected = sorted(key(problem, tree, objectives) for tree in minimal_trees(problem))
+        parsed = [Objective(name) for name in objectives]
+        ranked = best_trees(problem, parsed, Settings(), 1000)
+        assert ranked.complete
+        trees = sets_of(ranked)
+        assert set(trees) == set(minimal_trees(problem))
+        assert len(trees) == len(set(trees))
+        assert [key(problem, tree, objectives) for tree in trees] == expected
+        optimal = all_optimal(problem, parsed, Settings(), 1000)
+        assert optimal.complete
+        assert len(optimal.trees) == expected.count(expected[0]) if expected else not optimal.trees
+        several += len(optimal.trees) > 1
+        if optimal.trees:
+            best = sets_of(optimal)
+            unit = problem.network.unit
+            assert frozenset(map(unit, optimal.in_every)) == frozenset.intersection(*best)
+            assert frozenset(map(unit, optimal.in_some)) == frozenset.union(*best)
+        for most in (1, 2):
+            some = best_trees(problem, parsed, Settings(), most)
+            assert [key(problem, tree, objectives) for tree in sets_of(some)] == expected[:most]
+            cut = all_optimal(problem, parsed, Settings(), most)
+            assert cut.complete == (len(optimal.trees) <= most)
+    assert several >= 3
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_constraints_hold_for_alternatives(rule: ContainerRule) -> None:
+    for seed in range(7100, 7120):
+        problem = choosing(seed, rule)
+        motion = random.Random(seed).choice(problem.network.motions)
+        settings = Settings(constraints=(Path("forbid_motion"),), constants=(f"forbidden_motion={motion}",))
+
+        def allowed(tree: tuple[FunctionalUnit, ...], motion: str = motion) -> bool:
+            return all(unit.motion != motion for unit in tree)
+
+        expected = minimal_trees(problem, allowed)
+        assert set(sets_of(best_trees(problem, [Objective.SUCCESS], settings, 1000))) == set(expected)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_trees_that_differ_most(rule: ContainerRule) -> None:
+    chosen = 0
+    for seed in range(7200, 7220):
+        problem = choosing(seed, rule)
+        pool = minimal_trees(problem)
+        if not pool:
+            continue
+        least = min(len(tree) for tree in pool)
+        near = [tree for tree in pool if len(tree) * 2 <= least * 3]
+        found = sets_of(most_different(problem, [Objective.UNITS], Settings(), 3, Fraction(1, 2), 100))
+        assert len(found) == min(3, len(near))
+        if len(near) > 3:
+            chosen += 1
+            assert spread(found) == max(spread(some) for some in combinations(near, 3))
+    assert chosen >= 3
+
+
+def spread(trees: Sequence[Units]) -> tuple[int, int]:
+    distances = [len(one ^ other) for one, other in combinations(trees, 2)]
+    return min(distances), sum(distances)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_what_a_part_is_worth(rule: ContainerRule) -> None:
+    for seed in range(7300, 7330):
+        problem = random_problem(seed, rule)
+        (objective,) = random.Random(seed).sample(sorted(map(str, Objective)), 1)
+        everything = [frozenset(tree) for tree in oracle.trees(problem)]
+        found = regrets(problem, [Objective(objective)], units=range(len(problem.network)))
+        if not everything:
+            assert found.outcome.status is Status.INFEASIBLE
+            assert not found.regrets
+            continue
+        assert {r.id for r in found.regrets if r.part is Part.UNIT} == set(range(len(problem.network)))
+        for regret in found.regrets:
+            if regret.part is Part.UNIT:
+                gone = problem.network.unit(regret.id)
+                left, without = [tuple(tree) for tree in everything if gone not in tree], problem
+            else:
+                without = replace(problem, kitchen=problem.kitchen - {regret.id})
+                left = [tuple(tree) for tree in oracle.trees(without)]
+            expected = oracle.best(left, without, [objective])
+            assert (regret.costs is None) == (expected is None)
+            if regret.costs is not None and expected is not None:
+                sign = -1 if objective == Objective.SUCCESS else 1
+                figure = Fraction(regret.costs.measure(Objective(objective)))
+                assert [sign * figure, regret.costs.units] == list(expected)
+                assert found.outcome.costs is not None
+                loss = regret.loss(found.outcome.costs, Objective(objective))
+                assert loss is not None
+                assert loss >= 0
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_a_menu_is_the_joint_optimum_beside_the_single_ones(rule: ContainerRule) -> None:
+    shared = 0
+    for seed in range(7400, 7440):
+        problem = random_problem(seed, rule)
+        made = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
+        problem = replace(problem, goals=tuple(random.Random(seed).sample(made, min(2, len(made)))))
+        found = menu(problem, [Objective.INPUTS])
+        joint = oracle.best(list(oracle.trees(problem)), problem, ["inputs"])
+        assert (found.together.costs is None) == (joint is None)
+        if found.together.costs is None or joint is None:
+            continue
+        assert [found.together.costs.inputs, found.together.costs.units] == list(joint)
+        total = found.sum_of_separate(Objective.INPUTS)
+        ones = [replace(problem, goals=(goal,)) for goal in problem.goals]
+        bests = [oracle.best(list(oracle.trees(one)), one, ["inputs"]) for one in ones]
+        assert total == sum(best[0] for best in bests if best)
+        assert total is not None
+        assert found.together.costs.inputs <= total
+        for goal in problem.goals:  # what serves a goal makes it
+            serving = [u for u in found.together.units or () if goal in found.serves[u]]
+            units = tuple(map(problem.network.unit, serving))
+            assert oracle.makes(replace(problem, goals=(goal,)), units)
+        assert all(found.serves[u] for u in found.together.units or ())
+        shared += bool(found.shared)
+    assert shared >= 2
+
+
+def test_a_network_without_a_unit_is_a_part_of_it() -> None:
+    network = random_problem(1, ContainerRule.STRICT).network
+    less = network.without([1])
+    assert [less.unit_number(u) for u in range(len(less))] == [u for u in range(len(network)) if u != 1]
+    for u in range(len(less)):
+        unit = less.unit(u)
+        assert unit == network.unit(less.unit_number(u))
+        assert less.unit_id(unit) == u
+        assert less.unit_of_number(less.unit_number(u)) == u
+    assert less.unit_id(network.unit(1)) is None
+    assert less.without([0]).unit_number(0) == less.unit_number(1)

@@ -1,0 +1,127 @@
+"""Reductions: each alone and all together leave the optimum as it is."""
+
+import sys
+from itertools import combinations
+
+import pytest
+
+from foon_asp.asp import Proof, Settings, solve
+from foon_asp.certificate import certify
+from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce, reduction
+from tests.oracle import best, key, trees
+from tests.random_problems import random_problem
+
+LISTS: list[list[str]] = [
+    *([str(objective)] for objective in Objective),
+    ["success", "inputs"],
+    ["inputs", "success"],
+    ["units", "success"],
+    ["kitchen", "success", "inputs"],
+    ["units", "inputs", "kitchen"],
+    ["inputs+ingredients", "kitchen"],
+]
+CHOICES = [
+    ALL,
+    SAFE,
+    *(frozenset({one}) for one in Reduction),
+    *(frozenset(two) for two in combinations(Reduction, 2)),
+]
+
+
+def best_left(problem: Problem, units: tuple[int, ...], names: list[str]) -> object:
+    """Give the best measure among the trees made of the units left, by brute force."""
+    left = {problem.network.unit(u) for u in units}
+    found = list(trees(problem, left.issuperset))
+    return best(found, problem, names)
+
+
+@pytest.fixture(params=["all at once", "nearest first", "no searches left out"])
+def _sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have small networks treated as large ones are."""
+    if request.param != "all at once":
+        monkeypatch.setattr(reduction, "_LARGE", 0)
+        monkeypatch.setattr(reduction, "_FIRST", 1)
+    if request.param == "no searches left out":
+        monkeypatch.setattr(reduction, "_EASY", 0)
+        monkeypatch.setattr(sys.modules["foon_asp.bounds.landmark_cuts"], "_FRESH", 1)
+
+
+@pytest.mark.usefixtures("_sizes")
+@pytest.mark.parametrize("rule", ContainerRule)
+@pytest.mark.parametrize("seed", range(60))
+def test_what_is_left_has_an_optimum(seed: int, rule: ContainerRule) -> None:
+    problem = random_problem(seed, rule)
+    found = list(trees(problem))
+    for place, names in enumerate(LISTS):
+        objectives = levels(tuple(map(Objective, names)))
+        for number, reductions in enumerate(CHOICES):
+            if number and (seed + place + number) % 4:
+                continue
+            expected = best(found, problem, names)
+            left = reduce(problem, objectives, reductions)
+            if expected is None:
+                assert left.tree is None
+                continue
+            assert left.tree is not None
+            units = tuple(problem.network.unit(u) for u in sorted(left.tree))
+            in_hand = key(problem, units, names)
+            assert in_hand >= expected
+            assert best_left(problem, left.units, names) == expected, (names, reductions)
+            if left.settled:
+                assert in_hand == expected, (names, reductions)
+            if reductions <= SAFE:  # every optimal tree is left
+                kept = {problem.network.unit(u) for u in left.units}
+                for tree in found:
+                    if key(problem, tree, names) == expected:
+                        assert kept.issuperset(tree), (names, reductions)
+            if left.costs is not None:
+                total = sum(map(left.costs, left.tree)) if "kitchen" not in names else None
+                assert total is None or left.bound <= total
+                bound, first = left.costs.first(left.bound), expected[0]
+                assert (-bound if names[0] == "success" else bound) <= first
+
+
+@pytest.mark.usefixtures("_sizes")
+@pytest.mark.parametrize("rule", ContainerRule)
+@pytest.mark.parametrize("seed", range(100))
+def test_answers_are_the_same(seed: int, rule: ContainerRule) -> None:
+    problem = random_problem(seed, rule, units=14)
+    names = LISTS[seed % len(LISTS)]
+    objectives = tuple(map(Objective, names))
+    plain = solve(problem, objectives, Settings(reductions=NONE))
+    for reductions in (ALL, CHOICES[2 + seed % (len(CHOICES) - 2)]):
+        outcome = solve(problem, objectives, Settings(reductions=reductions))
+        assert outcome.status is plain.status
+        if plain.costs is not None and outcome.costs is not None:
+            assert outcome.costs.key(levels(objectives)) == plain.costs.key(levels(objectives)), reductions
+            assert outcome.bounds == plain.bounds
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_cuts_of_the_reductions_make_certificates(seed: int) -> None:
+    problem = random_problem(seed, list(ContainerRule)[seed % 2], units=14)
+    names = LISTS[seed % len(LISTS)]
+    outcome = solve(problem, tuple(map(Objective, names)), Settings())
+    if outcome.units is None:
+        assert outcome.cuts == ()
+        return
+    wanted = levels(outcome.objectives)
+    certificate = certify(problem, wanted, outcome.units, cuts=outcome.cuts)
+    assert certificate is not None
+    assert (certificate.claim, certificate.certified) == ("optimal", wanted)
+
+
+def test_where_bounds_meet_the_cuts_are_the_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise AssertionError("searched again")
+
+    monkeypatch.setattr("foon_asp.bounds.lower_bound.Covering", fail)
+    met = 0
+    for seed in range(40):
+        problem = random_problem(seed, ContainerRule.STRICT)
+        outcome = solve(problem, (Objective.SUCCESS,), Settings())
+        if outcome.proof is Proof.CUTS and outcome.units:
+            assert certify(problem, levels(outcome.objectives), outcome.units, cuts=outcome.cuts)
+            met += 1
+    assert met > 10

@@ -1,0 +1,217 @@
+"""``foon-asp shopping-list``: the cheapest lists, what is for sale, price lists."""
+
+import random
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Settings, Status
+from foon_asp.explain.shopping_list import Offer, priced, shopping_list
+from foon_asp.explain.sold import Shop
+from foon_asp.network import NetworkBuilder, Source
+from foon_asp.problem import ContainerRule, Problem
+from foon_asp.text import InputError, parse_node, read_prices
+from tests import oracle
+from tests.conftest import Cli
+from tests.random_problems import random_problem
+
+
+def kitchen_problem(kitchen: list[str], goal: str, *units: tuple[list[str], list[str]]) -> Problem:
+    builder = NetworkBuilder()
+    for line, (inputs, outputs) in enumerate(units, 1):
+        builder.add("m", map(parse_node, inputs), map(parse_node, outputs), Source("units", line))
+    network = builder.build()
+    ids = {str(node): o for o, node in enumerate(network.objects)}
+    stocked = frozenset(ids[name] for name in kitchen)
+    return Problem(network, stocked, (ids[goal],), None, frozenset({"bowl", "pan"}))
+
+
+CAKE = kitchen_problem(
+    ["oven; hot"],
+    "cake; baked",
+    (["flour; in [bag]", "egg; cracked"], ["batter; in [bowl]"]),
+    (["egg; whole"], ["egg; cracked"]),
+    (["batter; in [bowl]", "oven; hot"], ["cake; baked"]),
+    (["cake; frozen"], ["cake; baked"]),
+    (["batter; frozen"], ["batter; in [bowl]"]),
+)
+
+
+def bought(problem: Problem, **options: object) -> list[list[str]]:
+    found = shopping_list(problem, **options)  # type: ignore[arg-type]
+    assert found.outcome is None or found.outcome.status is Status.OPTIMAL
+    return [[str(problem.network.objects[o]) for o in each.items] for each in found.lists]
+
+
+def test_raw_things_are_bought_and_the_dish_is_not() -> None:
+    """A frozen cake would be one thing, but the cake is what is to be made; frozen batter is sold."""
+    assert bought(CAKE) == [["batter; frozen"], ["flour; in [bag]", "egg; whole"]]
+
+
+def test_the_dish_is_proposed_when_nothing_else_is_left() -> None:
+    problem = kitchen_problem(
+        [], "cake; baked", (["cake; frozen"], ["cake; thawed"]), (["cake; thawed"], ["cake; baked"])
+    )
+    assert shopping_list(problem).offer is Offer.FOR_SALE  # nothing makes a cake out of anything else
+    problem = kitchen_problem(
+        [],
+        "cake; baked",
+        (["cake; cold"], ["cake; baked"]),
+        (["cake; baked"], ["cake; cold"]),
+        (["air; thin"], ["cake; of air"]),
+    )
+    found = shopping_list(problem)
+    assert found.offer is Offer.DISH
+    assert bought(problem) == [["cake; cold"]]
+
+
+def test_the_goal_itself_comes_last() -> None:
+    problem = kitchen_problem(
+        ["air"], "cake", (["air", "cake"], ["cake", "crumbs"]), (["air"], ["cake; hot"])
+    )
+    found = shopping_list(problem)
+    assert found.offer is Offer.GOAL
+    assert bought(problem) == [["cake"]]
+
+
+def test_something_of_a_cycle_is_bought_where_it_feeds_only_itself() -> None:
+    problem = kitchen_problem(
+        [],
+        "bread; baked",
+        (["dough; sour"], ["dough; fed"]),
+        (["dough; fed"], ["dough; sour", "bread; baked"]),
+    )
+    found = shopping_list(problem)
+    assert found.offer is Offer.CYCLE
+    assert bought(problem) == [["dough; fed"], ["dough; sour"]]
+
+
+def test_nothing_is_bought_where_the_kitchen_suffices(cli: Cli) -> None:
+    ran = cli("shopping-list", "--goal", "ice")
+    assert ran.code == 0
+    assert "nothing has to be bought" in ran.out
+
+
+def good_lists(problem: Problem, sold: list[int], allowed: oracle.Allowed) -> list[frozenset[int]]:
+    """Give every set of things for sale that makes a tree possible."""
+    good = []
+    for size in range(len(sold) + 1):
+        for items in combinations(sold, size):
+            stocked = replace(problem, kitchen=problem.kitchen.union(items))
+            if next(oracle.trees(stocked, allowed), None) is not None:
+                good.append(frozenset(items))
+    return good
+
+
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_lists_against_brute_force(rule: ContainerRule) -> None:
+    """Each list is the cheapest of those that do not hold all of an earlier one, and none is left out."""
+    helped = none = 0
+    for seed in range(7000, 7120):
+        problem = random_problem(seed, rule, units=5)
+        rng = random.Random(seed)
+        others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
+        sold = rng.sample(others, min(len(others), 5))
+        prices = {o: Fraction(rng.choice(["0.5", "0.05", "1", "2.25", "3"])) for o in sold}
+        bound = rng.choice([1, 2, 9])
+        settings = Settings(constraints=(Path("at_most_units"),), constants=(f"max_units={bound}",))
+        found = shopping_list(problem, settings=settings, prices=prices, most=3)
+
+        def allowed(tree: tuple[object, ...], bound: int = bound) -> bool:
+            return len(tree) <= bound
+
+        left = good_lists(problem, sold, allowed)
+        none += not left
+        for each in found.lists:
+            assert each.proved
+            assert frozenset(each.items) in left
+            assert each.price == sum(prices[o] for o in each.items)
+            assert each.price == min(sum(prices[o] for o in items) for items in left)
+            left = [items for items in left if not items.issuperset(each.items)]
+        assert found.complete == (len(found.lists) < 3 or not found.lists[0].items)
+        assert not (found.complete and left)
+        if found.lists and found.lists[0].items:
+            helped += 1
+            assert found.outcome is not None
+            assert found.outcome.units is not None
+            tree = tuple(map(problem.network.unit, found.outcome.units))
+            assert oracle.makes(found.outcome.problem, tree)
+    assert helped > 15
+    assert none > 2
+
+
+def test_the_universal_whipped_cream_is_made_possible(cli: Cli, universal: Path) -> None:
+    for rule in ContainerRule:
+        words = ["shopping-list", "--data", universal, "--goal", "whipped cream", "--containers", rule]
+        found = cli(*words, "--format", "json").json
+        (first, *others) = found["lists"]
+        assert [item["object"] for item in first["items"]] == [
+            "mixing bowl; in [mixer]; contains {condensed milk,cream cheese,pudding mix}"
+        ]
+        assert (first["proved"], others, found["complete"], found["offer"]) == (True, [], True, "for sale")
+        assert found["answer"]["status"] == "optimal"
+
+
+def test_a_price_list_decides(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "prices.txt"
+    file.write_text(
+        "# market\ncocoa tin; contains {cocoa powder}\t4.50\npie crust; chilled\t1.5\npie crust\t2\n"
+    )
+    ran = cli("shopping-list", "--goal", "hot cocoa", "--goal", "apple pie", "--prices", file)
+    assert ran.code == 0
+    assert "2 object nodes for 6\n" in ran.out
+    assert "cocoa tin; contains {cocoa powder}    4.50" in ran.out
+    file.write_text("cocoa tin; contains {cocoa powder}\t100\nwhisk\t1\nwisk\t1\n")
+    short = cli("shopping-list", "--goal", "hot cocoa", "--goal", "apple pie", "--prices", file)
+    assert short.code == 1
+    assert "no list of things with a price" in short.out
+    assert "no node that one can buy has this label: wisk" in short.err
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("flour\n", "prices.txt:1:6: error: found the end of the line"),
+        ("flour\tcheap\n", "prices.txt:1:7: error: found 'cheap', expected a price"),
+        ("flour\t-1\n", "found '-1'"),
+        ("\nflour\t1\nflour\t2\n", "prices.txt:3:1: error: found a second price"),
+        ("flour; in [\t2\n", "error"),
+    ],
+)
+def test_faults_of_a_price_list_have_places(tmp_path: Path, text: str, message: str) -> None:
+    file = tmp_path / "prices.txt"
+    file.write_text(text)
+    with pytest.raises(InputError) as caught:
+        read_prices(file)
+    assert message in str(caught.value)
+
+
+def test_a_whole_node_outbids_its_label(tmp_path: Path) -> None:
+    file = tmp_path / "prices.txt"
+    file.write_text("egg; whole\t3\negg\t1\nflour\t2\n")
+    warned: list[str] = []
+    prices = priced(CAKE, read_prices(file), warned.append)
+    shown = {str(CAKE.network.objects[o]): int(price) for o, price in prices.items()}
+    assert shown == {"egg; whole": 3, "flour; in [bag]": 2}
+    assert not warned
+
+
+def test_what_is_for_sale() -> None:
+    shop = Shop(CAKE)
+    names = {str(node): o for o, node in enumerate(CAKE.network.objects)}
+    assert {name for name, o in names.items() if shop.sells(o)} == {
+        "flour; in [bag]",
+        "egg; whole",
+        "oven; hot",
+        "cake; frozen",
+        "batter; frozen",
+    }
+    assert {name for name, o in names.items() if shop.is_dish(o)} == {"cake; baked", "cake; frozen"}
+
+
+def test_a_limit_is_told(cli: Cli) -> None:
+    ran = cli("shopping-list", "--goal", "hot cocoa", "--time-limit", "0")
+    assert ran.code == 3

@@ -1,0 +1,52 @@
+"""Pages of the documentation whose examples are run: commands, files and what they print."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT, Cli
+
+PAGES = ("questions.md", "writing-constraints.md")
+# A block with a file name is a file; one without is a session.
+FENCE = re.compile(r"^```(?:[\w-]* )?(\S+\.\w+)?\n((?:.*\n)*?)```$", re.MULTILINE)
+
+
+def matches(shown: str, printed: str) -> bool:
+    """Whether a text is what was printed; a line ``...`` stands for any lines."""
+    pattern = "".join("(?:.*\n)*" if line == "...\n" else re.escape(line) for line in shown.splitlines(True))
+    return re.fullmatch(pattern, printed) is not None
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("data").symlink_to(ROOT / "data")
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    run = 0
+    for name, body in FENCE.findall(text):
+        if name:
+            Path(name).write_text(body.replace("→", "\t"), encoding="utf-8")
+            continue
+        for session in re.split(r"^\$ ", body, flags=re.MULTILINE)[1:]:
+            command, _, shown = session.partition("\n")
+            command, _, target = command.partition(" > ")
+            program, *words = shlex.split(command)
+            assert program == "foon-asp", command
+            ran = cli(*words)
+            assert ran.code in {0, 1, 2}, command
+            printed = (ran.err + ran.out).replace(f"{ROOT}/", "")
+            if target:
+                Path(target).write_text(ran.out, encoding="utf-8")
+                printed = ran.err
+            assert matches(shown, printed), f"{command}\n{printed}"
+            run += 1
+    assert run >= 5
+
+
+def test_what_is_left_out_stands_for_anything_and_nothing_else_does() -> None:
+    assert matches("a\n...\nd\n", "a\nb\nc\nd\n")
+    assert matches("a\n...\n", "a\n")
+    assert not matches("a\n...\nd\n", "a\nb\n")
+    assert not matches("a.c\n", "abc\n")
