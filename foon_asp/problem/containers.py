@@ -1,6 +1,7 @@
 """The two container rules: which inputs a unit asks for."""
 
 from enum import StrEnum
+from functools import lru_cache
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, node_at_level
 
@@ -41,6 +42,7 @@ def needed_inputs(
     return tuple(node for node in unit.inputs if not _is_implied(node, unit.inputs, utensils))
 
 
+@lru_cache(maxsize=4)  # question after question is about the same network
 def network_needs(
     network: Network, rule: ContainerRule, utensils: frozenset[str]
 ) -> tuple[tuple[int, ...], ...]:
