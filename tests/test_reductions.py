@@ -125,3 +125,28 @@ def test_where_bounds_meet_the_cuts_are_the_certificate(monkeypatch: pytest.Monk
             assert certify(problem, levels(outcome.objectives), outcome.units, cuts=outcome.cuts)
             met += 1
     assert met > 10
+
+
+def test_an_interrupted_search_for_cuts_leaves_a_bound_that_holds() -> None:
+    met = 0
+    for seed in range(40):
+        problem = random_problem(seed, ContainerRule.STRICT, units=14)
+        expected = best(list(trees(problem)), problem, ["units"])
+        asked = 0
+
+        def interrupt() -> bool:
+            nonlocal asked
+            asked += 1
+            if asked == 3:
+                raise KeyboardInterrupt
+            return False
+
+        if expected is None:
+            continue
+        found = reduce(problem, levels((Objective.UNITS,)), ALL, interrupt)
+        assert found.tree is not None
+        assert found.costs is not None
+        if found.interrupted:
+            assert 0 < found.costs.first(found.bound) <= expected[0]
+            met += 1
+    assert met > 5

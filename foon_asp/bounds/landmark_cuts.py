@@ -26,13 +26,15 @@ class Cuts(NamedTuple):
     """Weighted cuts: their sum ``bound`` is what every derivation costs at least.
 
     ``left[a]`` is what the cuts leave of the cost of action ``a``; where it is not there, they take nothing.
-    ``hopeless`` says that there is no derivation at all by the actions allowed.
+    ``hopeless`` says that there is no derivation at all by the actions allowed, ``interrupted`` that ctrl-C
+    ended the search for more: the bound holds, and ``left`` is of no use.
     """
 
     bound: int
     left: dict[int, int]
     cuts: list[WeightedCut]
     hopeless: bool = False
+    interrupted: bool = False
 
 
 def landmark_cuts(
@@ -63,41 +65,44 @@ def landmark_cuts(
         return left[action] if action in left else cost(action)
 
     remaining = sorted(targets, key=lambda o: (dear.get(o, dearest), o))
-    while remaining and not expired():
-        if remaining[-1] in free.objects:
-            remaining.pop()
-            continue
-        if guide is not None and found and len(found) % _FRESH == 0:
-            dear = guide(rest_of)
-            dearest = 1 + max(dear.values(), default=0)
-        zone = {remaining[-1]}
-        stack = [remaining[-1]]
-        edge: dict[int, None] = {}
-        passed: set[int] = set()
-        while stack:
-            for action in makers[stack.pop()]:
-                if action in passed or action in edge or action not in allowed:
-                    continue
-                if left.get(action, 1):
-                    edge[action] = None
-                    continue
-                passed.add(action)
-                needed = needs[action]
-                if zone.isdisjoint(needed):
-                    o = max(free.lacking(action), key=lambda o: (dear.get(o, dearest), o))
-                    zone.add(o)
-                    stack.append(o)
-        members = tuple(action for action in edge if zone.isdisjoint(needs[action]))
-        if not members:
-            return Cuts(bound, left, found, hopeless=True)
-        rests = [rest_of(a) for a in members]
-        weight = min(rests)
-        bound += weight
-        found.append(WeightedCut(frozenset(zone), members, members[rests.index(weight)], weight))
-        for action, rest in zip(members, rests, strict=True):
-            left[action] = rest - weight
-            if rest == weight:
-                free.release(action)
+    try:
+        while remaining and not expired():
+            if remaining[-1] in free.objects:
+                remaining.pop()
+                continue
+            if guide is not None and found and len(found) % _FRESH == 0:
+                dear = guide(rest_of)
+                dearest = 1 + max(dear.values(), default=0)
+            zone = {remaining[-1]}
+            stack = [remaining[-1]]
+            edge: dict[int, None] = {}
+            passed: set[int] = set()
+            while stack:
+                for action in makers[stack.pop()]:
+                    if action in passed or action in edge or action not in allowed:
+                        continue
+                    if left.get(action, 1):
+                        edge[action] = None
+                        continue
+                    passed.add(action)
+                    needed = needs[action]
+                    if zone.isdisjoint(needed):
+                        o = max(free.lacking(action), key=lambda o: (dear.get(o, dearest), o))
+                        zone.add(o)
+                        stack.append(o)
+            members = tuple(action for action in edge if zone.isdisjoint(needs[action]))
+            if not members:
+                return Cuts(bound, left, found, hopeless=True)
+            rests = [rest_of(a) for a in members]
+            weight = min(rests)
+            bound += weight
+            found.append(WeightedCut(frozenset(zone), members, members[rests.index(weight)], weight))
+            for action, rest in zip(members, rests, strict=True):
+                left[action] = rest - weight
+                if rest == weight:
+                    free.release(action)
+    except KeyboardInterrupt:
+        return Cuts(bound, left, found, interrupted=True)
     return Cuts(bound, left, found)
 
 

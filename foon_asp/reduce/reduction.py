@@ -195,6 +195,8 @@ class _Reducer:
         if bound > self.bound:
             self.bound = bound
             self.listener.bound(costs, bound)
+        if cuts.interrupted:
+            raise KeyboardInterrupt
         if searched and (cuts.hopeless or costs.met(cuts, self.tree)):
             return True
 
