@@ -53,10 +53,13 @@ def files(folder: Path, seed: int, problem: Problem) -> tuple[list[Path], list[l
     return paths, ways, rng
 
 
+@pytest.mark.parametrize(
+    "seeds", [range(8000, 8035), pytest.param(range(8035, 8100), marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("rule", RULES)
-def test_clashes_against_brute_force(rule: ContainerRule, tmp_path: Path) -> None:
+def test_clashes_against_brute_force(rule: ContainerRule, seeds: range, tmp_path: Path) -> None:
     sizes = set()
-    for seed in range(8000, 8100):
+    for seed in seeds:
         problem = random_problem(seed, rule, units=7)
         paths, ways, rng = files(tmp_path, seed, problem)
         weights = {path: rng.randint(1, 4) for path in paths}
@@ -92,10 +95,13 @@ def test_clashes_against_brute_force(rule: ContainerRule, tmp_path: Path) -> Non
     assert {0, 1, 2} <= sizes
 
 
+@pytest.mark.parametrize(
+    "seeds", [range(8500, 8535), pytest.param(range(8535, 8580), marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("rule", RULES)
-def test_soft_constraints_against_brute_force(rule: ContainerRule, tmp_path: Path) -> None:
+def test_soft_constraints_against_brute_force(rule: ContainerRule, seeds: range, tmp_path: Path) -> None:
     penalties = set()
-    for seed in range(8500, 8580):
+    for seed in seeds:
         problem = random_problem(seed, rule, units=7)
         paths, ways, rng = files(tmp_path, seed, problem)
         weights = {path: rng.randint(1, 4) for path in paths}

@@ -498,6 +498,7 @@ def test_the_dialect_is_found_out(text: str, dialect: Dialect) -> None:
     assert dialect_of(text, FoonReader()) is dialect
 
 
+@pytest.mark.slow
 def test_corpus(universal: Path) -> None:
     """Every file to every dialect; and to JSON and back, which must give the lines as they were."""
     tables = {"motion.txt", "utensils.txt"}

@@ -54,9 +54,12 @@ def test_lexicographic_lists(rule: ContainerRule) -> None:
         assert_agrees(problem, [str(objective) for objective in objectives], found)
 
 
+@pytest.mark.parametrize(
+    "seeds", [range(4000, 4060), pytest.param(range(4060, 4200), marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("rule", RULES)
-def test_trees_by_need_have_the_same_optima(rule: ContainerRule) -> None:
-    for seed in range(4000, 4200):
+def test_trees_by_need_have_the_same_optima(rule: ContainerRule, seeds: range) -> None:
+    for seed in seeds:
         problem = random_problem(seed, rule)
         found = list(oracle.trees(problem))
         for objective in Objective:
@@ -139,7 +142,7 @@ def passed_on(problem: Problem, tree: Tree, label: str) -> bool:
 
 
 @pytest.mark.parametrize("rule", RULES)
-@pytest.mark.parametrize("first", range(0, NETWORKS, 10 * CHUNK))
+@pytest.mark.parametrize("first", [0, pytest.param(10 * CHUNK, marks=pytest.mark.slow)])
 def test_constraints(first: int, rule: ContainerRule) -> None:
     for seed in range(first, first + 10 * CHUNK):
         problem = random_problem(seed, rule)

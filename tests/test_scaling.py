@@ -18,6 +18,7 @@ def test_exponents_of_power_laws() -> None:
     assert scaling.slope([(size, 1e-9 * size**1.5) for size in sizes]) == pytest.approx(1.5)
 
 
+@pytest.mark.slow
 def test_a_whole_run(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     page, plot = tmp_path / "page.md", tmp_path / "growth.svg"

@@ -130,7 +130,7 @@ def depths(problem: Problem) -> dict[int, int]:
 
 
 @pytest.mark.parametrize("rule", RULES)
-@pytest.mark.parametrize("units", [8, 30])
+@pytest.mark.parametrize("units", [8, pytest.param(30, marks=pytest.mark.slow)])
 def test_deepening_returns_a_tree_of_least_depth_or_says_that_none_exists(
     rule: ContainerRule, units: int
 ) -> None:

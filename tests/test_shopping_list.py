@@ -106,11 +106,14 @@ def good_lists(problem: Problem, sold: list[int], allowed: oracle.Allowed) -> li
     return good
 
 
+@pytest.mark.parametrize(
+    "seeds", [range(7000, 7040), pytest.param(range(7040, 7120), marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("rule", list(ContainerRule))
-def test_lists_against_brute_force(rule: ContainerRule) -> None:
+def test_lists_against_brute_force(rule: ContainerRule, seeds: range) -> None:
     """Each list is the cheapest of those that do not hold all of an earlier one, and none is left out."""
     helped = none = 0
-    for seed in range(7000, 7120):
+    for seed in seeds:
         problem = random_problem(seed, rule, units=5)
         rng = random.Random(seed)
         others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
@@ -139,8 +142,8 @@ def test_lists_against_brute_force(rule: ContainerRule) -> None:
             assert found.outcome.units is not None
             tree = tuple(map(problem.network.unit, found.outcome.units))
             assert oracle.makes(found.outcome.problem, tree)
-    assert helped > 15
-    assert none > 2
+    assert helped > 5
+    assert none
 
 
 def test_the_universal_whipped_cream_is_made_possible(cli: Cli, universal: Path) -> None:

@@ -523,7 +523,7 @@ def test_a_killed_import_leaves_the_old_store_or_none(soup: tuple[DataFiles, Pat
     files, store = soup
     large = tmp_path / "large.txt"
     unit = "O\tpan\nS\tstate {}\nS\ton\t[table {}]\nM\theat\nO\tpan\nS\thot {}\n//\n"
-    large.write_text("".join(unit.format(i, i, i) for i in range(40_000)), encoding="utf-8")
+    large.write_text("".join(unit.format(i, i, i) for i in range(20_000)), encoding="utf-8")
     before = store.read_bytes()
     killed_import(large, store)
     assert store.read_bytes() == before
