@@ -22,7 +22,7 @@ FLOORS = (
     {"text", "problem", "bounds"},
     {"reduce"},
     {"asp", "search", "proof", "store"},
-    {"explain", "compare", "lint", "certificate", "engines"},
+    {"explain", "compare", "lint", "certificate", "engines", "question"},
     {"report"},
     {"batch"},
     {FACE},

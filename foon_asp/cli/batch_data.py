@@ -14,6 +14,7 @@ from foon_asp.compare import makeable
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
+from foon_asp.question import Question, question_files
 from foon_asp.text import read_object_list
 
 
@@ -36,8 +37,8 @@ class Opening:
 class BatchData:
     """Opened data, and the kitchens that were asked about."""
 
-    def __init__(self, question: options.Question) -> None:
-        self._questions: dict[Path | None, options.Question] = {None: question}
+    def __init__(self, question: Question) -> None:
+        self._questions: dict[Path | None, Question] = {None: question}
 
     def named(self, word: str, containers: str, kitchen: Path | None) -> Sequence[str]:
         """Give the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
@@ -56,7 +57,7 @@ class BatchData:
         question = self._with(asked.kitchen)
         return question.problem(question.goals(asked.goals), asked.containers)
 
-    def _with(self, kitchen: Path | None) -> options.Question:
+    def _with(self, kitchen: Path | None) -> Question:
         question = self._questions.get(kitchen)
         if question is None:
             assert kitchen is not None
@@ -68,7 +69,7 @@ class BatchData:
 def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
     """Give a digest of everything in the files that the options name, and of kitchens beside them."""
     named = {key: value for key, value in named.items() if key not in {"level", "lenient"}}
-    files = options.data_files(**named)
+    files = question_files(**named)
     found = hashlib.sha256()
     beside = (files.kitchen, files.rates, files.utensils, files.goals)
     for file in (*files.network, *(file for file in beside if file), *sorted(set(kitchens))):

@@ -8,6 +8,7 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.network import TaskTree, unit_at_level
 from foon_asp.proof import Verdict, simulate_for
+from foon_asp.question import ask
 from foon_asp.report.verdict import verdict_json, verdict_text
 from foon_asp.text import FoonReader, summarize
 
@@ -43,7 +44,7 @@ def command(
     listed = [(unit_at_level(unit, question.names.level), source) for unit, source in listed]
     tree = TaskTree(tuple(unit for unit, _ in listed))
     data_of_tree, goals = question.part(goals, tree=tree)
-    problem = options.ask(data_of_tree, goals, containers)
+    problem = ask(data_of_tree, goals, containers)
     simulation = simulate_for(problem, tree)
     render = {"text": verdict_text, "json": verdict_json}[format_]
     click.echo(render(problem, listed, simulation), nl=False)

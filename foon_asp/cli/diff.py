@@ -8,12 +8,13 @@ import click
 from foon_asp.asp import Settings, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
-from foon_asp.cli.options import Question, read_question
+from foon_asp.cli.options import read_question
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.explain.difference import Listed, Side, difference, side
 from foon_asp.network import unit_at_level
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
+from foon_asp.question import Question
 from foon_asp.reduce import parse_reductions
 from foon_asp.report.answer import headline
 from foon_asp.report.difference import difference_json, difference_text

@@ -11,12 +11,12 @@ from click.core import ParameterSource
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
-from foon_asp.cli.options import Question
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, TaskTree, unit_at_level
 from foon_asp.problem import ContainerRule, conditions, parse_objectives
 from foon_asp.proof import Verdict, simulate
+from foon_asp.question import Question
 from foon_asp.report.answer import headline
 from foon_asp.report.dot import dot_text
 from foon_asp.report.drawing import Drawing, draw_network, draw_tree

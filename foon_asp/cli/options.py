@@ -1,30 +1,14 @@
 """Options that several verbs share, and reading the data they name."""
 
 import functools
-import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
 import click
 
-from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network
-from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.resources import bundled_kitchen
-from foon_asp.text import (
-    Data,
-    DataFiles,
-    ListedObject,
-    NodeNames,
-    find_data,
-    find_goal,
-    is_store,
-    kitchen_nodes,
-    listed_nodes,
-    read_data,
-    summarize,
-)
+from foon_asp.problem import ContainerRule, Objective
+from foon_asp.question import Question, question_files, reading
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _PATH = click.Path(path_type=Path)
@@ -131,95 +115,6 @@ def constraint_options(command: Command) -> Command:
     return functools.reduce(lambda f, option: option(f), reversed(_CONSTRAINT_OPTIONS), command)
 
 
-def ask(data: Data, goals: Sequence[int], containers: str) -> Problem:
-    """Ask for goals of the network under a container rule."""
-    rule = ContainerRule(containers)
-    return Problem(data.network, data.kitchen, tuple(goals), data.rates, data.utensils, rule)
-
-
-class Question:
-    """The data that the options name, read, and how many seconds that took.
-
-    Verbs ask for goals and problems and leave the rest to it; ``data`` is everything, for those that need it.
-    """
-
-    def __init__(self, data: Data, read_seconds: float) -> None:
-        self._data = data
-        self.read_seconds = read_seconds
-
-    @property
-    def data(self) -> Data:
-        """Everything there is."""
-        return self._data
-
-    @property
-    def listed(self) -> Sequence[ListedObject]:
-        """The entries of the goals file."""
-        return self.data.goals
-
-    @property
-    def names(self) -> Network | NodeNames:
-        """What goals are looked up in."""
-        return self.data.network
-
-    def goals(self, names: Sequence[str]) -> tuple[int, ...]:
-        """Find the goals by name; without a name, the goals file has to hold exactly one."""
-        if not names and len(self.listed) == 1:
-            names = [self.listed[0].pattern.label]
-        if not names:
-            listed = "\n".join(f"  --goal {entry.pattern.label!r}" for entry in self.listed)
-            raise UserError("name a goal with --goal" + (f"; the goals file has\n{listed}" if listed else ""))
-        return tuple(dict.fromkeys(self.each_goal(names)))
-
-    def each_goal(self, names: Sequence[str]) -> list[int]:
-        """Find one goal for each name; without names, all nodes of the goals file."""
-        if names:
-            return [find_goal(name, self.names, self.listed) for name in names]
-        return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
-
-    def with_kitchen(self, items: Sequence[ListedObject]) -> "Question":
-        """Give the same data with another kitchen."""
-        kitchen = kitchen_nodes(self.data.network, items)
-        data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items))
-        return Question(data, self.read_seconds)
-
-    def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
-        """Ask for goals, which are those of the problem in the same order, under a container rule.
-
-        ``everything`` asks for units that no goal needs to be there too.
-        """
-        return ask(self.data, goals, containers)
-
-    def part(
-        self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
-    ) -> tuple[Data, tuple[int, ...]]:
-        """Give data with at least these goals, these units by id, and what a tree is made of.
-
-        With it come the ids that the goals have there. Raises :class:`UserError` for ids of no unit.
-        """
-        self._check_units(units, len(self.data.network))
-        return self.data, tuple(goals)
-
-    def _check_units(self, units: Iterable[int], count: int) -> None:
-        for unit in units:
-            if not 0 <= unit < count:
-                raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
-
-
-def data_files(
-    folder: Path | None,
-    network: Sequence[Path],
-    kitchen: Path | None,
-    rates: Path | None,
-    utensils: Path | None,
-    goals: Path | None,
-) -> DataFiles:
-    """Find the files that the options name: those of the bundled kitchen without --data and --network."""
-    if folder is None and not network:
-        folder = bundled_kitchen()
-    return find_data(folder, network, kitchen, rates, utensils, goals)
-
-
 def read_question(
     folder: Path | None,
     network: Sequence[Path],
@@ -231,24 +126,11 @@ def read_question(
     level: int,
     kitchen_expected: bool = True,
 ) -> Question:
-    """Read the data that the options name; warnings go to stderr.
-
-    Without --data and --network it is the bundled kitchen. A network of its own does not get the bundled
-    kitchen and rates, which are made for another one.
-    """
-    began = time.perf_counter()
-    files = data_files(folder, network, kitchen, rates, utensils, goals)
-    if any(map(is_store, files.network)):
-        from foon_asp.cli.stored_question import read_stored
-
-        return read_stored(files, level, kitchen_expected)
-    data = read_data(files, lenient, level)
-    seconds = time.perf_counter() - began
-    for text in summarize(data.warnings):
+    """Read the data that the options name; warnings go to stderr."""
+    files = question_files(folder, network, kitchen, rates, utensils, goals)
+    question = reading.read_question(files, lenient, level)
+    for text in question.remarks:
         click.echo(text, err=True)
-    if data.left_out:
-        lines = "1 line" if data.left_out == 1 else f"{data.left_out} lines"
-        click.echo(f"warning: {lines} left out", err=True)
-    if files.kitchen is None and kitchen_expected:
+    if not question.has_kitchen and kitchen_expected:
         click.echo("warning: no kitchen is given, so nothing is at hand; name one with --kitchen", err=True)
-    return Question(data, seconds)
+    return question

@@ -1,16 +1,15 @@
 """Questions to a store, which is read as far as a question goes."""
 
+import copy
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 
-import click
-
-from foon_asp.cli.options import Question, ask
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, network_at_level, pattern_at_level
 from foon_asp.problem import ContainerRule, Problem, require_rates
+from foon_asp.question.question import Question, ask
 from foon_asp.store import Store
 from foon_asp.text import (
     Data,
@@ -27,10 +26,10 @@ from foon_asp.text import (
 )
 
 
-def read_stored(files: DataFiles, level: int, kitchen_expected: bool) -> Question:
+def read_stored(files: DataFiles, level: int) -> Question:
     """Open the store that is named instead of networks; what is named beside it replaces what is in it.
 
-    Warnings go to stderr. Below level 3 it is read whole, since its nodes become others there.
+    Below level 3 it is read whole, since its nodes become others there.
     """
     if len(files.network) > 1:
         raise UserError(
@@ -50,15 +49,15 @@ def read_stored(files: DataFiles, level: int, kitchen_expected: bool) -> Questio
         rates = read_rates(files.rates)
         require_rates(store.motion_sources(), rates)
     utensils = read_labels(files.utensils) if files.utensils else store.utensils
-    for text in summarize(warnings):
-        click.echo(text, err=True)
+    remarks = summarize(warnings)
     if store.left_out:
         lines = "1 line" if store.left_out == 1 else f"{store.left_out} lines"
-        click.echo(f"warning: {lines} left out when the store was made", err=True)
-    if kitchen is None and not store.has_kitchen and kitchen_expected:
-        click.echo("warning: no kitchen is given, so nothing is at hand; name one with --kitchen", err=True)
-    question = StoredQuestion(store, kitchen, goals, rates, utensils, began)
-    return question if level == 3 else Question(_at_level(question.data, level), time.perf_counter() - began)
+        remarks.append(f"warning: {lines} left out when the store was made")
+    question = StoredQuestion(store, kitchen, goals, rates, utensils, began, tuple(remarks))
+    if level == 3:
+        return question
+    data = _at_level(question.data, level)
+    return Question(data, time.perf_counter() - began, tuple(remarks), question.has_kitchen)
 
 
 class StoredQuestion(Question):
@@ -73,9 +72,10 @@ class StoredQuestion(Question):
         store: Store,
         kitchen: Sequence[ListedObject] | None,
         goals: Sequence[ListedObject],
-        rates: dict[str, Fraction] | None,
+        rates: Mapping[str, Fraction] | None,
         utensils: frozenset[str],
         began: float,
+        remarks: tuple[str, ...] = (),
     ) -> None:
         self._store = store
         self._kitchen = kitchen
@@ -85,24 +85,59 @@ class StoredQuestion(Question):
         self._at_hand: Callable[[int], bool] = store.in_kitchen
         if kitchen is not None:
             self._at_hand = {o for item in kitchen for o in store.find(item.pattern)}.__contains__
+        self._read_whole: list[tuple[Network, frozenset[int]]] = []  # shared by all that vary it
+        self.remarks = remarks
+        self.has_kitchen = kitchen is not None or store.has_kitchen
         self.read_seconds = time.perf_counter() - began
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> Question:
-        """Give the same store with another kitchen."""
+        """Give the same store with the kitchen of another file."""
         began = time.perf_counter()
         return StoredQuestion(self._store, items, self._listed, self._rates, self._utensils, began)
+
+    def varied(
+        self,
+        more: Collection[int],
+        less: Collection[int],
+        only: Collection[int] | None,
+        rates: Mapping[str, Fraction] | None,
+    ) -> Question:
+        """Give the same store with another kitchen and other rates; nothing is read."""
+        before = self._at_hand if only is None else frozenset(only).__contains__
+        other = copy.copy(self)
+        other.__dict__.pop("data", None)
+        other._at_hand = lambda o: o not in less and (o in more or before(o))
+        other._kitchen = self._kitchen if only is None else ()
+        other._rates = rates
+        return other
 
     @cached_property
     def data(self) -> Data:
         """Everything there is: the whole store is read."""
         began = time.perf_counter()
-        network, kitchen = self._store.whole()
-        items = self._store.kitchen_items()
-        if self._kitchen is not None:
-            items, kitchen = tuple(self._kitchen), kitchen_nodes(network, self._kitchen)
+        if not self._read_whole:
+            self._read_whole.append(self._store.whole())
+        network, kitchen = self._read_whole[0]
+        items = self._store.kitchen_items() if self._kitchen is None else tuple(self._kitchen)
+        if self._at_hand != self._store.in_kitchen:
+            kitchen = frozenset(o for o in range(len(network.objects)) if self._at_hand(o))
         data = self._with(network, kitchen)._replace(kitchen_items=items)
         self.read_seconds += time.perf_counter() - began
         return data
+
+    @property
+    def rates(self) -> Mapping[str, Fraction] | None:
+        """The success rates of motions, ``None`` where none are known."""
+        return self._rates
+
+    @property
+    def utensils(self) -> frozenset[str]:
+        """The labels that the container rule ``implied`` looks at."""
+        return self._utensils
+
+    def at_hand(self, o: int) -> bool:
+        """Whether the kitchen has an object node, by id."""
+        return self._at_hand(o)
 
     @property
     def listed(self) -> Sequence[ListedObject]:
@@ -146,7 +181,8 @@ class StoredQuestion(Question):
     def _with(self, network: Network, kitchen: frozenset[int]) -> Data:
         goals = tuple(self._listed)
         left_out = self._store.left_out
-        return Data(network, kitchen, (), goals, self._rates, self._utensils, (), left_out)
+        rates = None if self._rates is None else dict(self._rates)
+        return Data(network, kitchen, (), goals, rates, self._utensils, (), left_out)
 
 
 def _places(part: Network, goals: Sequence[int]) -> tuple[int, ...]:
