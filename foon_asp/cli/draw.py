@@ -1,27 +1,26 @@
 """``foon-asp draw``: pictures of units, task trees and networks."""
 
 import sys
-from collections.abc import Iterable
 from enum import StrEnum
 from pathlib import Path
 
 import click
 from click.core import ParameterSource
 
-from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, TaskTree, unit_at_level
-from foon_asp.problem import ContainerRule, conditions, parse_objectives
-from foon_asp.proof import Verdict, simulate
+from foon_asp.network import TaskTree, unit_at_level
+from foon_asp.problem import ContainerRule, parse_objectives
 from foon_asp.question import Question
-from foon_asp.report.answer import headline
+from foon_asp.report.answer import counted, headline
 from foon_asp.report.dot import dot_text
-from foon_asp.report.drawing import Drawing, draw_network, draw_tree
+from foon_asp.report.drawing import Drawing, draw_network
 from foon_asp.report.mermaid import mermaid_markdown, mermaid_text
 from foon_asp.report.picture import png_picture, svg_picture
+from foon_asp.report.tree_drawing import given_tree, solved_tree
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text import Data, FoonReader, summarize
 
@@ -110,7 +109,7 @@ def command(
             click.echo(headline(outcome), err=True)
         if outcome.units is None:
             return code
-        drawing = _solved_tree(outcome, outcome.units)
+        drawing = solved_tree(outcome, outcome.units)
     elif tree_file is not None:
         drawing = _given_tree(question, goals, tree_file, ContainerRule(containers), lenient)
     else:
@@ -138,19 +137,10 @@ def _format(file: Path | None, named: str | None) -> _Format:
     return form
 
 
-def _solved_tree(outcome: Outcome, units: tuple[int, ...]) -> Drawing:
-    problem = outcome.problem
-    objects = problem.network.objects
-    goals = [objects[o] for o in problem.goals]
-    caption = (f"Task tree for {_joined(goals)}", headline(outcome))
-    tree = problem.tree(units)
-    return draw_tree(tree.units, {objects[o] for o in problem.kitchen}, goals, caption)
-
-
 def _given_tree(
     question: Question, goal_ids: tuple[int, ...], file: Path, containers: ContainerRule, lenient: bool
 ) -> Drawing:
-    """Number the units in an order that executes, if one does, and say whether."""
+    """Read a tree and draw it with the data that it is about."""
     reader = FoonReader(lenient)
     level = question.names.level
     listed = (unit_at_level(unit, level) for unit, _ in reader.read_tree(file))
@@ -161,20 +151,9 @@ def _given_tree(
         raise UserError(f"{file}: no functional unit to draw")
     data, goal_ids = question.part(goal_ids, tree=tree)
     objects = data.network.objects
-    kitchen = frozenset(objects[o] for o in data.kitchen)
-    goals = tuple(objects[o] for o in goal_ids)
-    simulation = simulate(tree, kitchen, goals, containers, data.utensils, data.network)
-    units = tree.units
-    if simulation.verdict is Verdict.REORDERED:
-        units = tuple(units[position] for position in simulation.order)
-    title = f"Task tree {file.name}" + (f" for {_joined(goals)}" if goals else "")
-    verdict = {
-        Verdict.AS_LISTED: "executes as listed",
-        Verdict.REORDERED: "executes in the order of the numbers, not as listed",
-        Verdict.NEVER: "does not execute; numbered as listed",
-    }[simulation.verdict]
-    caption = f"{verdict} ({conditions(containers, level)}), {_count(units)}"
-    return draw_tree(units, kitchen, goals, (title, caption))
+    kitchen = {objects[o] for o in data.kitchen}
+    goals = [objects[o] for o in goal_ids]
+    return given_tree(file.name, tree, kitchen, goals, containers, data.utensils, data.network)
 
 
 def _subgraph(data: Data, goal_ids: tuple[int, ...], unit_ids: tuple[int, ...]) -> Drawing:
@@ -185,7 +164,7 @@ def _subgraph(data: Data, goal_ids: tuple[int, ...], unit_ids: tuple[int, ...]) 
         ids = map(network.unit_of_number, dict.fromkeys(unit_ids))
         shown = tuple(unit for unit in ids if unit is not None)
     if not unit_ids:
-        caption = [f"A network of {_count(shown)}"]
+        caption = [f"A network of {counted(len(shown), 'unit')}"]
     elif len(shown) == 1:
         file, line, *_ = network.sources[shown[0]][0]
         caption = [f"Functional unit {unit_ids[0]} ({Path(file).name}, line {line})"]
@@ -194,14 +173,6 @@ def _subgraph(data: Data, goal_ids: tuple[int, ...], unit_ids: tuple[int, ...]) 
     units = [(network.unit_number(unit), network.unit(unit)) for unit in shown]
     objects = network.objects
     return draw_network(units, {objects[o] for o in data.kitchen}, {objects[o] for o in goal_ids}, caption)
-
-
-def _joined(nodes: Iterable[object]) -> str:
-    return " + ".join(map(str, nodes))
-
-
-def _count(units: tuple[FunctionalUnit, ...] | tuple[int, ...]) -> str:
-    return "1 unit" if len(units) == 1 else f"{len(units)} units"
 
 
 def _write(drawing: Drawing, form: _Format, file: Path | None) -> None:

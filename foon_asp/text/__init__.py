@@ -14,7 +14,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_
 from foon_asp.text.dialect import Dialect
 from foon_asp.text.folder_files import FolderFile, foon_files
 from foon_asp.text.formatter import Change, Formatted, format_text
-from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, near_labels
+from foon_asp.text.goal_name import GoalError, NodeNames, find_goal, listed_nodes, near_labels
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
@@ -38,6 +38,7 @@ __all__ = [
     "FolderFile",
     "FoonReader",
     "Formatted",
+    "GoalError",
     "InputError",
     "LineError",
     "ListedObject",

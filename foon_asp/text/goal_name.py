@@ -15,6 +15,21 @@ _SHOWN = 12
 _NEAR = 3  # labels shown that are like one that nobody has
 
 
+class GoalError(UserError):
+    """A name that means no object node, or several.
+
+    ``said`` is the message without candidates, ``candidates`` are those shown, in one-line notation, and
+    ``more`` counts the others. As a string they are options of the command line.
+    """
+
+    def __init__(self, said: str, candidates: Sequence[str] = (), more: int = 0) -> None:
+        lines = [said, *(f"  --goal {shlex.quote(candidate)}" for candidate in candidates)]
+        if more:
+            lines.append(f"  ... and {more} more")
+        super().__init__("\n".join(lines))
+        self.said, self.candidates, self.more = said, tuple(candidates), more
+
+
 class NodeNames(Protocol):
     """What names are looked up in, where it is no :class:`Network`. Ids are those of the object nodes."""
 
@@ -41,43 +56,43 @@ class NodeNames(Protocol):
         """Give labels that are like one, the likest first, at most so many."""
 
 
-def find_goal(name: str, network: Network | NodeNames, listed: Sequence[ListedObject] = ()) -> int:
-    """Give the id of the object node that a goal names.
+def find_goal(
+    name: str, network: Network | NodeNames, listed: Sequence[ListedObject] = (), what: str = "goal"
+) -> int:
+    """Give the id of the object node that a goal, or ``what`` else is asked for, names.
 
     A name is a label (of an entry of the goals file first, then of the network's nodes) or the one-line
     notation ``sweet potato; chopped; in [cutting board]``; a semicolon at the end (``onion;``) makes the
-    notation of a node that is only a label. Raises :class:`UserError` with candidates ready
+    notation of a node that is only a label. Raises :class:`GoalError` with candidates ready
     to paste when it is unknown or means several nodes.
     """
     names = _names(network)
     try:
         named = parse_node(name)
     except LineError as error:
-        raise UserError(f"the goal {name!r} cannot be read: at column {error.column}, {error}") from None
+        raise GoalError(f"the {what} {name!r} cannot be read: at column {error.column}, {error}") from None
     bare = named == ObjectNode(named.label) and not _is_closed(name, named)
     node = node_at_level(named, names.level)
     entries = [entry for entry in listed if bare and entry.pattern.label == node.label]
     if entries:
         found = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
-        return _only(name, names, len(found), found)
+        return _only(f"the {what} {name!r}", names, len(found), found)
     if bare:
         count, labelled = names.labelled(node.label)
         if count:
-            return _only(name, names, count, labelled)
+            return _only(f"the {what} {name!r}", names, count, labelled)
     exact = names.object_id(node)
     if exact is not None:
         return exact
     if not bare:  # a label with a semicolon in it, as it is
         count, labelled = names.labelled(name)
         if count:
-            return _only(name, names, count, labelled)
+            return _only(f"the {what} {name!r}", names, count, labelled)
     count, labelled = names.labelled(node.label)
     if count:
-        raise UserError(
-            f"no object node is exactly {str(node)!r}; with that label there are\n"
-            + _list(names, count, labelled)
-        )
-    raise UserError(f"no object node has the label {node.label!r}" + _similar(node.label, names))
+        said = f"no object node is exactly {str(node)!r}; with that label there are"
+        raise _unclear(said, names, count, labelled)
+    raise _unknown(f"no object node has the label {node.label!r}", node.label, names)
 
 
 def _is_closed(name: str, node: ObjectNode) -> bool:
@@ -92,15 +107,11 @@ def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[
     found = names.find(entry.pattern)
     if not found:
         count, labelled = names.labelled(entry.pattern.label)
-        raise UserError(
-            f"{entry.source.file}:{entry.source.line}:{entry.source.column}: error: the goal "
-            f"{str(entry.pattern)!r} matches no object node"
-            + (
-                "; with that label there are\n" + _list(names, count, labelled)
-                if count
-                else " of the network" + _similar(entry.pattern.label, names)
-            )
-        )
+        place = f"{entry.source.file}:{entry.source.line}:{entry.source.column}"
+        said = f"{place}: error: the goal {str(entry.pattern)!r} matches no object node"
+        if count:
+            raise _unclear(f"{said}; with that label there are", names, count, labelled)
+        raise _unknown(f"{said} of the network", entry.pattern.label, names)
     return found
 
 
@@ -140,32 +151,25 @@ def _names(network: Network | NodeNames) -> NodeNames:
     return _NetworkNames(network) if isinstance(network, Network) else network
 
 
-def _similar(label: str, names: NodeNames) -> str:
-    """List nodes whose labels begin so or are near, a few of each label; empty where there are none."""
-    labels = dict.fromkeys((*names.beginning(label, _SHOWN), *names.near(label, _NEAR)))
-    found = [names.labelled(like) for like in labels]
-    if not found:
-        return ""
-    each = max(1, _SHOWN // len(found))
-    return "; similar are\n" + _list(
-        names, sum(count for count, _ in found), [o for _, first in found for o in first[:each]]
-    )
-
-
-def _only(name: str, names: NodeNames, count: int, found: Sequence[int]) -> int:
+def _only(what: str, names: NodeNames, count: int, found: Sequence[int]) -> int:
     if count > 1:
-        raise UserError(
-            f"the goal {name!r} means {count} object nodes; paste the one you mean\n"
-            + _list(names, count, found)
-        )
+        raise _unclear(f"{what} means {count} object nodes; paste the one you mean", names, count, found)
     return found[0]
 
 
-def _list(names: NodeNames, count: int, first: Iterable[int]) -> str:
+def _unknown(said: str, label: str, names: NodeNames) -> GoalError:
+    """Name nodes whose labels begin so or are near, a few of each label, if there are any."""
+    labels = dict.fromkeys((*names.beginning(label, _SHOWN), *names.near(label, _NEAR)))
+    found = [names.labelled(like) for like in labels]
+    if not found:
+        return GoalError(said)
+    each = max(1, _SHOWN // len(found))
+    total = sum(count for count, _ in found)
+    return _unclear(f"{said}; similar are", names, total, [o for _, first in found for o in first[:each]])
+
+
+def _unclear(said: str, names: NodeNames, count: int, first: Iterable[int]) -> GoalError:
     shown = [names.node(o) for o in [*first][:_SHOWN]]
     # a semicolon makes the notation of a node that is only a label
     texts = [f"{node};" if node == ObjectNode(node.label) else str(node) for node in shown]
-    lines = [f"  --goal {shlex.quote(text)}" for text in texts]
-    if count > len(shown):
-        lines.append(f"  ... and {count - len(shown)} more")
-    return "\n".join(lines)
+    return GoalError(said, texts, count - len(shown))

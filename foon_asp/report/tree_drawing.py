@@ -1,0 +1,53 @@
+"""Task trees as drawings: the answer to a question, or a tree of any origin and whether it executes."""
+
+from collections.abc import Collection, Iterable, Sequence
+
+from foon_asp.asp import Outcome
+from foon_asp.network import Network, ObjectNode, TaskTree
+from foon_asp.problem import ContainerRule, Problem, conditions
+from foon_asp.proof import Verdict, simulate
+from foon_asp.report.answer import counted, headline
+from foon_asp.report.drawing import Drawing, draw_tree
+
+
+def solved_tree(outcome: Outcome, units: tuple[int, ...]) -> Drawing:
+    """Draw the tree of an answer; the caption says what is proved of it."""
+    return listed_tree(outcome.problem, units, headline(outcome))
+
+
+def listed_tree(problem: Problem, units: Sequence[int], caption: str) -> Drawing:
+    """Draw units by id, in an order that executes, as a tree for the goals of a problem."""
+    objects = problem.network.objects
+    goals = [objects[o] for o in problem.goals]
+    met = {o for unit in units for o in (*problem.network.inputs[unit], *problem.network.outputs[unit])}
+    kitchen = {objects[o] for o in met.union(problem.goals) if o in problem.kitchen}
+    tree = problem.tree(units)
+    return draw_tree(tree.units, kitchen, goals, (f"Task tree for {_joined(goals)}", caption))
+
+
+def given_tree(
+    name: str,
+    tree: TaskTree,
+    kitchen: Collection[ObjectNode],
+    goals: Sequence[ObjectNode],
+    containers: ContainerRule,
+    utensils: frozenset[str],
+    network: Network,
+) -> Drawing:
+    """Draw a tree of any origin, numbered in an order that executes if one does; the caption says whether."""
+    simulation = simulate(tree, frozenset(kitchen), tuple(goals), containers, utensils, network)
+    units = tree.units
+    if simulation.verdict is Verdict.REORDERED:
+        units = tuple(units[position] for position in simulation.order)
+    title = f"Task tree {name}" + (f" for {_joined(goals)}" if goals else "")
+    verdict = {
+        Verdict.AS_LISTED: "executes as listed",
+        Verdict.REORDERED: "executes in the order of the numbers, not as listed",
+        Verdict.NEVER: "does not execute; numbered as listed",
+    }[simulation.verdict]
+    caption = f"{verdict} ({conditions(containers, network.level)}), {counted(len(units), 'unit')}"
+    return draw_tree(units, kitchen, goals, (title, caption))
+
+
+def _joined(nodes: Iterable[object]) -> str:
+    return " + ".join(map(str, nodes))
