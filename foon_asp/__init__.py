@@ -1,65 +1,123 @@
 """Provably optimal task trees for FOON, by answer set programming.
 
->>> from pathlib import Path
 >>> import foon_asp
->>> data = foon_asp.read_data(foon_asp.find_data(Path("data/kitchen")))
->>> goal = foon_asp.find_goal("ice", data.network, data.goals)
->>> problem = foon_asp.Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils)
->>> outcome = foon_asp.solve(problem, [foon_asp.Objective.SUCCESS])
->>> str(outcome.status), outcome.costs.units
+>>> foon = foon_asp.load("data/kitchen")
+>>> problem = foon.problem("ice")
+>>> answer = foon_asp.solve(problem, "success")
+>>> str(answer.status), answer.costs.units
 ('optimal', 3)
+
+docs/api.md has a function for each question, with examples.
 """
 
 import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-    from foon_asp.errors import BugError, UserError
+    from foon_asp.api.alternatives import Alternatives, alternatives
+    from foon_asp.api.answer import Answer, SoftAnswer, solve, solve_soft
+    from foon_asp.api.certified import Certified, VerifiedCertificate, certify, verify
+    from foon_asp.api.check import Checked, check
+    from foon_asp.api.clash import Clash, clash
+    from foon_asp.api.comparison import Compared, compare_searches
+    from foon_asp.api.difference import Difference, diff
+    from foon_asp.api.explanation import Explanation, why_not
+    from foon_asp.api.foon import Foon, load
+    from foon_asp.api.menu import Menu, menu
+    from foon_asp.api.problem import Problem
+    from foon_asp.api.regret import Regrets, regret
+    from foon_asp.api.retrieval import Retrieved, retrieve
+    from foon_asp.api.shopping import Shopping, shopping_list
+    from foon_asp.api.tree import Tree
+    from foon_asp.asp import Outcome, Reporter, Status
+    from foon_asp.errors import BugError, FoonWarning, UserError
     from foon_asp.network import FunctionalUnit, Network, NetworkBuilder, ObjectNode, Source, TaskTree
-    from foon_asp.problem import ContainerRule, Costs, Objective, Problem
-    from foon_asp.proof import Simulation, Verdict, simulate, simulate_for
-    from foon_asp.text import FoonReader, find_data, find_goal, parse_node, read_data, write_units
+    from foon_asp.problem import ContainerRule, Costs, Objective
+    from foon_asp.proof import Simulation, Verdict
+    from foon_asp.proof.verify import RefusedError
+    from foon_asp.text import FoonReader, parse_node, write_units
 
 __version__ = "0.1.0"
 
 # Where each public name lives; a room is imported when a name of it is first asked for.
 _ROOMS = {
-    "asp": ("Outcome", "Reporter", "Settings", "Status", "solve"),
-    "errors": ("BugError", "UserError"),
+    "api.alternatives": ("Alternatives", "alternatives"),
+    "api.answer": ("Answer", "SoftAnswer", "solve", "solve_soft"),
+    "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
+    "api.check": ("Checked", "check"),
+    "api.clash": ("Clash", "clash"),
+    "api.comparison": ("Compared", "compare_searches"),
+    "api.difference": ("Difference", "diff"),
+    "api.explanation": ("Explanation", "why_not"),
+    "api.foon": ("Foon", "load"),
+    "api.menu": ("Menu", "menu"),
+    "api.problem": ("Problem",),
+    "api.regret": ("Regrets", "regret"),
+    "api.retrieval": ("Retrieved", "retrieve"),
+    "api.shopping": ("Shopping", "shopping_list"),
+    "api.tree": ("Tree",),
+    "asp": ("Outcome", "Reporter", "Status"),
+    "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
-    "problem": ("ContainerRule", "Costs", "Objective", "Problem"),
-    "proof": ("Simulation", "Verdict", "simulate", "simulate_for"),
-    "text": ("FoonReader", "find_data", "find_goal", "parse_node", "read_data", "write_units"),
+    "problem": ("ContainerRule", "Costs", "Objective"),
+    "proof": ("Simulation", "Verdict"),
+    "proof.verify": ("RefusedError",),
+    "text": ("FoonReader", "parse_node", "write_units"),
 }
 
 __all__ = [
+    "Alternatives",
+    "Answer",
     "BugError",
+    "Certified",
+    "Checked",
+    "Clash",
+    "Compared",
     "ContainerRule",
     "Costs",
+    "Difference",
+    "Explanation",
+    "Foon",
     "FoonReader",
+    "FoonWarning",
     "FunctionalUnit",
+    "Menu",
     "Network",
     "NetworkBuilder",
     "ObjectNode",
     "Objective",
     "Outcome",
     "Problem",
+    "RefusedError",
+    "Regrets",
     "Reporter",
-    "Settings",
+    "Retrieved",
+    "Shopping",
     "Simulation",
+    "SoftAnswer",
     "Source",
     "Status",
     "TaskTree",
+    "Tree",
     "UserError",
     "Verdict",
-    "find_data",
-    "find_goal",
+    "VerifiedCertificate",
+    "alternatives",
+    "certify",
+    "check",
+    "clash",
+    "compare_searches",
+    "diff",
+    "load",
+    "menu",
     "parse_node",
-    "read_data",
-    "simulate",
-    "simulate_for",
+    "regret",
+    "retrieve",
+    "shopping_list",
     "solve",
+    "solve_soft",
+    "verify",
+    "why_not",
     "write_units",
 ]
 

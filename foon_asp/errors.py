@@ -1,4 +1,4 @@
-"""The two kinds of failure: the user's, which carry advice, and ours, which carry an apology."""
+"""The two kinds of failure: the user's, with advice, and ours, with an apology. And warnings."""
 
 
 class UserError(Exception):
@@ -7,3 +7,7 @@ class UserError(Exception):
 
 class BugError(Exception):
     """A promise of this program did not hold; please report it with the message."""
+
+
+class FoonWarning(UserWarning):
+    """Something in the data or in a constraint that the user should know about, and that stops nothing."""

@@ -9,20 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp import (
-    ContainerRule,
-    FunctionalUnit,
-    NetworkBuilder,
-    Objective,
-    ObjectNode,
-    Problem,
-    Settings,
-    Source,
-    Status,
-)
+from foon_asp.asp import Settings, Status
 from foon_asp.explain.alternatives import Alternatives, all_optimal, best_trees, most_different
 from foon_asp.explain.menu import menu
 from foon_asp.explain.regret import Part, regrets
+from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
+from foon_asp.problem import ContainerRule, Objective, Problem
 from tests import oracle
 from tests.random_problems import MOTIONS, RATES, UTENSILS, random_problem
 

@@ -25,6 +25,7 @@ FLOORS = (
     {"explain", "compare", "lint", "certificate", "engines", "question"},
     {"report"},
     {"batch"},
+    {"api"},
     {FACE},
     {"cli"},
     {"__main__"},

@@ -16,12 +16,13 @@ from typing import Any
 
 import pytest
 
-from foon_asp import Objective, Problem, UserError, find_data, find_goal, read_data, solve
+from foon_asp.asp import solve
 from foon_asp.batch import Asked, Work, answer_all, answer_row, open_results, read_questions
 from foon_asp.cli.batch_data import Opening
-from foon_asp.problem import ContainerRule, parse_objectives
+from foon_asp.errors import UserError
+from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import InputError
+from foon_asp.text import InputError, find_data, find_goal, read_data
 from tests.conftest import Cli
 
 LINES = """

@@ -16,6 +16,8 @@ from foon_asp.asp.solver import Reporter, solve
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Objective, Problem, reach
 
+GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
+
 
 class Broken(NamedTuple):
     """A soft constraint, its weight, and in how many ways the tree breaks it."""

@@ -12,7 +12,7 @@ from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.explain.alternatives import all_optimal, best_trees, most_different
 from foon_asp.problem import parse_objectives
-from foon_asp.report.alternatives import alternatives_json, optimal_text, trees_text
+from foon_asp.report.alternatives import alternatives_json, alternatives_text
 
 
 @click.command("alternatives")
@@ -89,11 +89,8 @@ def command(
             found = most_different(problem, chosen, settings, different, worse, limit, progress)
         else:
             found = all_optimal(problem, chosen, settings, limit, progress)
-    if format_ == "json":
-        text = alternatives_json(found)
-    else:
-        text = optimal_text(found) if best is different is None else trees_text(found, best or different or 0)
-    click.echo(text, nl=False)
+    render = {"text": alternatives_text, "json": alternatives_json}[format_]
+    click.echo(render(found), nl=False)
     if not found.complete:
         return ExitCode.LIMIT
     return ExitCode.DONE if found.trees else ExitCode.NEGATIVE

@@ -1,6 +1,5 @@
 """``foon-asp solve``: the optimal task tree, and what is proved of it."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -137,21 +136,19 @@ def _solve_soft(
     format_: str,
 ) -> ExitCode:
     from foon_asp.asp.soft import solve_soft
-    from foon_asp.report.clash import soft_dict, soft_lines
+    from foon_asp.report.clash import soft_json, soft_lines, soft_text
 
     with Progress() as progress:
         found = solve_soft(problem, objectives, settings, weights, progress)
     outcome = found.outcome
     outcome.seconds["read"] = read_seconds
     if format_ == "json":
-        click.echo(json.dumps(soft_dict(found), indent=2, ensure_ascii=False))
+        click.echo(soft_json(found), nl=False)
+    elif format_ == "text":
+        click.echo(soft_text(found), nl=False)
     else:
-        remarks = list(soft_lines(found))
-        if format_ == "text":
-            click.echo(answer.outcome_text(outcome, remarks), nl=False)
-        else:
-            click.echo(answer.outcome_foon(outcome), nl=False)
-            click.echo("\n".join([answer.headline(outcome), *remarks]), err=True)
+        click.echo(answer.outcome_foon(outcome), nl=False)
+        click.echo("\n".join([answer.headline(outcome), *soft_lines(found)]), err=True)
     if outcome.status is Status.INFEASIBLE and format_ == "text":
         for line in answer.why_infeasible(problem, reach(problem).available):
             click.echo(line)

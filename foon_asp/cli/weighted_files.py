@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from foon_asp.asp.program import find_constraint
+from foon_asp.asp.soft import GREATEST_WEIGHT
 from foon_asp.errors import UserError
-
-_GREATEST = 1_000_000
 
 
 def weighted_files(settings: Sequence[str], option: str) -> dict[Path, int]:
@@ -19,10 +18,10 @@ def weighted_files(settings: Sequence[str], option: str) -> dict[Path, int]:
         file, equals, weight = setting.rpartition("=")
         if not equals or not file:
             raise UserError(f"found {option} {setting!r}, expected FILE.lp=WEIGHT")
-        if not (weight.isascii() and weight.isdigit() and 1 <= int(weight) <= _GREATEST):
+        if not (weight.isascii() and weight.isdigit() and 1 <= int(weight) <= GREATEST_WEIGHT):
             raise UserError(
                 f"found the weight {weight!r} in {option} {setting!r}, "
-                f"expected a whole number from 1 to {_GREATEST}"
+                f"expected a whole number from 1 to {GREATEST_WEIGHT}"
             )
         path = find_constraint(Path(file))
         if found.setdefault(path, int(weight)) != int(weight):

@@ -26,12 +26,14 @@ class Alternatives(NamedTuple):
     """Trees in order of their costs, the optimal ones first; none holds another.
 
     ``complete`` says that no tree that was asked for is left out: where it is false, a limit came first.
+    ``wanted`` is how many trees were asked for, ``None`` where it was all that are optimal.
     """
 
     problem: Problem
     objectives: tuple[Objective, ...]
     trees: tuple[Tree, ...]
     complete: bool
+    wanted: int | None = None
 
     @property
     def optimal(self) -> tuple[Tree, ...]:
@@ -70,7 +72,7 @@ def best_trees(
     reporter: Reporter | None = None,
 ) -> Alternatives:
     """Find so many trees, the best there are; ``complete`` also where there are fewer."""
-    return _ranked(problem, objectives, settings, most, None, reporter)
+    return _ranked(problem, objectives, settings, most, None, reporter)._replace(wanted=most)
 
 
 def most_different(
@@ -88,7 +90,7 @@ def most_different(
     two chosen trees that are most alike differ as much as can be (in how many units only one of them has).
     At most ``most`` trees are looked at; ``complete`` says that these were all.
     """
-    pool = _ranked(problem, objectives, settings, most, worse, reporter)
+    pool = _ranked(problem, objectives, settings, most, worse, reporter)._replace(wanted=count)
     if len(pool.trees) <= count:
         return pool
     ended = run(

@@ -49,6 +49,9 @@ class Network:
         """Count the units."""
         return len(self.motions)
 
+    def __repr__(self) -> str:
+        return f"<Network: {len(self)} units, {len(self.objects)} object nodes, level {self.level}>"
+
     def unit(self, unit_id: int) -> FunctionalUnit:
         """Give the unit with that id as a value of its own."""
         objects = self.objects

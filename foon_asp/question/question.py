@@ -104,6 +104,14 @@ class Question:
             self.read_seconds,
         )
 
+    def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
+        """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
+
+        Ids are those of the whole network.
+        """
+        ours, theirs = self.data.kitchen, problem.kitchen
+        return (frozenset(), frozenset()) if ours is theirs else (theirs - ours, ours - theirs)
+
     def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals, which are those of the problem in the same order, under a container rule.
 

@@ -149,6 +149,17 @@ class StoredQuestion(Question):
         """What goals are looked up in: the indexes of the store."""
         return self._store
 
+    def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
+        """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
+
+        Ids are those of the whole network.
+        """
+        network = problem.network
+        numbers = {network.object_number(o) for o in range(len(network.objects))}
+        theirs = {network.object_number(o) for o in problem.kitchen}
+        ours = {o for o in numbers if self._at_hand(o)}
+        return frozenset(theirs - ours), frozenset(ours - theirs)
+
     def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals; what no tree for them needs is not read, unless everything is asked for."""
         if everything:

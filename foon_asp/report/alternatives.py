@@ -9,13 +9,17 @@ from foon_asp.report.answer import costs_json, costs_text, counted, goal_lines, 
 _SHOWN = 20  # trees that are listed one by one for people
 
 
-def optimal_text(found: Alternatives) -> str:
-    """Say how many optimal trees there are, what they have in common, and where they differ."""
-    return "\n".join([*goal_lines(found.problem), *_optimal_lines(found)]) + "\n"
+def alternatives_text(found: Alternatives) -> str:
+    """Say how many trees there are, what each costs, and in what it differs from the first.
+
+    Where all optimal ones were asked for, also what they have in common.
+    """
+    if found.wanted is None:
+        return "\n".join([*goal_lines(found.problem), *_optimal_lines(found)]) + "\n"
+    return _trees_text(found, found.wanted)
 
 
-def trees_text(found: Alternatives, wanted: int) -> str:
-    """List trees that were asked for by number: what each costs, and in what it differs from the first."""
+def _trees_text(found: Alternatives, wanted: int) -> str:
     lines = list(goal_lines(found.problem))
     rule = found.problem.conditions
     if not found.trees:

@@ -7,7 +7,7 @@ from foon_asp.asp import Status
 from foon_asp.asp.integrity import IntegrityConstraint
 from foon_asp.asp.soft import SoftOutcome
 from foon_asp.explain.clash import Clash
-from foon_asp.report.answer import counted, goal_lines, headline, outcome_dict
+from foon_asp.report.answer import counted, goal_lines, headline, outcome_dict, outcome_text
 
 
 def clash_text(clash: Clash) -> str:
@@ -95,6 +95,11 @@ def constraint_json(constraint: IntegrityConstraint) -> dict[str, object]:
     }
 
 
+def soft_text(soft: SoftOutcome) -> str:
+    """Give the answer with what its tree breaks."""
+    return outcome_text(soft.outcome, soft_lines(soft))
+
+
 def soft_lines(soft: SoftOutcome) -> Iterator[str]:
     """Say what the tree breaks and what that costs."""
     if soft.penalty is None:
@@ -115,8 +120,12 @@ def soft_lines(soft: SoftOutcome) -> Iterator[str]:
         yield from _constraint_lines(each.constraint, f"    (weight {each.weight}{times})")
 
 
-def soft_dict(soft: SoftOutcome) -> dict[str, object]:
+def soft_json(soft: SoftOutcome) -> str:
     """Give the answer with the penalty and every soft constraint."""
+    return json.dumps(_soft_dict(soft), indent=2, ensure_ascii=False) + "\n"
+
+
+def _soft_dict(soft: SoftOutcome) -> dict[str, object]:
     constraints = [
         {**constraint_json(each.constraint), "weight": each.weight, "broken": each.ways}
         for each in soft.constraints

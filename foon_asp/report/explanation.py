@@ -1,5 +1,6 @@
 """Why there is no tree, for people and for programs."""
 
+import json
 from collections.abc import Iterator, Sequence
 
 from foon_asp.explain.why_not import Blocked, Cause, Explanation, NearName, Root
@@ -16,6 +17,8 @@ _STOPS = 3
 def explanation_text(explanation: Explanation) -> str:
     """Show the dead ends as a tree, the easiest way first and every part once, and what is at their root."""
     problem = explanation.problem
+    if not explanation.goals:
+        return "\n".join([*goal_lines(problem), f"there is a task tree ({problem.conditions})"]) + "\n"
     roots = explanation.roots
     causes = [_causes(explanation, Cause.MISSING), _causes(explanation, Cause.CYCLE)]
     lines = [
@@ -32,6 +35,11 @@ def explanation_text(explanation: Explanation) -> str:
             f"{counted(len(roots) - len(shown), 'more')} behind other units; --format json lists all"
         )
     return "\n".join(lines) + "\n"
+
+
+def explanation_json(explanation: Explanation) -> str:
+    """Give :func:`explanation_dict` as JSON."""
+    return json.dumps(explanation_dict(explanation), indent=2, ensure_ascii=False) + "\n"
 
 
 def explanation_dict(explanation: Explanation) -> dict[str, object]:

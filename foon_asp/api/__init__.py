@@ -1,0 +1,1 @@
+"""The same questions in Python: data loaded once, problems that vary, a function for each question."""

@@ -1,0 +1,116 @@
+"""What else: all optimal trees, the next best, or those that differ most."""
+
+import base64
+from collections.abc import Iterable
+from fractions import Fraction
+
+from foon_asp.api.answer import asked_with
+from foon_asp.api.arguments import (
+    Constants,
+    File,
+    Files,
+    Objectives,
+    at_least,
+    chosen_objectives,
+    settings,
+)
+from foon_asp.api.problem import taken
+from foon_asp.api.shown import Shown, notebook_bundle
+from foon_asp.api.tree import Tree
+from foon_asp.api.warning import Warner
+from foon_asp.errors import UserError
+from foon_asp.explain import alternatives as explain
+from foon_asp.problem import problem as plain
+from foon_asp.report.alternatives import alternatives_json, alternatives_text
+from foon_asp.report.answer import costs_text
+from foon_asp.report.drawing import Drawing
+
+_PICTURES = 4  # trees that a notebook shows beside each other
+
+
+class Alternatives(Shown, explain.Alternatives):
+    """Trees in order of their costs, the optimal ones first; none holds another.
+
+    ``trees`` has for each its ``units`` by id and its ``costs``; :attr:`task_trees` has them as values.
+    ``complete`` says that no tree that was asked for is left out. ``optimal`` are the trees as good as the
+    first; ``in_every`` and ``in_some`` are the units, by id, that all or some of those have.
+    """
+
+    __slots__ = ()
+
+    @property
+    def task_trees(self) -> tuple[Tree, ...]:
+        """The trees as values, in the same order."""
+        problem, found = taken(self.problem), enumerate(self.trees, 1)
+        return tuple(
+            problem.tree(tree.units, f"tree {number}: {costs_text(tree.costs)}") for number, tree in found
+        )
+
+    def text(self) -> str:
+        """Give the trees as ``foon-asp alternatives`` does."""
+        return alternatives_text(self)
+
+    def json_text(self) -> str:
+        """Give the trees as ``foon-asp alternatives --format json`` does."""
+        return alternatives_json(self)
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture of the first tree shows."""
+        return self.task_trees[0].drawing() if self.trees else None
+
+    def _repr_mimebundle_(
+        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
+    ) -> dict[str, str]:
+        """Give what a notebook shows: the first trees beside each other."""
+        bundle = notebook_bundle(str(self), None)
+        try:
+            pictures = [tree.svg() for tree in self.task_trees[:_PICTURES]]
+        except UserError:
+            return bundle
+        if pictures:
+            # as images, so that the pictures' styles and names stay their own
+            bundle["text/html"] = "\n".join(map(_image, pictures))
+        return bundle
+
+
+def alternatives(
+    problem: plain.Problem,
+    objectives: Objectives = "units",
+    *,
+    best: int | None = None,
+    different: int | None = None,
+    within: int = 0,
+    limit: int = 100,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+) -> Alternatives:
+    """Find all optimal trees; or with ``best`` so many of the best; or with ``different`` so unlike ones.
+
+    With ``different``, so many trees are chosen that differ most, among those whose first objective is worse
+    by no more than ``within`` percent. At most ``limit`` trees are looked at. Otherwise as
+    :func:`foon_asp.solve`.
+    """
+    if best is not None and different is not None:
+        raise UserError("best and different ask for different things; give one of them")
+    if within and different is None:
+        raise UserError("within goes with different")
+    worse = Fraction(at_least(within, 0, "within"), 100)
+    at_least(limit, 1, "limit")
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit)
+    asked = asked_with(problem, how)
+    if best is not None:
+        found = explain.best_trees(asked, chosen, how, at_least(best, 1, "best"), Warner())
+    elif different is not None:
+        count = at_least(different, 2, "different")
+        found = explain.most_different(asked, chosen, how, count, worse, limit, Warner())
+    else:
+        found = explain.all_optimal(asked, chosen, how, limit, Warner())
+    return Alternatives._make(found)
+
+
+def _image(svg: str) -> str:
+    coded = base64.b64encode(svg.encode()).decode()
+    return f'<img alt="task tree" src="data:image/svg+xml;base64,{coded}">'
