@@ -37,11 +37,14 @@ class Answer(Shown, Outcome):
     __slots__ = ()
 
     @property
+    def problem(self) -> Problem:
+        """What was asked."""
+        return taken(super().problem)
+
+    @property
     def tree(self) -> Tree | None:
         """The tree, in an order that executes; ``None`` where there is none."""
-        if self.units is None:
-            return None
-        return taken(self.problem).tree(self.units, headline(self))
+        return None if self.units is None else self.problem.tree(self.units, headline(self))
 
     def text(self) -> str:
         """Give the answer as ``foon-asp solve`` does."""

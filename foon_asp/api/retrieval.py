@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from foon_asp.api.arguments import at_least, settings
-from foon_asp.api.problem import taken
+from foon_asp.api.problem import Problem, taken
 from foon_asp.api.shown import Shown
 from foon_asp.api.tree import Tree
 from foon_asp.errors import UserError
@@ -16,7 +16,7 @@ from foon_asp.search import SEARCHES, Count, Ending, Retrieval, Search, SearchSe
 
 
 class _Retrieved(NamedTuple):
-    problem: plain.Problem
+    problem: Problem
     search: Search
     retrieval: Retrieval
     simulation: Simulation | None
@@ -36,7 +36,7 @@ class Retrieved(Shown, _Retrieved):
         """The tree in the order listed, ``None`` where the search has none."""
         if self.retrieval.ending is not Ending.TREE:
             return None
-        return taken(self.problem).tree(self.retrieval.units)
+        return self.problem.tree(self.retrieval.units)
 
     @property
     def executes(self) -> bool:
@@ -88,7 +88,7 @@ def retrieve(
     simulation = None
     if found.ending is Ending.TREE:
         simulation = simulate_for(problem, problem.tree(found.units))
-    return Retrieved(problem, searches[0], found, simulation)
+    return Retrieved(taken(problem), searches[0], found, simulation)
 
 
 def searched(names: list[str]) -> list[Search]:
