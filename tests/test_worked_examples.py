@@ -1,5 +1,6 @@
-"""Pages of the documentation whose examples are run: commands, files and what they print."""
+"""Pages of the documentation whose examples are run: commands, files, Python, and what they print."""
 
+import doctest
 import re
 import shlex
 from pathlib import Path
@@ -43,6 +44,22 @@ def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch
             assert matches(shown, printed), f"{command}\n{printed}"
             run += 1
     assert run >= 5
+
+
+@pytest.mark.parametrize(("page", "least"), [("docs/api.md", 50), ("README.md", 4)])
+def test_the_examples_in_python(
+    page: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("data").symlink_to(ROOT / "data")
+    text = (ROOT / page).read_text(encoding="utf-8")
+    sessions = "\n".join(re.findall(r"^```pycon\n((?:.*\n)*?)```$", text, re.MULTILINE))
+    examples = doctest.DocTestParser().get_doctest(sessions, {}, page, page, 0)
+    said: list[str] = []
+    options = doctest.ELLIPSIS | doctest.REPORT_NDIFF
+    ran = doctest.DocTestRunner(optionflags=options).run(examples, out=said.append)
+    assert not ran.failed, "".join(said)
+    assert ran.attempted >= least
 
 
 def test_what_is_left_out_stands_for_anything_and_nothing_else_does() -> None:
