@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import random
 import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -14,6 +15,7 @@ import pytest
 
 import foon_asp
 from foon_asp import Foon, FoonWarning, Problem, UserError
+from foon_asp.problem import Problem as PlainProblem
 from foon_asp.report import picture
 from foon_asp.resources import bundled_kitchen
 from foon_asp.store import Store, import_files
@@ -332,6 +334,32 @@ def test_a_problem_put_together_by_hand() -> None:
     assert implied.kitchen == frozenset(sorted(plain.kitchen)[1:])
     assert implied.containers == "implied"
     assert implied.network is plain.network
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_random_problems_vary_as_if_they_were_posed_anew(seed: int) -> None:
+    plain = random_problem(seed, foon_asp.ContainerRule.STRICT)
+    start = Problem(plain.network, plain.kitchen, plain.goals, plain.rates, plain.utensils)
+    rng = random.Random(seed)
+    kitchen = frozenset(rng.sample(range(len(plain.network.objects)), rng.randint(0, 5)))
+    goals = tuple(rng.sample(range(len(plain.network.objects)), rng.randint(1, 2)))
+    rates = {motion: Fraction(rng.randint(1, 9), 10) for motion in plain.rates or {}}
+    anew = PlainProblem(plain.network, kitchen, goals, rates, plain.utensils, foon_asp.ContainerRule.IMPLIED)
+    nodes = plain.network.objects
+    asked = [nodes[o] for o in goals]
+    in_kitchen = [nodes[o] for o in sorted(kitchen)]
+    once = start.vary(asked, "implied", kitchen=in_kitchen, rates=rates)
+    gone = [nodes[o] for o in plain.kitchen - kitchen]
+    steps = (
+        start.vary(adding=in_kitchen).vary(rates=rates).vary(containers="implied", without=gone).vary(asked)
+    )
+    for varied in (once, steps):
+        assert (varied.kitchen, varied.goals, varied.rates) == (kitchen, goals, rates)
+        assert varied.needs == anew.needs
+        assert timeless(foon_asp.solve(varied, "success").json()) == timeless(
+            foon_asp.solve(anew, "success").json()
+        )
+    assert start.kitchen == plain.kitchen
 
 
 def test_several_files_and_json(tmp_path: Path, foon: Foon) -> None:

@@ -17,6 +17,13 @@ def test_every_public_name_is_there() -> None:
         _ = foon_asp.nothing
 
 
+def test_no_public_name_is_that_of_a_room() -> None:
+    """A room would take the name over as soon as it is imported."""
+    rooms = {path.stem for path in (ROOT / "foon_asp").iterdir()}
+    assert not rooms & set(foon_asp.__all__)
+    assert set(dir(foon_asp)) == {*foon_asp.__all__, "__version__"}
+
+
 def test_the_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     assert doctest.testmod(foon_asp) == (0, 5)
