@@ -1,5 +1,7 @@
 """The questions in Python: the same answers as on the command line, problems that vary, results that show."""
 
+import base64
+import html
 import json
 import pickle
 import random
@@ -451,45 +453,72 @@ def test_a_tree_is_made_of_units_with_names(foon: Foon, cli: Cli) -> None:
     assert foon.nodes("unicorn") == ()
 
 
-def pictured(source: str) -> ET.Element:
-    assert source.startswith("<svg")
-    return ET.fromstring(source)
+def texts_in(svg: ET.Element) -> set[str | None]:
+    return {element.text for element in svg.iter() if element.tag.endswith("text")}
 
 
-def test_a_notebook_shows_a_picture(foon: Foon, monkeypatch: pytest.MonkeyPatch) -> None:
+def images_in(page: str) -> list[ET.Element]:
+    """Give the pictures of a page, which has to be well-formed."""
+    begin = "data:image/svg+xml;base64,"
+    images = [each.attrib["src"] for each in ET.fromstring(f"<p>{page}</p>").iter("img")]
+    assert all(image.startswith(begin) for image in images)
+    return [ET.fromstring(base64.b64decode(image.removeprefix(begin))) for image in images]
+
+
+def steps_of(tree: foon_asp.TaskTree | None) -> set[str]:
+    assert tree is not None
+    return {f"{step}. {unit.motion}" for step, unit in enumerate(tree, 1)}
+
+
+def test_a_notebook_shows_a_picture(foon: Foon) -> None:
     problem = foon.problem("ice")
     answer = foon_asp.solve(problem)
-    alternatives = foon_asp.alternatives(problem, best=2)
+    assert answer.tree is not None
+    for bundle in (answer._repr_mimebundle_(), answer.tree._repr_mimebundle_()):
+        svg = bundle["image/svg+xml"]
+        assert svg.startswith("<svg")
+        assert steps_of(answer.tree) <= texts_in(ET.fromstring(svg))
+        assert bundle.keys() == {"text/plain", "image/svg+xml"}
+
+
+def test_a_notebook_shows_a_page(foon: Foon) -> None:
+    problem = foon.problem("ice")
     menu = foon_asp.menu(problem.vary(["ice", "tea"]))
     regrets = foon_asp.regret(problem)
-    for shown, tree in (
-        (answer, answer.tree),
-        (answer.tree, answer.tree),
-        (regrets, answer.tree),
-        (menu, menu.together.tree),
-    ):
-        assert tree is not None
-        assert shown is not None
-        bundle = shown._repr_mimebundle_()
-        assert bundle["text/plain"] == str(shown)
-        texts = [text.text for text in pictured(bundle["image/svg+xml"]).iter() if text.tag.endswith("text")]
-        assert {f"{step}. {unit.motion}" for step, unit in enumerate(tree, 1)} <= set(texts)
-    html = alternatives._repr_mimebundle_()["text/html"]
-    assert html.count('<img alt="task tree" src="data:image/svg+xml;base64,') == 2
-    ET.fromstring(f"<p>{html}</p>".replace('">', '"/>'))
-    nothing = foon_asp.solve(foon.problem("apple pie"))
-    assert nothing._repr_mimebundle_() == {"text/plain": str(nothing)}
+    alternatives = foon_asp.alternatives(problem, best=2)
+    shown: list[tuple[Any, list[foon_asp.TaskTree | None]]] = [
+        (menu, [menu.together.tree]),
+        (regrets, [regrets.outcome.tree]),
+        (alternatives, [*alternatives.task_trees]),
+        (foon_asp.why_not(foon.problem("apple pie")), []),
+        (foon_asp.solve(foon.problem("apple pie")), []),
+    ]
+    for result, trees in shown:
+        bundle = result._repr_mimebundle_()
+        assert bundle["text/plain"] == repr(result)
+        page = bundle["text/html"]
+        assert html.unescape(page).startswith(f"<pre>{result}</pre>")
+        pictures = images_in(page)
+        assert len(pictures) == len(trees)
+        for image, tree in zip(pictures, trees, strict=True):
+            assert steps_of(tree) <= texts_in(image)
+    table = foon_asp.compare_searches(problem)._repr_mimebundle_()["text/markdown"]
+    assert table.startswith("| goal |")
     with pytest.raises(UserError, match="no tree to draw"):
-        nothing.svg()
-    markdown = foon_asp.compare_searches(problem)._repr_markdown_()
-    assert markdown.startswith("|")
+        foon_asp.solve(foon.problem("apple pie")).svg()
 
+
+def test_without_the_packages_for_pictures_there_is_text(foon: Foon, monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(_: object) -> bytes:
         raise UserError("a picture needs more packages: pip install 'foon-asp[pictures]'")
 
     monkeypatch.setattr("foon_asp.api.shown.svg_picture", missing)
-    assert answer._repr_mimebundle_() == {"text/plain": str(answer)}
-    assert alternatives._repr_mimebundle_() == {"text/plain": str(alternatives)}
+    answer = foon_asp.solve(foon.problem("ice"))
+    for shown in (answer, answer.tree, foon_asp.alternatives(foon.problem("ice"))):
+        assert shown is not None
+        bundle = shown._repr_mimebundle_()
+        assert html.unescape(bundle.pop("text/html")) == f"<pre>{shown}</pre>"
+        assert bundle == {"text/plain": repr(shown)}
     with pytest.raises(UserError, match="pip install"):
         answer.svg()
 
@@ -497,7 +526,7 @@ def test_a_notebook_shows_a_picture(foon: Foon, monkeypatch: pytest.MonkeyPatch)
 def test_a_picture_too_large_is_text(foon: Foon, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(picture, "MOST_UNITS", 1)
     answer = foon_asp.solve(foon.problem("ice"))
-    assert [*answer._repr_mimebundle_()] == ["text/plain"]
+    assert answer._repr_mimebundle_().keys() == {"text/plain", "text/html"}
 
 
 FAULTS: dict[str, tuple[Callable[[Foon], object], str]] = {

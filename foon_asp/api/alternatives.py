@@ -1,6 +1,5 @@
 """What else: all optimal trees, the next best, or those that differ most."""
 
-import base64
 from collections.abc import Iterable
 from fractions import Fraction
 
@@ -15,7 +14,7 @@ from foon_asp.api.arguments import (
     settings,
 )
 from foon_asp.api.problem import taken
-from foon_asp.api.shown import Shown, notebook_bundle
+from foon_asp.api.shown import Shown, page_bundle
 from foon_asp.api.tree import Tree
 from foon_asp.api.warning import Warner
 from foon_asp.errors import UserError
@@ -25,7 +24,7 @@ from foon_asp.report.alternatives import alternatives_json, alternatives_text
 from foon_asp.report.answer import costs_text
 from foon_asp.report.drawing import Drawing
 
-_PICTURES = 4  # trees that a notebook shows beside each other
+_PICTURES = 4  # that a notebook shows
 
 
 class Alternatives(Shown, explain.Alternatives):
@@ -61,16 +60,8 @@ class Alternatives(Shown, explain.Alternatives):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows: the first trees beside each other."""
-        bundle = notebook_bundle(str(self), None)
-        try:
-            pictures = [tree.svg() for tree in self.task_trees[:_PICTURES]]
-        except UserError:
-            return bundle
-        if pictures:
-            # as images, so that the pictures' styles and names stay their own
-            bundle["text/html"] = "\n".join(map(_image, pictures))
-        return bundle
+        """Give what a notebook shows: the text, and the pictures of the first trees."""
+        return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_PICTURES]))
 
 
 def alternatives(
@@ -109,8 +100,3 @@ def alternatives(
     else:
         found = explain.all_optimal(asked, chosen, how, limit, Warner())
     return Alternatives._make(found)
-
-
-def _image(svg: str) -> str:
-    coded = base64.b64encode(svg.encode()).decode()
-    return f'<img alt="task tree" src="data:image/svg+xml;base64,{coded}">'

@@ -1,6 +1,6 @@
 """The best tree for a problem, and what is proved of it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from foon_asp.api.arguments import (
     Constants,
@@ -12,7 +12,7 @@ from foon_asp.api.arguments import (
     settings,
 )
 from foon_asp.api.problem import Problem, taken
-from foon_asp.api.shown import Shown
+from foon_asp.api.shown import Shown, picture_bundle
 from foon_asp.api.tree import Tree
 from foon_asp.api.warning import Warner
 from foon_asp.asp import Outcome, Reporter, Settings
@@ -57,6 +57,13 @@ class Answer(Shown, Outcome):
     def drawing(self) -> Drawing | None:
         """Give what the picture shows."""
         return None if self.units is None else solved_tree(self, self.units)
+
+    def _repr_mimebundle_(
+        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
+    ) -> dict[str, str]:
+        """Give what a notebook shows: the picture, whose caption says what is proved, or the text."""
+        drawing = self.drawing()
+        return super()._repr_mimebundle_() if drawing is None else picture_bundle(self, drawing)
 
 
 class SoftAnswer(Shown, SoftOutcome):

@@ -41,8 +41,11 @@ class Compared(Shown, _Compared):
     def __repr__(self) -> str:
         return f"<Compared: {', '.join(comparison.goal for comparison in self.comparisons)}>"
 
-    def _repr_markdown_(self) -> str:
-        return str(self)
+    def _repr_mimebundle_(
+        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
+    ) -> dict[str, str]:
+        """Give what a notebook shows: the table."""
+        return {"text/plain": repr(self), "text/markdown": str(self)}
 
 
 def compare_searches(

@@ -1,6 +1,8 @@
 """How results show themselves: as text, as plain values, and as a picture in a notebook."""
 
+import base64
 import contextlib
+import html
 import json
 from collections.abc import Iterable
 from typing import Any
@@ -11,7 +13,7 @@ from foon_asp.report.picture import svg_picture
 
 
 class Shown:
-    """A result. ``print`` shows what the command line prints, a notebook also the picture of its tree."""
+    """A result. ``print`` shows what the command line prints, a notebook that and the picture of its tree."""
 
     __slots__ = ()
 
@@ -52,8 +54,9 @@ class Shown:
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows: the picture where there is one, and the text."""
-        return notebook_bundle(str(self), self.drawing())
+        """Give what a notebook shows: the text, and below it the picture where there is one."""
+        pictures = [] if (drawing := self.drawing()) is None else [drawing]
+        return page_bundle(self, pictures)
 
 
 def svg_text(drawing: Drawing) -> str:
@@ -62,10 +65,26 @@ def svg_text(drawing: Drawing) -> str:
     return text[text.index("<svg") :]
 
 
-def notebook_bundle(text: str, drawing: Drawing | None) -> dict[str, str]:
-    """Give text and picture by media type; the text alone where no picture can be drawn."""
-    bundle = {"text/plain": text}
-    if drawing is not None:
-        with contextlib.suppress(UserError):
-            bundle["image/svg+xml"] = svg_text(drawing)
-    return bundle
+def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
+    """Give by media type what shows a value as a picture; as text where no picture can be drawn."""
+    try:
+        return {"text/plain": repr(value), "image/svg+xml": svg_text(drawing)}
+    except UserError:
+        return page_bundle(value, ())
+
+
+def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
+    """Give by media type what shows a value as text, with pictures below it as far as they can be drawn.
+
+    A cell of a notebook shows the page; lists of values and consoles show the short form.
+    """
+    parts = [f"<pre>{html.escape(str(value))}</pre>"]
+    with contextlib.suppress(UserError):
+        parts += [_image(svg_text(drawing)) for drawing in drawings]
+    return {"text/plain": repr(value), "text/html": "\n".join(parts)}
+
+
+def _image(svg: str) -> str:
+    # as an image, so that the style and the names in one picture stay its own
+    coded = base64.b64encode(svg.encode()).decode()
+    return f'<img alt="task tree" src="data:image/svg+xml;base64,{coded}"/>'

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from foon_asp.api.shown import notebook_bundle, svg_text
+from foon_asp.api.shown import picture_bundle, svg_text
 from foon_asp.network import Source, TaskTree
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.tree_drawing import given_tree
@@ -58,5 +58,5 @@ class Tree(TaskTree):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows: the picture, and the units in FOON text."""
-        return notebook_bundle(str(self), self.drawing())
+        """Give what a notebook shows: the picture."""
+        return picture_bundle(self, self.drawing())
