@@ -49,7 +49,7 @@ FACT_PREDICATES = {
     "tree": 1,
     "distance": 3,
     "chosen_trees": 1,
-    "at_most": 2,
+    "at_most": 3,
 }
 
 OBJECTIVE_TERMS = {
@@ -174,12 +174,16 @@ def write_greatest_penalty(penalty: int) -> str:
     return f"greatest_penalty({_check(penalty)}).\n"
 
 
-def write_at_most(bounds: Mapping[Objective, int]) -> str:
-    """Bound objectives that count; raises ``ValueError`` for ``success``, which does not."""
+def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
+    """Give a bound: objectives that count, one of which is to be no more than its number.
+
+    Raises ``ValueError`` for ``success``, which does not count.
+    """
     if Objective.SUCCESS in bounds:
         raise ValueError("success is a product, and no sum that a bound could be put on")
     return "".join(
-        f"at_most({OBJECTIVE_TERMS[objective]},{_check(bound)}).\n" for objective, bound in bounds.items()
+        f"at_most({number},{OBJECTIVE_TERMS[objective]},{_check(bound)}).\n"
+        for objective, bound in bounds.items()
     )
 
 
