@@ -93,7 +93,7 @@ def pareto_front(
 
 
 def _nearest(known: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
-    """Leave out the costs that are no less than others everywhere: what is better than those is than these."""
+    """Leave out the costs that are no less than others everywhere: what beats those beats these by one."""
 
     def key(costs: Costs) -> tuple[int | Fraction, ...]:
         return tuple(map(costs.measure, objectives))
