@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from foon_asp.asp import Outcome, Reporter, Settings, solve
+from foon_asp.asp import Outcome, Reporter, Settings, exact_success, solve
 from foon_asp.explain.pareto import Front, pareto_front
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -74,6 +74,18 @@ def test_every_front_of_two_and_of_three_objectives(rule: ContainerRule, seeds: 
             assert_agrees(front, trees)
             long += len(front.points) > 2
     assert long >= 3
+
+
+@pytest.mark.parametrize("scale", [1, 7])
+def test_fronts_are_exact_where_rounding_hides_nearly_everything(
+    scale: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(exact_success, "_SCALES", (scale,))
+    for seed in range(9700, 9730):
+        problem = choosing(seed, ContainerRule.STRICT)
+        for others in ([Objective.INPUTS], [Objective.UNITS, Objective.KITCHEN]):
+            front = pareto_front(problem, [*others, Objective.SUCCESS])
+            assert_agrees(front, list(oracle.trees(problem)))
 
 
 @pytest.mark.parametrize("rule", RULES)

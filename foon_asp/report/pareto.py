@@ -95,7 +95,7 @@ def _headline(front: Front) -> str:
         return f"at least {points} on the Pareto front of {by} ({rule}; stopped at a limit)"
     if number == 1:
         every = "both" if len(front.objectives) == 2 else "each"
-        return f"1 point on the Pareto front of {by}: one tree is the best by {every}: proved ({rule})"
+        return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({rule})"
     return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
 
 
@@ -139,8 +139,10 @@ def _motions(network: Network, units: Sequence[int]) -> str:
     """Name the motions of units, ``pour (2)`` for two of them."""
     counts = Counter(network.motions[unit] for unit in units)
     named = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
-    left = sum(list(counts.values())[_NAMED:])
-    return ", ".join(named[:_NAMED]) + (f" and {left} more" if left else "")
+    if len(named) <= _NAMED:
+        return ", ".join(named)
+    shown = _NAMED - 1
+    return f"{', '.join(named[:shown])} and {sum(list(counts.values())[shown:])} more"
 
 
 def _units(front: Front, number: int) -> Iterator[str]:
