@@ -34,7 +34,7 @@ lint: .venv/installed-dev
 
 bench: .venv/installed-bench
 	$(BIN)/python benchmarks/solve_phases.py
-	$(BIN)/python benchmarks/opponents.py $(PAGE) --section quick-opponents
+	$(BIN)/python benchmarks/opponents.py --limit 10 $(PAGE) --section quick-opponents
 	$(BIN)/python benchmarks/scaling.py $(PAGE) --section quick-scaling
 
 bench-full: .venv/installed-bench

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, NodePattern, ObjectNode
+from foon_asp.network import FunctionalUnit, NetworkBuilder, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text import (
     FoonReader,
     InputError,
@@ -354,6 +354,31 @@ def test_a_container_matches_any_relation_and_null_none() -> None:
     assert NodePattern("a", ingredients=("x", "x", "y")).matches(both)
     assert not NodePattern("a", ingredients=("x", "y")).matches(both)
     assert not NodePattern("a", frozenset({"hot"})).matches(ObjectNode.of("a"))
+
+
+def test_a_network_finds_the_nodes_that_an_entry_matches() -> None:
+    places = [[("in", "bowl")], [("on", "bowl"), ("under", "lid")], [("in", "lid")], []]
+    nodes = [
+        ObjectNode.of(label, states, place, contents)
+        for label in ("egg", "ham")
+        for states in ([], ["raw"])
+        for place in places
+        for contents in ([], [("contains", ["salt"])])
+    ]
+    builder = NetworkBuilder()
+    builder.add("mix", nodes, nodes[:1], Source("a.txt", 1))
+    network = builder.build()
+    entries = [
+        NodePattern(label, states, ingredients, container, frozenset(Relation(*r) for r in relations))
+        for label in ("egg", "jam")
+        for states in (frozenset[str](), frozenset({"raw"}))
+        for ingredients in ((), ("salt",))
+        for container in (None, "bowl", "lid", "pot")
+        for relations in ((), *places[:3])
+    ]
+    for entry in entries:
+        assert network.find(entry) == tuple(o for o, node in enumerate(nodes) if entry.matches(node))
+    assert sum(map(bool, map(network.find, entries))) > 20
 
 
 def test_rates_are_exact(tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ _VERBS = (
     "shopping-list",
     "clash",
     "alternatives",
+    "pareto",
     "regret",
     "menu",
     "diff",

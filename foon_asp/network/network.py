@@ -124,14 +124,24 @@ class Network:
 
     def find(self, pattern: NodePattern) -> tuple[int, ...]:
         """Give the ids of the nodes that a kitchen or goals entry stands for."""
-        found = self._by_attributes.get((pattern.label, pattern.states, pattern.ingredients), ())
+        place = pattern.container
+        if place is None and pattern.relations:
+            place = min(pattern.relations).object
+        found = self._by_attributes.get((pattern.label, pattern.states, pattern.ingredients, place), ())
         return tuple(o for o in found if pattern.matches(self.objects[o]))
 
     @cached_property
-    def _by_attributes(self) -> dict[tuple[str, frozenset[str], tuple[str, ...]], list[int]]:
-        ids: dict[tuple[str, frozenset[str], tuple[str, ...]], list[int]] = {}
+    def _by_attributes(self) -> dict[tuple[str, frozenset[str], tuple[str, ...], str | None], list[int]]:
+        """Node ids by label, states, ingredients and each related object, or ``None`` where there is none.
+
+        A label without states may stand in thousands of places, so the place is part of the key.
+        """
+        ids: dict[tuple[str, frozenset[str], tuple[str, ...], str | None], list[int]] = {}
         for object_id, node in enumerate(self.objects):
-            ids.setdefault((node.label, node.states, node.ingredients), []).append(object_id)
+            places = {relation.object for relation in node.relations} or (None,)
+            for place in places:
+                key = (node.label, node.states, node.ingredients, place)
+                ids.setdefault(key, []).append(object_id)
         return ids
 
 

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterable, Iterator
 
 from foon_asp.explain.alternatives import Alternatives
+from foon_asp.network import Network
 from foon_asp.report.answer import costs_json, costs_text, counted, goal_lines, unit_json
 
 _SHOWN = 20  # trees that are listed one by one for people
@@ -78,27 +79,27 @@ def _optimal_lines(found: Alternatives) -> Iterator[str]:
         yield f"{number} optimal trees by {best}, and no others: proved ({rule}): {costs}"
     if number > 1:
         yield f"in every one{' found' * (not found.complete)}: {counted(len(found.in_every), 'unit')}"
-        yield from _units(found, found.in_every)
+        yield from unit_lines(found.problem.network, found.in_every)
     yield from _trees(found)
 
 
 def _trees(found: Alternatives) -> Iterator[str]:
     """List the trees, each but the first by what it has instead."""
-    first = found.trees[0]
+    first, network = found.trees[0], found.problem.network
     for number, tree in enumerate(found.trees[:_SHOWN], 1):
         yield f"tree {number}: {costs_text(tree.costs)}"
         if number == 1:
-            yield from _units(found, tree.units)
+            yield from unit_lines(network, tree.units)
             continue
         gone, new = set(first.units) - set(tree.units), set(tree.units) - set(first.units)
-        yield from _units(found, (unit for unit in first.units if unit in gone), "-")
-        yield from _units(found, (unit for unit in tree.units if unit in new), "+")
+        yield from unit_lines(network, (unit for unit in first.units if unit in gone), "-")
+        yield from unit_lines(network, (unit for unit in tree.units if unit in new), "+")
     if len(found.trees) > _SHOWN:
         yield f"... and {len(found.trees) - _SHOWN} more trees; --format json lists all"
 
 
-def _units(found: Alternatives, units: Iterable[int], sign: str = " ") -> Iterator[str]:
-    network = found.problem.network
+def unit_lines(network: Network, units: Iterable[int], sign: str = " ") -> Iterator[str]:
+    """List units by id, each after a sign, with motion and place; those of a set in order of id."""
     listed = sorted(units) if isinstance(units, frozenset) else units
     for unit in listed:
         yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{network.sources[unit][0]}]"

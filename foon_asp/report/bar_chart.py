@@ -1,27 +1,23 @@
 """The bar chart of task tree sizes: the searches beside the proved optimum, goal by goal."""
 
 from collections.abc import Sequence
-from io import BytesIO
 from math import ceil
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.report.whole_file import write_whole
+from foon_asp.report.chart_file import TEXT, check_suffix, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SUFFIXES = (".svg", ".png")
-
 # Okabe and Ito's colors, which people with any of the common color deficiencies can tell apart, ordered so
 # that neighbours differ in lightness too. Their eighth is black, which is the optimum's.
 _COLORS = ("#0072B2", "#E69F00", "#009E73", "#56B4E9", "#D55E00", "#CC79A7", "#F0E442")
 _OPTIMUM_COLOR = "#000000"
-_INK = "#333333"
 _WAY_COLOR = "#777777"  # of the legend that is about no series
 
 # How a tree executes, as a bar has it and as the legend says it.
@@ -47,42 +43,9 @@ _LEAST_PITCH = 6.0  # from one group to the next, for the words of their names
 _APART = 0.3  # between the searches and the optimum
 
 # In points, of which an inch has 72.
-_TEXT = 8.0
 _VALUE = 7.0
-_LINE = _TEXT * 1.25
-_LETTER = _TEXT * 0.58  # the mean width of a letter
-
-_STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
-    "font.family": "sans-serif",
-    # The first comes with matplotlib, so every machine lays out alike; the others are for viewers of an SVG
-    # who do not have it.
-    "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"],
-    "font.size": _TEXT,
-    "text.parse_math": False,  # a $ in a name is a $
-    "text.color": _INK,
-    "axes.edgecolor": _INK,
-    "axes.labelcolor": _INK,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.grid.axis": "y",
-    "axes.axisbelow": True,
-    "grid.color": "#DDDDDD",
-    "grid.linewidth": 0.6,
-    "xtick.color": _INK,
-    "xtick.major.size": 0.0,
-    "ytick.color": _INK,
-    "ytick.major.size": 2.5,
-    "patch.linewidth": 0.8,
-    "hatch.linewidth": 0.6,
-    "legend.frameon": False,
-    "legend.handlelength": 1.2,
-    "legend.handleheight": 0.9,
-    "legend.columnspacing": 1.5,
-    "savefig.dpi": 300,
-    "svg.fonttype": "none",  # text stays text, which can be searched, read aloud and edited
-    "svg.hashsalt": "foon-asp",  # names within the file come from what they name, and not from chance
-}
+_LINE = TEXT * 1.25
+_LETTER = TEXT * 0.58  # the mean width of a letter
 
 
 class Bar(NamedTuple):
@@ -114,30 +77,10 @@ class BarChart(NamedTuple):
 
 def write_chart(chart: BarChart, file: Path) -> None:
     """Draw a chart into a file, as SVG or PNG by its suffix; it is there whole or not at all."""
-    suffix = file.suffix.lower()
-    if suffix not in _SUFFIXES:
-        raise UserError(f"{file}: a chart is written as {' or '.join(_SUFFIXES)}; name such a file")
+    check_suffix(file)
     if not chart.groups:
         raise UserError(f"{file}: no goal to draw a chart of")
-    write_whole(file, _picture(chart, suffix.removeprefix(".")))
-
-
-def _picture(chart: BarChart, form: str) -> bytes:
-    """Draw a chart, whatever settings of matplotlib the user has, and leave those as they are."""
-    try:
-        # Slow to import, and not installed by everyone.
-        import matplotlib as mpl  # noqa: PLC0415
-        from matplotlib.figure import Figure  # noqa: PLC0415
-    except ImportError as error:
-        raise UserError(f"a chart needs matplotlib ({error}): pip install 'foon-asp[pictures]'") from None
-    picture = BytesIO()
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(_STYLE)
-        figure = Figure(layout="constrained")
-        _draw(chart, figure)
-        figure.savefig(picture, format=form, metadata={"Date": None})
-    return picture.getvalue()
+    write_figure(lambda figure: _draw(chart, figure), file)
 
 
 def _draw(chart: BarChart, figure: "Figure") -> None:
@@ -208,7 +151,7 @@ def _add_legend(
         loc=place,
         ncols=ceil(len(names) / lines),
         title=title or None,
-        title_fontproperties={"weight": "bold", "size": _TEXT * 1.2},
+        title_fontproperties={"weight": "bold", "size": TEXT * 1.2},
     )
     legend.get_title().set_multialignment("center")
     return lines + (title.count("\n") + 2 if title else 0)

@@ -1,0 +1,94 @@
+"""``foon-asp pareto``: what one objective costs by another, as the whole Pareto front."""
+
+import os
+from pathlib import Path
+
+import click
+
+from foon_asp.asp import Settings
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.progress import Progress
+from foon_asp.explain.pareto import Front, pareto_front
+from foon_asp.problem import Objective, parse_objectives
+from foon_asp.report.chart_file import check_suffix
+from foon_asp.report.pareto import front_json, front_text
+
+
+@click.command("pareto")
+@options.goal_option
+@click.option(
+    "--objective",
+    "objectives",
+    multiple=True,
+    default=("units,success",),
+    show_default=True,
+    metavar="LIST",
+    help=f"Two or three of {', '.join(Objective)}.",
+)
+@options.containers_option
+@click.option("--trees", is_flag=True, help="List the units of the trees too.")
+@click.option(
+    "--chart",
+    "charts",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Draw the front (.svg or .png); repeatable.",
+)
+@options.constraint_options
+@options.constant_option
+@options.time_limit_option
+@options.format_option("text", "json")
+@options.data_options
+def command(
+    goals_named: tuple[str, ...],
+    objectives: tuple[str, ...],
+    containers: str,
+    trees: bool,
+    charts: tuple[Path, ...],
+    constraints: tuple[Path, ...],
+    encodings: Path | None,
+    constants: tuple[str, ...],
+    time_limit: float | None,
+    format_: str,
+    **data: object,
+) -> ExitCode:
+    r"""Find the whole Pareto front of two or three objectives, with a tree for every point.
+
+    \b
+    foon-asp pareto --goal macaroni                                  units against success
+    foon-asp pareto --goal macaroni --objective inputs,success,kitchen --trees
+    foon-asp pareto --goal macaroni --chart front.svg
+
+    A point is on the front when no tree is as good by every objective and better by one. Points are compared
+    exactly, each has the smallest tree that it can have, and that there are no others is proved.
+
+    Exits with 0 when the front is whole, 1 when there is no tree, 3 when a limit came first; the points that
+    were found by then are on the front too.
+    """
+    for chart in charts:
+        check_suffix(chart)
+    chosen = parse_objectives(objectives)
+    question = options.read_question(**data)  # type: ignore[arg-type]
+    everything = bool(constraints or encodings)
+    problem = question.problem(question.goals(goals_named), containers, everything)
+    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    with Progress() as progress:
+        front = pareto_front(problem, chosen, settings, progress)
+    for chart in charts:
+        _write_chart(front, chart)
+    click.echo(front_json(front) if format_ == "json" else front_text(front, trees), nl=False)
+    if not front.complete:
+        return ExitCode.LIMIT
+    return ExitCode.DONE if front.points else ExitCode.NEGATIVE
+
+
+def _write_chart(front: Front, file: Path) -> None:
+    from foon_asp.report.front_chart import write_front_chart
+
+    if not front.points:
+        click.echo(f"{os.fspath(file)} is not written: there is no point to draw", err=True)
+        return
+    write_front_chart(front, file)
+    click.echo(f"wrote {os.fspath(file)}", err=True)

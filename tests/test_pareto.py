@@ -1,0 +1,246 @@
+"""Pareto fronts, held against brute force over every tree of small networks."""
+
+import math
+import random
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from foon_asp.asp import Outcome, Reporter, Settings, exact_success, solve
+from foon_asp.explain.pareto import Front, pareto_front
+from foon_asp.network import FunctionalUnit
+from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.report.front_chart import write_front_chart
+from foon_asp.report.pareto import front_text, success_texts
+from foon_asp.resources import bundled_kitchen
+from foon_asp.text import find_data, find_goal, read_data
+from tests import oracle
+from tests.conftest import Cli
+from tests.random_problems import MOTIONS, random_problem
+from tests.test_alternatives import choosing
+
+SVG = "{http://www.w3.org/2000/svg}"
+RULES = list(ContainerRule)
+SETS = [some for size in (2, 3) for some in combinations(Objective, size)]
+Point = tuple[Fraction, ...]
+
+
+def measures(problem: Problem, tree: tuple[FunctionalUnit, ...], objectives: Sequence[Objective]) -> Point:
+    return tuple(oracle.measure(problem, tree, objective) for objective in objectives)
+
+
+def nondominated(points: set[Point]) -> set[Point]:
+    """Give the points than which none is as small everywhere."""
+    return {
+        p
+        for p in points
+        if not any(q != p and all(a <= b for a, b in zip(q, p, strict=True)) for q in points)
+    }
+
+
+def assert_agrees(front: Front, trees: Sequence[tuple[FunctionalUnit, ...]]) -> None:
+    """Hold points, trees and their order against all trees that there are."""
+    problem, objectives = front.problem, front.objectives
+    everything = {measures(problem, tree, objectives) for tree in trees}
+    assert front.complete
+    shown = []
+    for point in front.points:
+        units = tuple(map(problem.network.unit, point.units))
+        assert oracle.makes(problem, units)
+        assert set(units) in map(set, trees)
+        shown.append(measures(problem, units, objectives))
+        same = [tree for tree in trees if measures(problem, tree, objectives) == shown[-1]]
+        assert len(units) == min(map(len, same))
+    assert shown == sorted(nondominated(everything))
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize(
+    "seeds", [range(9300, 9330), pytest.param(range(9330, 9500), marks=pytest.mark.slow)]
+)
+def test_every_front_of_two_and_of_three_objectives(rule: ContainerRule, seeds: range) -> None:
+    long = 0
+    for seed in seeds:
+        problem = choosing(seed, rule)
+        trees = list(oracle.trees(problem))
+        for objectives in random.Random(seed).sample(SETS, 4):
+            front = pareto_front(problem, objectives)
+            assert_agrees(front, trees)
+            long += len(front.points) > 2
+    assert long >= 3
+
+
+@pytest.mark.parametrize("scale", [1, 7])
+def test_fronts_are_exact_where_rounding_hides_nearly_everything(
+    scale: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(exact_success, "_SCALES", (scale,))
+    for seed in range(9700, 9730):
+        problem = choosing(seed, ContainerRule.STRICT)
+        for others in ([Objective.INPUTS], [Objective.UNITS, Objective.KITCHEN]):
+            front = pareto_front(problem, [*others, Objective.SUCCESS])
+            assert_agrees(front, list(oracle.trees(problem)))
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_fronts_for_several_goals(rule: ContainerRule) -> None:
+    for seed in range(9500, 9530):
+        problem = random_problem(seed, rule)
+        made = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
+        problem = replace(problem, goals=tuple(random.Random(seed).sample(made, min(2, len(made)))))
+        front = pareto_front(problem, (Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN))
+        assert_agrees(front, list(oracle.trees(problem)))
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("name", ["forbid", "require"])
+def test_fronts_under_a_constraint(rule: ContainerRule, name: str) -> None:
+    fewer = 0
+    for seed in range(9600, 9630):
+        problem = choosing(seed, rule)
+        motion = random.Random(seed).choice(MOTIONS)
+
+        def allowed(tree: tuple[FunctionalUnit, ...], motion: str = motion) -> bool:
+            return any(unit.motion == motion for unit in tree) == (name == "require")
+
+        word = {"forbid": "forbidden", "require": "required"}[name]
+        settings = Settings(constraints=(Path(f"{name}_motion"),), constants=(f"{word}_motion={motion}",))
+        trees = list(oracle.trees(problem, allowed))
+        fewer += len(trees) < len(list(oracle.trees(problem)))
+        for objectives in random.Random(seed).sample(SETS, 2):
+            assert_agrees(pareto_front(problem, objectives, settings), trees)
+    assert fewer >= 10
+
+
+# --- The command, and what it prints and draws.
+
+
+def macaroni() -> Problem:
+    data = read_data(find_data(bundled_kitchen()))
+    goal = find_goal("macaroni", data.network, data.goals)
+    return Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, ContainerRule.STRICT)
+
+
+def test_one_objective_or_four_are_no_trade_off(cli: Cli) -> None:
+    for listed in ("units", "units,inputs,success,kitchen"):
+        ran = cli("pareto", "--goal", "tea", "--objective", listed)
+        assert ran.code == 2
+        assert "expected 2 or 3" in ran.err
+
+
+def test_the_answer_in_json(cli: Cli) -> None:
+    ran = cli("pareto", "--goal", "macaroni", "--objective", "success,units", "--format", "json")
+    assert ran.code == 0
+    assert ran.json["complete"]
+    assert ran.json["objective"] == ["success", "units"]
+    points = ran.json["points"]
+    assert [point["measures"]["units"] for point in points] == [11, 10, 9]  # the best success first
+    rates = read_data(find_data(bundled_kitchen())).rates
+    assert rates is not None
+    before: list[int] = []
+    for point in points:
+        ids = [unit["id"] for unit in point["units"]]
+        product = math.prod(rates[unit["motion"]] for unit in point["units"])
+        assert Fraction(point["measures"]["success"]["exact"]) == product
+        assert point["costs"]["units"] == len(ids)
+        if before:
+            assert set(ids) == set(before) - set(point["gone"]) | set(point["new"])
+        before = ids
+
+
+def test_exit_codes(cli: Cli, tmp_path: Path) -> None:
+    none = cli("pareto", "--goal", "apple pie", "--chart", tmp_path / "none.svg")
+    assert none.code == 1
+    assert "infeasible: proved" in none.out
+    assert "no point to draw" in none.err
+    assert not list(tmp_path.iterdir())
+    hurried = cli("pareto", "--goal", "tea", "--time-limit", "0")
+    assert hurried.code == 3
+    assert cli("pareto", "--goal", "tea", "--chart", tmp_path / "front.pdf").code == 2
+
+
+@pytest.mark.parametrize("interrupted", [True, False])
+def test_what_was_found_before_a_limit_is_on_the_front(
+    interrupted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = macaroni()
+    objectives = (Objective.UNITS, Objective.SUCCESS)
+    whole = pareto_front(problem, objectives)
+    # That there is no other point can be seen at once, so the last search is stopped by ctrl-C alone.
+    for searches in range(len(whole.points) + interrupted):
+        left = iter(range(searches))
+
+        def stopping(
+            problem: Problem,
+            objectives: Sequence[Objective],
+            settings: Settings,
+            reporter: Reporter,
+            left: Iterator[int] = left,
+        ) -> Outcome:
+            if next(left, None) is not None:
+                return solve(problem, objectives, settings, reporter)
+            if interrupted:
+                raise KeyboardInterrupt
+            return solve(problem, objectives, settings._replace(time_limit=0.0), reporter)
+
+        monkeypatch.setattr("foon_asp.explain.pareto.solve", stopping)
+        front = pareto_front(problem, objectives)
+        assert not front.complete
+        assert front.points == whole.points[len(whole.points) - searches :]
+        assert "stopped at a limit" in front_text(front)
+
+
+def test_successes_look_different_when_they_are() -> None:
+    assert success_texts([Fraction(1, 2), Fraction(1, 3)]) == ["0.5", "≈ 0.3333"]
+    close = [Fraction("0.12341"), Fraction("0.123412"), Fraction("0.12341")]
+    assert success_texts(close) == ["0.12341", "0.123412", "0.12341"]
+    assert success_texts([Fraction(1, 3 * 10**9)]) == ["≈ 3.333e-10"]
+
+
+def drawing(front: Front, file: Path) -> tuple[list[str], int, int]:
+    """Draw a front, and give the texts of the SVG, its markers and its lines."""
+    write_front_chart(front, file)
+    root = ElementTree.parse(file).getroot()
+    texts = [text.text or "" for text in root.iter(f"{SVG}text")]
+    series = [group for group in root.iter(f"{SVG}g") if re.fullmatch(r"line2d_\d+", group.get("id", ""))]
+    clipped = [group for group in series if any("clip-path" in part.attrib for part in group.iter())]
+    markers = sum(len(list(group.iter(f"{SVG}use"))) for group in clipped)
+    colored = [
+        p for g in clipped for p in g.iter(f"{SVG}path") if "stroke: #dddddd" not in p.get("style", "")
+    ]
+    lines = sum("clip-path" in path.attrib for path in colored)
+    return texts, markers, lines
+
+
+def test_a_chart_has_all_points_and_lines_only_where_the_front_is_whole(tmp_path: Path) -> None:
+    problem = macaroni()
+    two = pareto_front(problem, (Objective.UNITS, Objective.SUCCESS))
+    texts, markers, lines = drawing(two, tmp_path / "two.svg")
+    assert {"macaroni", "functional units", "success rate", "0.4988", "0.5955", "0.6293"} <= set(texts)
+    assert (markers, lines) == (3, 1)
+    texts, markers, lines = drawing(two._replace(complete=False), tmp_path / "open.svg")
+    assert "stopped at a limit: points may be missing" in texts
+    assert (markers, lines) == (3, 0)
+    three = pareto_front(problem, (Objective.SUCCESS, Objective.INPUTS, Objective.UNITS))
+    texts, markers, lines = drawing(three, tmp_path / "three.svg")
+    assert {"9", "10", "11", "input object nodes"} <= set(texts)  # a series for each number of units
+    assert (markers, lines) == (len(three.points), 3)
+    write_front_chart(three, tmp_path / "three.png")
+    assert (tmp_path / "three.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_front_for_macaroni_on_the_universal_foon(cli: Cli, universal: Path) -> None:
+    ran = cli(
+        "pareto", "--data", universal, "--goal", "macaroni", "--containers", "implied", "--format", "json"
+    )
+    assert ran.code == 0
+    assert ran.json["complete"]
+    assert [point["measures"]["units"] for point in ran.json["points"]] == [5, 6]
+    few, many = (Fraction(point["measures"]["success"]["exact"]) for point in ran.json["points"])
+    assert few < many
