@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from foon_asp.api.explanation import Explanation, why_not
     from foon_asp.api.foon import Foon, load
     from foon_asp.api.menu import Menu, menu
+    from foon_asp.api.pareto import Front, pareto
     from foon_asp.api.problem import Problem
     from foon_asp.api.regret import Regrets, regret
     from foon_asp.api.retrieval import Retrieved, retrieve
@@ -51,6 +52,7 @@ _ROOMS = {
     "api.explanation": ("Explanation", "why_not"),
     "api.foon": ("Foon", "load"),
     "api.menu": ("Menu", "menu"),
+    "api.pareto": ("Front", "pareto"),
     "api.problem": ("Problem",),
     "api.regret": ("Regrets", "regret"),
     "api.retrieval": ("Retrieved", "retrieve"),
@@ -80,6 +82,7 @@ __all__ = [
     "Foon",
     "FoonReader",
     "FoonWarning",
+    "Front",
     "FunctionalUnit",
     "Menu",
     "Network",
@@ -110,6 +113,7 @@ __all__ = [
     "diff",
     "load",
     "menu",
+    "pareto",
     "parse_node",
     "regret",
     "retrieve",

@@ -131,6 +131,13 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
         lambda p: foon_asp.regret(p, "success", units=[3]),
     ),
     "menu": (["menu"], ["ice", "tea"], "strict", foon_asp.menu),
+    "pareto": (["pareto"], ["whipped cream"], "implied", foon_asp.pareto),
+    "pareto under a constraint": (
+        ["pareto", "--objective", "units,kitchen", "--constraint", "forbid_motion", *CONSTANT],
+        ["ice", "tea"],
+        "strict",
+        lambda p: foon_asp.pareto(p, ["units", "kitchen"], constraints="forbid_motion", **CRUSH),
+    ),
     "bfs": (["search", "bfs"], ["macaroni"], "implied", lambda p: foon_asp.retrieve(p, "bfs")),
     "ids": (["search", "ids"], ["greek salad"], "strict", lambda p: foon_asp.retrieve(p, "ids")),
     "greedy, the last": (
@@ -189,6 +196,17 @@ def test_prices_from_a_file_and_by_name(foon: Foon, tmp_path: Path) -> None:
     assert by_name.lists[0].price == 6
     with pytest.warns(FoonWarning, match="no node that one can buy has this label: unicorn"):
         foon_asp.shopping_list(problem, prices={**prices, "unicorn": 1})
+
+
+def test_the_chart_of_a_front(foon: Foon, tmp_path: Path) -> None:
+    front = foon_asp.pareto(foon.problem("macaroni"))
+    assert [tree.units for tree in front.task_trees] == [
+        foon.problem("macaroni").tree(point.units).units for point in front.points
+    ]
+    front.write_chart(tmp_path / "front.svg")
+    assert ET.parse(tmp_path / "front.svg").getroot().tag.endswith("svg")
+    with pytest.raises(UserError, match="no point to draw"):
+        foon_asp.pareto(foon.problem("apple pie")).write_chart(tmp_path / "none.svg")
 
 
 def saved(ran: Ran, file: Path) -> Path:

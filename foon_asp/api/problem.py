@@ -1,7 +1,7 @@
 """One question, ready to be asked, and cheap to vary."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -132,12 +132,5 @@ def taken(problem: plain.Problem, origin: "Foon | None" = None) -> Problem:
     """Take a problem of the rooms below as one of these."""
     if isinstance(problem, Problem) and origin is None:
         return problem
-    return Problem(
-        problem.network,
-        problem.kitchen,
-        problem.goals,
-        problem.rates,
-        problem.utensils,
-        problem.containers,
-        origin=origin,
-    )
+    pieces = {piece.name: getattr(problem, piece.name) for piece in fields(plain.Problem)}
+    return Problem(**pieces, origin=origin)
