@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+import click
 import pytest
 
+from foon_asp.cli.main import cli as group
 from tests.conftest import Cli
 
 # A pancake by two ways: a risky flip, or a slow bake that is safe. The kitchen has no flour in the bowl.
@@ -336,6 +338,20 @@ def test_help_and_version(cli: Cli) -> None:
     assert "solve" in cli("--help").out
     assert "--time-limit" in cli("solve", "-h").out
     assert cli("--version").out.startswith("foon-asp")
+
+
+@pytest.mark.parametrize("verb", group.list_commands(click.Context(group)))
+def test_examples_in_help_stand_on_lines_of_their_own(cli: Cli, verb: str) -> None:
+    text = cli(verb, "--help").out
+    assert "\\b" not in text
+    assert all(line.count("foon-asp ") < 2 for line in text.splitlines())
+
+
+def test_a_list_says_what_is_made_too_late_and_what_never(cli: Cli) -> None:
+    text = cli("search", "bfs", "--goal", "macaroni").out
+    assert "       stove; on  (step 6, which is later)\n" in text
+    circle = cli("search", "bfs", "--goal", "apple pie").out
+    assert "       pie crust; rolled  (step 5, which is later)\n" in circle
 
 
 def test_a_bug_of_ours_exits_with_70(cli: Cli, data: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -87,7 +87,7 @@ def command(
     format_: str,
     **data: object,
 ) -> ExitCode:
-    r"""Run the searches, simulate every tree they return, and prove the optima beside them.
+    """Run the searches, simulate every tree they return, and prove the optima beside them.
 
     \b
     foon-asp compare                                   every goal of the goals file

@@ -54,7 +54,7 @@ def command(
     format_: str,
     **data: object,
 ) -> ExitCode:
-    r"""Find the whole Pareto front of two or three objectives, with a tree for every point.
+    """Find the whole Pareto front of two or three objectives, with a tree for every point.
 
     \b
     foon-asp pareto --goal macaroni                                  units against success

@@ -31,7 +31,7 @@ def command(
     format_: str,
     **data: object,
 ) -> ExitCode:
-    r"""Retrieve a task tree as the literature does, and say whether it executes.
+    """Retrieve a task tree as the literature does, and say whether it executes.
 
     \b
     foon-asp search bfs --goal 'greek salad'

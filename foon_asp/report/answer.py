@@ -185,18 +185,23 @@ def _bound_line(outcome: Outcome) -> str:
 def steps(problem: Problem, units: tuple[int, ...], bought: Collection[int] = ()) -> Iterator[str]:
     """Number the units, and say of every input whether it is from the kitchen or from which step.
 
-    ``bought`` are the items of the kitchen, by id, that were not there before.
+    ``bought`` are the items of the kitchen, by id, that were not there before. In a list that does not
+    execute as it is, a needed input may be made by later steps only, or by none.
     """
     network = problem.network
     maker: dict[int, int] = {}
     for number, unit in enumerate(units, 1):
         yield f"{number:>3}  {network.motions[unit]}    [{network.sources[unit][0]}]"
         for o in network.inputs[unit]:
-            origin = "implied"
             if o in problem.kitchen:
                 origin = "bought" if o in bought else "kitchen"
             elif o in maker:
                 origin = f"step {maker[o]}"
+            elif o not in problem.needs[unit]:
+                origin = "implied"
+            else:
+                later = (n for n, u in enumerate(units[number:], number + 1) if o in network.outputs[u])
+                origin = f"step {step}, which is later" if (step := next(later, 0)) else "missing"
             yield f"       {network.objects[o]}  ({origin})"
         for o in network.outputs[unit]:
             yield f"     → {network.objects[o]}"
