@@ -71,7 +71,7 @@ def write_facts(
     of ``risk/2``; ``None`` where no rates are known. ``with_sources`` adds where each unit was read, which
     only constraints look at.
     """
-    network, rates = problem.network, problem.rates
+    network = problem.network
     number, name = network.unit_number, network.object_number
     described: dict[int, None] = {}
     lines = []
@@ -85,8 +85,8 @@ def write_facts(
         facts += [f"needs({u},{name(o)})." for o in problem.needs[unit]]
         facts += [f"output({u},{name(o)})." for o in outputs]
         facts.append(f"inputs({u},{len(inputs)}). ingredients({u},{_check(ingredients)}).")
-        if scale and rates:
-            rate = rates[network.motions[unit]]
+        if scale:
+            rate = problem.rate(unit)
             facts.append(f"rate({u},{_millionths(rate)}). risk({u},{_check(scale.weights[rate])}).")
         if with_sources:
             facts += [f"source({u},{quote(source)})." for source in _source_names(network.sources[unit])]
@@ -119,11 +119,10 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) -> str:
     """Give every unit's rate over the coprime factors of the scale."""
-    rates, motions = problem.rates or {}, problem.network.motions
     return "".join(
         f"exponent({problem.network.unit_number(unit)},{factor},{_check(exponent)}).\n"
         for unit in units
-        for factor, exponent in scale.exponents[rates[motions[unit]]].items()
+        for factor, exponent in scale.exponents[problem.rate(unit)].items()
     )
 
 
