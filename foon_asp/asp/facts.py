@@ -49,6 +49,7 @@ FACT_PREDICATES = {
     "tree": 1,
     "distance": 3,
     "chosen_trees": 1,
+    "at_most": 2,
 }
 
 OBJECTIVE_TERMS = {
@@ -170,6 +171,15 @@ def write_soft(weights: Mapping[int, int]) -> str:
 def write_greatest_penalty(penalty: int) -> str:
     """Bound the sum of the weights of what is broken."""
     return f"greatest_penalty({_check(penalty)}).\n"
+
+
+def write_at_most(bounds: Mapping[Objective, int]) -> str:
+    """Bound objectives that count; raises ``ValueError`` for ``success``, which does not."""
+    if Objective.SUCCESS in bounds:
+        raise ValueError("success is a product, and no sum that a bound could be put on")
+    return "".join(
+        f"at_most({OBJECTIVE_TERMS[objective]},{_check(bound)}).\n" for objective, bound in bounds.items()
+    )
 
 
 def write_tree(units: Collection[int]) -> str:

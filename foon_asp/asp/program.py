@@ -44,14 +44,26 @@ class Relaxed(NamedTuple):
     encoding: Path
 
 
+class Bounded(NamedTuple):
+    """Requirements of ours that only bound what a tree costs from above.
+
+    ``files`` are encodings of ours (``encodings/questions``) and ``rules`` the facts that they read. A tree
+    that meets them has to meet them still when units are left out of it: then what the goals do not need
+    cannot matter, bounded or not.
+    """
+
+    rules: str
+    files: tuple[Path, ...]
+
+
 class Settings(NamedTuple):
     """How to solve, and under which constraints.
 
     ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
-    interrupted. ``reductions`` come before the search, unless there are constraints or other encodings.
-    ``relaxed`` are constraints in other words.
+    interrupted. ``reductions`` come before the search, unless there are constraints, bounds or other
+    encodings. ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -61,6 +73,7 @@ class Settings(NamedTuple):
     time_limit: float | None = None
     reductions: frozenset[Reduction] = ALL
     relaxed: Relaxed | None = None
+    bounded: Bounded | None = None
 
 
 class Program(NamedTuple):
@@ -68,7 +81,7 @@ class Program(NamedTuple):
 
     ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates
     are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
-    matter.
+    matter. ``bounded`` says that a tree of the unbounded question need not be one.
     """
 
     files: tuple[Path, ...]
@@ -76,6 +89,7 @@ class Program(NamedTuple):
     arguments: tuple[str, ...]
     own: bool
     rules: str = ""
+    bounded: bool = False
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
@@ -88,18 +102,24 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     folder = _find_encodings(settings.encodings, ours)
     base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
     added = tuple(dict.fromkeys(find_constraint(path) for path in settings.constraints))
-    relaxed = settings.relaxed
+    relaxed, bounded = settings.relaxed, settings.bounded
     loaded = added
+    questions: tuple[Path, ...] = ()
+    rules = ""
     if relaxed is not None:
-        loaded = (*(file for file in added if file not in relaxed.files), relaxed.encoding)
+        loaded = tuple(file for file in added if file not in relaxed.files)
         added = tuple(dict.fromkeys((*added, *relaxed.files)))
+        questions = (relaxed.encoding,)
+        rules = relaxed.rules
+    if bounded is not None:
+        questions += bounded.files
+        rules += bounded.rules
     constants: list[str] = []
     if added or settings.encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
 
-        ours_too = () if relaxed is None else (relaxed.encoding,)
-        parsed = [encoding.read_encoding(file) for file in (*base, *ours_too)]
+        parsed = [encoding.read_encoding(file) for file in (*base, *questions)]
         extra = [encoding.read_encoding(file) for file in added]
         for diagnostic in encoding.check_added(extra, parsed):
             warn(str(diagnostic))
@@ -107,11 +127,12 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
     return Program(
-        (*base, *loaded),
+        (*base, *loaded, *questions),
         ours / _EXACT_SUCCESS,
         (*constants, *_clingo_options(settings.clingo_options)),
         own=not added and settings.encodings is None,
-        rules="" if relaxed is None else relaxed.rules,
+        rules=rules,
+        bounded=bounded is not None,
     )
 
 

@@ -60,13 +60,13 @@ def solve_soft(
     constraints, relaxed = relax(tuple(weights), settings.constants, soft=True)
     of_file = {find_constraint(path): weight for path, weight in weights.items()}
     by_number = {c.number: of_file[c.file] for c in constraints}
-    rules = relaxed.rules + write_soft(by_number)
+    rules = write_soft(by_number)
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, reporter.warning)
     reached = reach(problem)
     units = tuple(sorted(reached.units))
     scale = None if problem.rates is None else problem_scale(problem, units)
-    facts = write_facts(problem, units, scale, with_sources=True) + rules
+    facts = write_facts(problem, units, scale, with_sources=True) + program.rules + rules
 
     def tell(units: tuple[int, ...] | None, outcome: Outcome) -> SoftOutcome:
         if units is None:
@@ -101,7 +101,7 @@ def solve_soft(
     bound = "" if least is None else write_greatest_penalty(least)
     limit = settings.time_limit
     left = None if limit is None else max(0.0, limit - (time.monotonic() - began))
-    hard = settings._replace(relaxed=relaxed._replace(rules=rules + bound), time_limit=left)
+    hard = settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + rules + bound), time_limit=left)
     outcome = solve(problem, objectives, hard, Reporter())
     if least is not None and outcome.status is Status.INFEASIBLE:
         raise BugError("the least penalty was lost")

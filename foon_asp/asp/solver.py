@@ -91,9 +91,9 @@ class _Solver:
         first = self.cut()
         if first is None:
             return self._outcome(Status.INFEASIBLE, None, {})
-        if self.program.own:
+        if self.program.own and not self.program.bounded:
             incumbent = first
-        else:  # the user's rules decide what a tree is: let them find the first one
+        else:  # the user's rules or the bounds decide what a tree is: let them find the first one
             some = self._run(self.levels, opt_mode="ignore")
             if some.units is None:
                 return self._outcome(Status.INFEASIBLE if some.exhausted else Status.UNKNOWN, None, {})
@@ -127,7 +127,9 @@ class _Solver:
         """Cut the network down to what can matter; give some tree, or ``None`` when there is none.
 
         Without constraints of the user's, that is what the goals can need, less what the reductions leave
-        out; with them, all that can be made, since a constraint may ask for units that no goal does.
+        out; with them, all that can be made, since a constraint may ask for units that no goal does. The
+        reductions leave out what only trees have that are no better than another, which may be the only one
+        within bounds: then there are none.
         """
         began = time.perf_counter()
         first: Units | None
@@ -135,7 +137,7 @@ class _Solver:
             self.reduced = reduce(
                 self.problem,
                 self.levels,
-                self.settings.reductions,
+                NONE if self.program.bounded else self.settings.reductions,
                 lambda: self.deadline.passed,
                 _Heard(self),
             )
@@ -156,7 +158,7 @@ class _Solver:
         After the reductions, trees that are only as good need not be among the units left. Where rates
         multiply, rounded weights cannot tell what is better: then what weighs the same is left in.
         """
-        if self.reduced is None or Reduction.BOUNDS not in self.settings.reductions:
+        if self.reduced is None or self.program.bounded or Reduction.BOUNDS not in self.settings.reductions:
             return "opt", False
         costs = self.problem.costs(incumbent)
         if Objective.SUCCESS in self.levels:

@@ -1,0 +1,104 @@
+"""Optimal trees within bounds, held against brute force."""
+
+import random
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Settings
+from foon_asp.asp.at_most import at_most
+from foon_asp.asp.ranking import Ranked
+from foon_asp.asp.soft import solve_soft
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit
+from foon_asp.problem import ContainerRule, Objective, Problem
+from tests import oracle
+from tests.random_problems import MOTIONS, random_problem
+from tests.test_alternatives import choosing
+from tests.test_optimum import assert_agrees
+
+RULES = list(ContainerRule)
+COUNTS = [objective for objective in Objective if objective is not Objective.SUCCESS]
+Bounds = dict[Objective, int]
+
+
+def drawn(seed: int, problem: Problem) -> Bounds:
+    """Bound one or two objectives near the least they can be, or anywhere where there is no tree."""
+    rng = random.Random(seed)
+    found = list(oracle.trees(problem))
+    bounds: Bounds = {}
+    for objective in rng.sample(COUNTS, rng.choice((1, 1, 2))):
+        figures = sorted({int(oracle.measure(problem, tree, objective)) for tree in found}) or [3]
+        bounds[objective] = rng.choice(figures[:3]) - rng.choice((0, 0, 0, 1))
+    return bounds
+
+
+def within(problem: Problem, bounds: Bounds) -> oracle.Allowed:
+    def allowed(tree: tuple[FunctionalUnit, ...]) -> bool:
+        return all(oracle.measure(problem, tree, o) <= bound for o, bound in bounds.items())
+
+    return allowed
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_the_best_tree_within_bounds(rule: ContainerRule) -> None:
+    infeasible = binding = 0
+    for seed in range(9000, 9080):
+        problem = choosing(seed, rule) if seed % 2 else random_problem(seed, rule)
+        bounds = drawn(seed, problem)
+        everything = list(oracle.trees(problem))
+        left = list(oracle.trees(problem, within(problem, bounds)))
+        infeasible += bool(everything) and not left
+        for objectives in (["success"], random.Random(seed).sample(sorted(map(str, Objective)), 2)):
+            assert_agrees(problem, objectives, left, Settings(bounded=at_most(bounds)))
+            if left:
+                best = oracle.best(everything, problem, objectives)
+                binding += oracle.best(left, problem, objectives) != best
+    assert infeasible >= 5
+    assert binding >= 5
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_bounds_beside_a_constraint_that_asks_for_units(rule: ContainerRule) -> None:
+    for seed in range(9100, 9150):
+        problem = choosing(seed, rule)
+        bounds = drawn(seed, problem)
+        motion = random.Random(seed).choice(MOTIONS)
+        near = within(problem, bounds)
+
+        def allowed(
+            tree: tuple[FunctionalUnit, ...], near: oracle.Allowed = near, word: str = motion
+        ) -> bool:
+            return near(tree) and any(unit.motion == word for unit in tree)
+
+        settings = Settings(
+            constraints=(Path("require_motion"),),
+            constants=(f"required_motion={motion}",),
+            bounded=at_most(bounds),
+        )
+        assert_agrees(problem, ["success"], list(oracle.trees(problem, allowed)), settings)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_trees_in_order_and_soft_constraints_keep_to_bounds_too(rule: ContainerRule, tmp_path: Path) -> None:
+    soft = tmp_path / "soft.lp"
+    for seed in range(9200, 9220):
+        problem = choosing(seed, rule)
+        bounds = drawn(seed, problem)
+        left = list(oracle.trees(problem, within(problem, bounds)))
+        settings = Settings(bounded=at_most(bounds))
+        minimal = {frozenset(t) for t in left if not any(set(other) < set(t) for other in left)}
+        ranked = Ranked(problem, [Objective.SUCCESS], settings)
+        assert {frozenset(map(problem.network.unit, units)) for units, _ in ranked} == minimal
+        motion = random.Random(seed).choice(MOTIONS)
+        soft.write_text(f':- use(U), motion(U,"{motion}").\n', encoding="utf-8")
+        found = solve_soft(problem, [Objective.SUCCESS], settings, {soft: 2})
+        penalties = [2 * sum(unit.motion == motion for unit in tree) for tree in left]
+        assert found.penalty == min(penalties, default=None)
+
+
+def test_bounds_are_numbers_of_clingo_on_objectives_that_count() -> None:
+    with pytest.raises(ValueError, match="product"):
+        at_most({Objective.SUCCESS: 1})
+    with pytest.raises(UserError, match="too large"):
+        at_most({Objective.UNITS: 2**31})
