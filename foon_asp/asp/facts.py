@@ -50,6 +50,8 @@ FACT_PREDICATES = {
     "distance": 3,
     "chosen_trees": 1,
     "at_most": 2,
+    "takes_over": 2,
+    "at_most_assisted": 1,
 }
 
 OBJECTIVE_TERMS = {
@@ -180,6 +182,12 @@ def write_at_most(bounds: Mapping[Objective, int]) -> str:
     return "".join(
         f"at_most({OBJECTIVE_TERMS[objective]},{_check(bound)}).\n" for objective, bound in bounds.items()
     )
+
+
+def write_assisted(twins: Mapping[int, int], most: int) -> str:
+    """Say which units are a person's, each with the robot's unit that it is, and bound how many are used."""
+    facts = [f"takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
+    return "".join([*facts, f"at_most_assisted({_check(most)}).\n"])
 
 
 def write_tree(units: Collection[int]) -> str:

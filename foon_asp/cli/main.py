@@ -28,6 +28,7 @@ _VERBS = (
     "alternatives",
     "regret",
     "menu",
+    "assist",
     "diff",
     "constraints",
     "facts",
