@@ -2,14 +2,26 @@
 
 import json
 import random
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations, pairwise
 from pathlib import Path
 
 import pytest
 
-from foon_asp import FunctionalUnit, NetworkBuilder, ObjectNode, Problem, Settings, Source, Status, solve
+from foon_asp import (
+    FunctionalUnit,
+    NetworkBuilder,
+    Objective,
+    ObjectNode,
+    Outcome,
+    Problem,
+    Reporter,
+    Settings,
+    Source,
+    Status,
+    solve,
+)
 from foon_asp.asp.ranking import Ranked
 from foon_asp.errors import UserError
 from foon_asp.explain import assist as module
@@ -281,18 +293,68 @@ def test_other_encodings(rule: ContainerRule) -> None:
         assert [row.success for row in found.rows] == [row.success for row in assist(problem, person).rows]
 
 
-def test_a_stop_leaves_rows_with_their_bounds() -> None:
+@pytest.mark.parametrize("constraint", [(), (Path("least_rate"),)], ids=["priced", "counted"])
+def test_a_stop_leaves_rows_with_their_bounds(
+    constraint: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whichever search a limit ends, the rows before are proved, and the last one is between its bounds."""
     problem = ways(5002, ContainerRule.STRICT)
-    everything = assist(problem)
-    assert len(everything.rows) > 1
-    for settings in (Settings(), Settings(constraints=(Path("least_rate"),), constants=("least_rate=0",))):
-        found = assist(problem, settings=settings._replace(time_limit=0))
-        assert not found.complete
-        assert len(found.rows) < len(everything.rows)
-        for row, proved in zip(found.rows, everything.rows, strict=False):
-            assert row.status in {Status.FEASIBLE, Status.UNKNOWN, Status.OPTIMAL}
-            assert (row.success or 0) <= (proved.success or 0)
-            assert row.bound is None or row.bound >= (proved.success or 0)
+    settings = Settings(constraints=constraint, constants=("least_rate=1",) if constraint else ())
+    everything = assist(problem, settings=settings)
+    assert len(everything.rows) > 2
+    left = 0
+
+    def limited(
+        problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
+    ) -> Outcome:
+        nonlocal left
+        left -= 1
+        outcome = solve(problem, objectives, settings, reporter)
+        return outcome if left >= 0 else outcome._replace(status=Status.FEASIBLE, bounds={})
+
+    monkeypatch.setattr(module, "solve", limited)
+    lengths = set()
+    for searches in range(100):
+        left = searches
+        found = assist(problem, settings=settings)
+        lengths.add(len(found.rows))
+        assert found.complete == (left >= 0)
+        if found.complete:
+            assert found == everything
+            break
+        check_stopped(found, everything)
+    assert len(lengths) > 2
+
+
+def test_a_stop_while_trees_are_looked_at_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Late(Ranked):
+        def __init__(
+            self, problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
+        ) -> None:
+            super().__init__(problem, objectives, settings._replace(time_limit=0), reporter)
+
+    seeds = range(5000, 5060, 3)
+    asked = [(ways(seed, ContainerRule.STRICT), table(seed)) for seed in seeds]
+    proved = [assist(*each) for each in asked]
+    monkeypatch.setattr(module, "Ranked", Late)
+    stopped = 0
+    for each, everything in zip(asked, proved, strict=True):
+        found = assist(*each)
+        if not found.complete:
+            check_stopped(found, everything)
+            stopped += 1
+    assert stopped >= 2
+
+
+def check_stopped(found: Assistance, everything: Assistance) -> None:
+    *before, last = found.rows
+    for row, best_row in zip(before, everything.rows, strict=False):
+        assert (row.status, row.success) == (best_row.status, best_row.success)
+    proved = everything.rows[last.most].success or Fraction(0)
+    assert (last.success or 0) <= proved
+    assert last.bound is None or proved <= last.bound
+    if before:
+        assert (last.success or 0) >= (before[-1].success or 0)
 
 
 def test_an_interruption_leaves_the_rows_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -379,3 +441,17 @@ def test_the_real_network(cli: Cli, universal: Path) -> None:
     assert successes == sorted(successes)
     assert successes[-1] == 1
     assert all(row["status"] == "optimal" and len(row["by_person"]) <= row["most"] for row in rows)
+
+
+def test_copies_of_units_have_numbers_of_their_own() -> None:
+    network = random_problem(1, ContainerRule.STRICT).network
+    for whole in (network, network.without([1])):
+        copies = whole.with_copies([2, 0])
+        assert len(copies) == len(whole) + 2
+        assert [copies.unit(len(whole) + k) for k in range(2)] == [whole.unit(2), whole.unit(0)]
+        assert copies.sources[len(whole) :] == (whole.sources[2], whole.sources[0])
+        numbers = [copies.unit_number(unit) for unit in range(len(copies))]
+        assert numbers[: len(whole)] == [whole.unit_number(unit) for unit in range(len(whole))]
+        assert numbers == sorted(set(numbers))
+        assert [copies.unit_of_number(number) for number in numbers] == list(range(len(copies)))
+        assert copies.unit_id(whole.unit(2)) == 2

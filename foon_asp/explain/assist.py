@@ -4,6 +4,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import count
 from typing import NamedTuple
 
@@ -111,7 +112,6 @@ class _Assistant:
         self._settings, self._reporter = settings, reporter
         self._first = True
         self._end = None if settings.time_limit is None else time.monotonic() + settings.time_limit
-        network = problem.network
         self._better: dict[str, Fraction] = {}
         for motion, robot in (problem.rates or {}).items():
             rate = Fraction(1) if person is None else person.get(motion, Fraction(0))
@@ -121,9 +121,6 @@ class _Assistant:
         self._priced: PricedHelp | None = None
         if settings.encodings is None and not sees_who_does_it(settings.constraints):
             self._priced = PricedHelp(problem, self._better, self._unbounded, self._ranked)
-        reached = reach(problem)
-        units = relevant(problem, reached) if self._own else sorted(reached.units)
-        self._originals = [unit for unit in units if network.motions[unit] in self._better]
         self._twins: Problem | None = None
 
     def answer(self, most: int | None, wanted: Fraction | None) -> Assistance:
@@ -154,7 +151,7 @@ class _Assistant:
                 return answered(complete=False)
             if wanted is not None and _reaches(row, wanted):
                 break
-            if last.costs is None or number >= len(self._originals) or number == most:
+            if last.costs is None or number == most:
                 break
             # a number that is asked for is answered, since with more help fewer units may do
             if row.success == last.costs.success and (most is None or _key(row.costs) == _key(last.costs)):
@@ -221,6 +218,14 @@ class _Assistant:
         if others is not None:
             bounded = Bounded(others.rules + bounded.rules, (*others.files, *bounded.files))
         return solve(self._twins, _SUCCESS, self._left._replace(bounded=bounded), self._heard())
+
+    @cached_property
+    def _originals(self) -> list[int]:
+        """The units that are there twice where those of the person are counted."""
+        problem = self._problem
+        reached = reach(problem)
+        units = relevant(problem, reached) if self._own else sorted(reached.units)
+        return [unit for unit in units if problem.network.motions[unit] in self._better]
 
     def _original(self, unit: int) -> int:
         here = len(self._problem.network)
