@@ -3,8 +3,10 @@
 import json
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise
+from math import prod
 from pathlib import Path
 
 import pytest
@@ -455,3 +457,32 @@ def test_copies_of_units_have_numbers_of_their_own() -> None:
         assert numbers == sorted(set(numbers))
         assert [copies.unit_of_number(number) for number in numbers] == list(range(len(copies)))
         assert copies.unit_id(whole.unit(2)) == 2
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_units_with_rates_of_their_own(rule: ContainerRule) -> None:
+    """The ordinary search, reductions and order of trees go by the rate of the unit, not of its motion."""
+    differing = 0
+    for seed in range(5700, 5740):
+        problem = drawn(seed, rule)
+        rng = random.Random(seed)
+        own = {u: Fraction(rng.choice(RATES)) for u in range(len(problem.network)) if rng.random() < 0.5}
+        changed = replace(problem, own_rates=own)
+        by_unit = {changed.network.unit(u): changed.rate(u) for u in range(len(changed.network))}
+        expected = min(
+            ((-prod(map(by_unit.__getitem__, tree)), len(tree)) for tree in oracle.trees(problem)),
+            default=None,
+        )
+        outcome = solve(changed, [Objective.SUCCESS])
+        ranked = next(iter(Ranked(changed, [Objective.SUCCESS], Settings())), None)
+        if expected is None or outcome.costs is None or ranked is None:
+            assert expected is None
+            assert outcome.costs is None
+            assert ranked is None
+            continue
+        for costs in (outcome.costs, ranked[1]):
+            assert costs.success is not None
+            assert (-costs.success, costs.units) == expected
+        plain = solve(problem, [Objective.SUCCESS])
+        differing += plain.costs is not None and plain.costs.success != outcome.costs.success
+    assert differing >= 5
