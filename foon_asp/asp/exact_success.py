@@ -60,8 +60,7 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
     """Scale the rates of some units of a problem."""
-    rates, motions = problem.rates or {}, problem.network.motions
-    return rate_scale({rates[motions[unit]] for unit in units})
+    return rate_scale(problem.different_rates(units))
 
 
 def _minus_log(rate: Fraction) -> Decimal:

@@ -50,6 +50,8 @@ FACT_PREDICATES = {
     "distance": 3,
     "chosen_trees": 1,
     "at_most": 3,
+    "takes_over": 2,
+    "at_most_assisted": 1,
 }
 
 OBJECTIVE_TERMS = {
@@ -72,7 +74,7 @@ def write_facts(
     of ``risk/2``; ``None`` where no rates are known. ``with_sources`` adds where each unit was read, which
     only constraints look at.
     """
-    network, rates = problem.network, problem.rates
+    network = problem.network
     number, name = network.unit_number, network.object_number
     described: dict[int, None] = {}
     lines = []
@@ -86,8 +88,8 @@ def write_facts(
         facts += [f"needs({u},{name(o)})." for o in problem.needs[unit]]
         facts += [f"output({u},{name(o)})." for o in outputs]
         facts.append(f"inputs({u},{len(inputs)}). ingredients({u},{_check(ingredients)}).")
-        if scale and rates:
-            rate = rates[network.motions[unit]]
+        if scale:
+            rate = problem.rate(unit)
             facts.append(f"rate({u},{_millionths(rate)}). risk({u},{_check(scale.weights[rate])}).")
         if with_sources:
             facts += [f"source({u},{quote(source)})." for source in _source_names(network.sources[unit])]
@@ -120,11 +122,10 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) -> str:
     """Give every unit's rate over the coprime factors of the scale."""
-    rates, motions = problem.rates or {}, problem.network.motions
     return "".join(
         f"exponent({problem.network.unit_number(unit)},{factor},{_check(exponent)}).\n"
         for unit in units
-        for factor, exponent in scale.exponents[rates[motions[unit]]].items()
+        for factor, exponent in scale.exponents[problem.rate(unit)].items()
     )
 
 
@@ -185,6 +186,12 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
         f"at_most({number},{OBJECTIVE_TERMS[objective]},{_check(bound)}).\n"
         for objective, bound in bounds.items()
     )
+
+
+def write_assisted(twins: Mapping[int, int], most: int) -> str:
+    """Say which units are a person's, each with the robot's unit that it is, and bound how many are used."""
+    facts = [f"takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
+    return "".join([*facts, f"at_most_assisted({_check(most)}).\n"])
 
 
 def write_tree(units: Collection[int]) -> str:

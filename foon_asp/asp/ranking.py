@@ -130,4 +130,4 @@ class Ranked:
     def _weight(self, unit: int) -> int:
         if self._scale is None:
             return 0
-        return self._scale.weights[(self.problem.rates or {})[self.problem.network.motions[unit]]]
+        return self._scale.weights[self.problem.rate(unit)]

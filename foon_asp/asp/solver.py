@@ -234,9 +234,9 @@ class _Solver:
         while True:
             # A better product has a weight of at most W + n - 1, where n units of the tree weigh less
             # than their logarithm (all but those of rate 1).
-            inexact = sum(self._rate(unit) != 1 for unit in chosen)
+            inexact = sum(self.problem.rate(unit) != 1 for unit in chosen)
             band = self._weight(chosen) + inexact - 1
-            seen += write_seen(number, scale.product_exponents(map(self._rate, rival)))
+            seen += write_seen(number, scale.product_exponents(map(self.problem.rate, rival)))
             number += 1
             mode = ",".join(["opt", *map(str, fixed), str(band)])
             ended = self._run((*before, Objective.SUCCESS), exponents + seen, mode)
@@ -249,7 +249,7 @@ class _Solver:
                 chosen = rival
         if not after:
             return chosen, True
-        wanted = write_wanted(scale.product_exponents(map(self._rate, chosen)))
+        wanted = write_wanted(scale.product_exponents(map(self.problem.rate, chosen)))
         ended = self._run((*before, *after), exponents + wanted)
         if ended.exhausted and ended.units is None:
             raise BugError("the best product of success rates was lost")
@@ -285,12 +285,9 @@ class _Solver:
             return one
         return min(other, one, key=lambda units: self.problem.costs(units).key(self.levels))
 
-    def _rate(self, unit: int) -> Fraction:
-        return (self.problem.rates or {})[self.problem.network.motions[unit]]
-
     def _weight(self, units: Iterable[int]) -> int:
         weights = self.scale.weights if self.scale else {}
-        return sum(weights[self._rate(unit)] for unit in units)
+        return sum(weights[self.problem.rate(unit)] for unit in units)
 
     def _success(self, units: Units) -> Fraction:
         return self.problem.costs(units).success or Fraction(0)

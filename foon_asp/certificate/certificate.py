@@ -67,10 +67,12 @@ def certify(
     is not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
     trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
     each, that are tried first: :attr:`foon_asp.asp.Outcome.cuts`. ``None`` where nothing is found before
-    ``expired`` says so, for ``success`` with rates of 0, and where products of rates are too close to be
-    compared.
+    ``expired`` says so, for ``success`` with rates of 0 or with rates that are not those of the motions, and
+    where products of rates are too close to be compared.
     """
-    if Objective.SUCCESS in objectives and not all((problem.rates or {})[m] for m in problem.network.motions):
+    if Objective.SUCCESS in objectives and (
+        problem.own_rates or not all(map(problem.rate, range(len(problem.network))))
+    ):
         return None
     guide = tuple(units)
     for count in range(len(objectives), 0, -1):

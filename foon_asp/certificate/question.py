@@ -69,13 +69,12 @@ class Question:
         return {"item": sorted(self.items)[action - len(self.problem.network)]}
 
     def _rates(self) -> Iterable[Fraction]:
-        rates = self.problem.rates or {}
-        return (rates[motion] for motion in self.problem.network.motions)
+        return map(self.problem.rate, range(len(self.problem.network)))
 
     def _cost(self, unit: int, known: dict[object, Vector]) -> Vector:
         network = self.problem.network
         inputs = network.inputs[unit]
-        rate = (self.problem.rates or {}).get(network.motions[unit]) if self.rates else None
+        rate = self.problem.rate(unit) if self.rates else None
         ingredients = 0
         if Objective.INPUTS_AND_INGREDIENTS in self.objectives:
             ingredients = sum(len(network.objects[o].ingredients) for o in inputs)

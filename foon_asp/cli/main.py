@@ -29,6 +29,7 @@ _VERBS = (
     "pareto",
     "regret",
     "menu",
+    "assist",
     "diff",
     "constraints",
     "facts",

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable
-from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.problem import Objective, Problem
@@ -52,7 +51,7 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
     network = problem.network
     inputs = network.inputs[unit]
     if objective is Objective.SUCCESS:
-        rate = Fraction((problem.rates or {})[network.motions[unit]])
+        rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
     if objective is Objective.INPUTS_AND_INGREDIENTS:
         return len(inputs) + sum(len(network.objects[o].ingredients) for o in inputs)

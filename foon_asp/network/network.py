@@ -5,6 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeVar
 
 from foon_asp.network.functional_unit import FunctionalUnit
 from foon_asp.network.node_pattern import NodePattern
@@ -13,6 +14,8 @@ from foon_asp.network.source import Source
 
 # motion, ids of the inputs, ids of the outputs: the identity of a unit within one network
 UnitKey = tuple[str, frozenset[int], frozenset[int]]
+
+_Part = TypeVar("_Part")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +105,28 @@ class Network:
             _unit_ids={key: places[unit] for key, unit in self._unit_ids.items() if unit in places},
             stands_for=tuple(self.stands_for[unit] for unit in kept) if self.stands_for else (),
             unit_numbers=tuple(self.unit_number(unit) for unit in kept),
+        )
+
+    def with_copies(self, units: Sequence[int]) -> "Network":
+        """Give the same network with some units a second time, after all others and in the order given.
+
+        Only the ids tell a copy from its unit: asked for by what it is, a unit is the one with the lower id.
+        """
+
+        def extended(of_units: tuple[_Part, ...]) -> tuple[_Part, ...]:
+            return (*of_units, *(of_units[unit] for unit in units)) if of_units else ()
+
+        numbers = self.unit_numbers
+        if numbers:
+            numbers += tuple(range(numbers[-1] + 1, numbers[-1] + 1 + len(units)))
+        return replace(
+            self,
+            motions=extended(self.motions),
+            inputs=extended(self.inputs),
+            outputs=extended(self.outputs),
+            sources=extended(self.sources),
+            stands_for=extended(self.stands_for),
+            unit_numbers=numbers,
         )
 
     @cached_property

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
@@ -18,7 +18,8 @@ class Problem:
 
     ``kitchen`` and ``goals`` are object node ids of ``network``; all goals have to be made by one tree.
     ``rates`` gives the success rate of every motion, or is ``None`` where none are known. ``utensils``
-    are the labels that the rule ``implied`` looks at.
+    are the labels that the rule ``implied`` looks at. ``own_rates`` gives, by id, the rates of units that
+    do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any.
     """
 
     network: Network
@@ -27,6 +28,7 @@ class Problem:
     rates: Mapping[str, Fraction] | None
     utensils: frozenset[str]
     containers: ContainerRule = ContainerRule.STRICT
+    own_rates: Mapping[int, Fraction] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not self.goals:
@@ -46,6 +48,24 @@ class Problem:
         """For each unit, the ids of the inputs that the container rule asks for."""
         return network_needs(self.network, self.containers, self.utensils)
 
+    def rate(self, unit: int) -> Fraction:
+        """Give the success rate of a unit: its own where it has one, else that of its motion.
+
+        Raises ``ValueError`` where no rates are known.
+        """
+        if self.rates is None:
+            raise ValueError("no success rates are known")
+        if unit in self.own_rates:
+            return self.own_rates[unit]
+        return self.rates[self.network.motions[unit]]
+
+    def different_rates(self, units: Iterable[int]) -> set[Fraction]:
+        """Give the rates that some units have, each once; raises ``ValueError`` where none are known."""
+        own, motions = self.own_rates, self.network.motions
+        units = list(units)
+        first = {motions[unit]: unit for unit in units if unit not in own}
+        return {self.rate(unit) for unit in (*first.values(), *(unit for unit in units if unit in own))}
+
     def tree(self, units: Iterable[int]) -> TaskTree:
         """Give units, by id and in the order given, as a tree."""
         return TaskTree(tuple(self.network.unit(unit) for unit in units))
@@ -60,9 +80,7 @@ class Problem:
             inputs=sum(len(network.inputs[unit]) for unit in chosen),
             ingredients=sum(len(network.objects[o].ingredients) for u in chosen for o in network.inputs[u]),
             kitchen=len(taken),
-            success=None
-            if self.rates is None
-            else math.prod((self.rates[network.motions[unit]] for unit in chosen), start=Fraction(1)),
+            success=None if self.rates is None else math.prod(map(self.rate, chosen), start=Fraction(1)),
         )
 
 

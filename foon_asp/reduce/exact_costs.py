@@ -31,13 +31,10 @@ class ExactCosts:
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
         self._problem, self._objectives = problem, tuple(objectives)
-        network = problem.network
-        self._units = units = len(network)
-        self._rates = problem.rates or {}
+        self._units = units = len(problem.network)
         self._weights: dict[Fraction, int] = {}
         if Objective.SUCCESS in objectives:
-            motions = {network.motions[a] for a in actions if a < units}
-            self._weights = _weights({self._rates[motion] for motion in motions})
+            self._weights = _weights(problem.different_rates(a for a in actions if a < units))
         self._factors: list[int] = []
         factor = 1
         self.doubt = 0
@@ -121,14 +118,13 @@ class ExactCosts:
         """Give the rate of an action; taking an item from the kitchen never fails."""
         if action >= self._units:
             return Fraction(1)
-        return self._rates[self._problem.network.motions[action]]
+        return self._problem.rate(action)
 
     def _figure(self, objective: Objective, action: int) -> int:
-        network = self._problem.network
         if action >= self._units:
             return int(objective is Objective.KITCHEN)
         if objective is Objective.SUCCESS:
-            return self._weights[self._rates[network.motions[action]]]
+            return self._weights[self._problem.rate(action)]
         return _count(problem=self._problem, objective=objective, unit=action)
 
 
@@ -173,19 +169,23 @@ class CoarseCosts:
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
         self._by_motion: dict[str, int] = {}
+        self._by_unit: dict[int, int] = {}
         if objective is Objective.SUCCESS:
-            self._by_motion = {
-                motion: int(-math.log(rate) * _COARSE) if rate > 0 else 100 * _COARSE
-                for motion, rate in (problem.rates or {}).items()
-            }
+            self._by_motion = {motion: _coarse(rate) for motion, rate in (problem.rates or {}).items()}
+            self._by_unit = {unit: _coarse(rate) for unit, rate in problem.own_rates.items()}
 
     def __call__(self, action: int) -> int:
         """Give about what an action costs."""
         if action >= len(self._problem.network):
             return int(self._objective is Objective.KITCHEN)
         if self._objective is Objective.SUCCESS:
-            return self._by_motion[self._problem.network.motions[action]]
+            own = self._by_unit.get(action)
+            return self._by_motion[self._problem.network.motions[action]] if own is None else own
         return _count(self._problem, self._objective, action)
+
+
+def _coarse(rate: Fraction) -> int:
+    return int(-math.log(rate) * _COARSE) if rate > 0 else 100 * _COARSE
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:

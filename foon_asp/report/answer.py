@@ -182,16 +182,20 @@ def _bound_line(outcome: Outcome) -> str:
     return "proved so far: " + (", ".join(bounds) or "nothing")
 
 
-def steps(problem: Problem, units: tuple[int, ...], bought: Collection[int] = ()) -> Iterator[str]:
+def steps(
+    problem: Problem, units: tuple[int, ...], bought: Collection[int] = (), helped: Collection[int] = ()
+) -> Iterator[str]:
     """Number the units, and say of every input whether it is from the kitchen or from which step.
 
-    ``bought`` are the items of the kitchen, by id, that were not there before. In a list that does not
-    execute as it is, a needed input may be made by later steps only, or by none.
+    ``bought`` are the items of the kitchen, by id, that were not there before, and ``helped`` the units that
+    a person does. In a list that does not execute as it is, a needed input may be made by later steps only,
+    or by none.
     """
     network = problem.network
     maker: dict[int, int] = {}
     for number, unit in enumerate(units, 1):
-        yield f"{number:>3}  {network.motions[unit]}    [{network.sources[unit][0]}]"
+        who = "    by the person" if unit in helped else ""
+        yield f"{number:>3}  {network.motions[unit]}    [{network.sources[unit][0]}]{who}"
         for o in network.inputs[unit]:
             if o in problem.kitchen:
                 origin = "bought" if o in bought else "kitchen"

@@ -13,13 +13,12 @@ def greedy_success(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
     Locally best, and no more: the product over the tree may be far from the greatest, and the tree may
     not execute. Raises :class:`UserError` where no rates are known.
     """
-    rates, motions = problem.rates, problem.network.motions
-    if rates is None:
+    if problem.rates is None:
         raise UserError("the search by success rate needs a rates file (--rates)")
 
     def choose(candidates: Sequence[int]) -> int:
-        best = max(rates[motions[unit]] for unit in candidates)
-        equal = [unit for unit in candidates if rates[motions[unit]] == best]
+        best = max(map(problem.rate, candidates))
+        equal = [unit for unit in candidates if problem.rate(unit) == best]
         return equal[0 if ties is Ties.FIRST else -1]
 
     return backward(problem, choose)

@@ -1,0 +1,31 @@
+"""Units that are a person's: a bound on how many a tree has, and constraints that look at them."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from foon_asp.asp.facts import write_assisted
+from foon_asp.asp.program import Bounded, find_constraint
+from foon_asp.resources import encodings_folder
+
+_OF_DOERS = {("rate", 2), ("risk", 2), ("takes_over", 2), ("by_person", 1)}
+
+
+def assisted(twins: Mapping[int, int], most: int) -> Bounded:
+    """Ask for trees in which a person does at most so many units, and no unit is done twice.
+
+    ``twins`` gives for each unit that is a person's the same unit as the robot does it, both by their ids in
+    the whole network. For :class:`foon_asp.asp.Settings`.
+    """
+    return Bounded(write_assisted(twins, most), (encodings_folder() / "questions" / "assist.lp",))
+
+
+def sees_who_does_it(constraints: Sequence[Path]) -> bool:
+    """Whether constraints look at who does a unit: at success rates, or at units that are a person's.
+
+    ``constraints`` are paths or names of ours. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
+    """
+    if not constraints:
+        return False
+    from foon_asp.asp.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
+
+    return any(_OF_DOERS & read_encoding(find_constraint(file)).used.keys() for file in constraints)

@@ -1,0 +1,285 @@
+"""With a person's help: the best success when a person does up to so many of the units."""
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import count
+from typing import NamedTuple
+
+from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
+from foon_asp.asp.assisted import assisted, sees_who_does_it
+from foon_asp.asp.program import Bounded
+from foon_asp.asp.ranking import Ranked
+from foon_asp.errors import UserError
+from foon_asp.explain.priced_help import PricedHelp
+from foon_asp.problem import Costs, Objective, Problem, reach, relevant
+
+_SUCCESS = (Objective.SUCCESS,)
+_TREES = 200  # that are looked at one by one before units are counted
+
+
+class Assisted(NamedTuple):
+    """The best tree of which a person does at most ``most`` units.
+
+    ``units`` are unit ids in an order that executes, ``helped`` those that the person does, and ``costs``
+    what the tree costs, the person's rates included; without a tree they are ``None``, empty and ``None``.
+    ``bound`` is what no such tree succeeds more often than, as far as it is proved.
+    """
+
+    most: int
+    status: Status
+    units: tuple[int, ...] | None
+    helped: frozenset[int]
+    costs: Costs | None
+    bound: Fraction | None
+
+    @property
+    def success(self) -> Fraction | None:
+        """The product of the rates of those who do the units; ``None`` without a tree."""
+        return None if self.costs is None else self.costs.success
+
+
+class Assistance(NamedTuple):
+    """The best trees with at most 0, 1, 2, ... units done by a person, in this order.
+
+    ``person`` has the rates of the motions that the person can do, or is ``None`` for one who never fails.
+    ``greatest`` is the best success with any number of them, ``None`` where there is no tree at all and where
+    a limit came first. ``wanted`` is the success that was to be reached, if one was. ``complete`` says that
+    every row is proved and none is left out of what was asked for.
+    """
+
+    problem: Problem
+    person: Mapping[str, Fraction] | None
+    rows: tuple[Assisted, ...]
+    greatest: Fraction | None
+    wanted: Fraction | None
+    complete: bool
+
+    @property
+    def smallest(self) -> int | None:
+        """The fewest units to be done by a person for the wanted success; ``None`` where no row has it."""
+        if self.wanted is None:
+            return None
+        return next((row.most for row in self.rows if _reaches(row, self.wanted)), None)
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether more help than that of the last row changes nothing."""
+        return bool(self.rows) and self.greatest is not None and self.rows[-1].success == self.greatest
+
+
+def assist(
+    problem: Problem,
+    person: Mapping[str, Fraction] | None = None,
+    most: int | None = None,
+    wanted: Fraction | None = None,
+    settings: Settings | None = None,
+    reporter: Reporter | None = None,
+) -> Assistance:
+    """Find the greatest success when a person does at most 0, 1, 2, ... of a tree's units.
+
+    ``person`` gives the rates of the motions that the person can do; without it, all of them, without ever
+    failing. The person takes over only what has a greater rate than the robot's. Among trees that succeed as
+    often one with the fewest units is best. The rows end with ``most``, with the first that succeeds as often
+    as ``wanted``, or where more help changes nothing.
+
+    The question is that of the weighted FOON, a tree with M human-assisted motions (Paulius, Dong and Sun,
+    Task planning with a weighted functional object-oriented network, 2021), answered for all trees. The time
+    limit is for everything. Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rates of 0.
+    """
+    _check_rates(problem, person)
+    return _Assistant(problem, person, settings or Settings(), reporter or Reporter()).answer(most, wanted)
+
+
+class _Assistant:
+    """A problem, and what the person does better than the robot.
+
+    Where nothing looks at who does a unit, :class:`PricedHelp` answers for each number of units. Where a
+    constraint does, and where too many trees are nearly as good, units that the person does better are there
+    twice, and the person's are counted.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        person: Mapping[str, Fraction] | None,
+        settings: Settings,
+        reporter: Reporter,
+    ) -> None:
+        self._problem, self._person = problem, person
+        self._settings, self._reporter = settings, reporter
+        self._first = True
+        self._end = None if settings.time_limit is None else time.monotonic() + settings.time_limit
+        self._better: dict[str, Fraction] = {}
+        for motion, robot in (problem.rates or {}).items():
+            rate = Fraction(1) if person is None else person.get(motion, Fraction(0))
+            if rate > robot:
+                self._better[motion] = rate
+        self._own = not settings.constraints and settings.encodings is None
+        self._priced: PricedHelp | None = None
+        if settings.encodings is None and not sees_who_does_it(settings.constraints):
+            self._priced = PricedHelp(problem, self._better, self._unbounded, self._ranked)
+        self._twins: Problem | None = None
+
+    def answer(self, most: int | None, wanted: Fraction | None) -> Assistance:
+        """Solve the question for one number after another."""
+        rows: list[Assisted] = []
+        last: Outcome | None = None  # with any number of units done by the person
+
+        def answered(complete: bool) -> Assistance:
+            greatest = None if last is None or last.costs is None else last.costs.success
+            return Assistance(self._problem, self._person, tuple(rows), greatest, wanted, complete)
+
+        for number in count():
+            try:
+                row = self._row(number)
+                if rows:
+                    row = _beside(row, rows[-1], last)
+                rows.append(row)
+                if row.status in {Status.FEASIBLE, Status.UNKNOWN}:
+                    return answered(complete=False)
+                if last is None:
+                    best = self._unlimited()
+                    if best.status in {Status.FEASIBLE, Status.UNKNOWN}:
+                        return answered(complete=False)
+                    last = best
+            except KeyboardInterrupt:
+                if not rows:
+                    raise
+                return answered(complete=False)
+            if wanted is not None and _reaches(row, wanted):
+                break
+            if last.costs is None or number == most:
+                break
+            # a number that is asked for is answered, since with more help fewer units may do
+            if row.success == last.costs.success and (most is None or _key(row.costs) == _key(last.costs)):
+                break
+        return answered(complete=True)
+
+    def _row(self, most: int) -> Assisted:
+        priced = self._priced
+        if priced is None:
+            return self._outcome_row(most, self._counted(most))
+        if most == 0:
+            return self._outcome_row(most, self._unbounded(self._problem))
+        found = priced.best(most, _TREES if self._own else None)
+        if found is not None:
+            return self._priced_row(most, Status.OPTIMAL, found)
+        if self._own and not priced.stopped:
+            row = self._outcome_row(most, self._counted(most))
+        else:
+            row = Assisted(most, Status.UNKNOWN, None, frozenset(), None, None)
+        if row.status is Status.OPTIMAL:
+            return row
+        known = priced.good(most)
+        if known is not None:
+            other = self._priced_row(most, Status.FEASIBLE, known)
+            row = other if row.costs is None or _key(other.costs) < _key(row.costs) else row
+        bounds = [bound for bound in (row.bound, priced.bound(most)) if bound is not None]
+        return row._replace(bound=min(bounds, default=None))
+
+    def _priced_row(self, most: int, status: Status, units: tuple[int, ...]) -> Assisted:
+        assert self._priced is not None
+        costs = self._priced.costs(units, most)
+        bound = costs.success if status is Status.OPTIMAL else None
+        return Assisted(most, status, units, self._priced.helped(units, most), costs, bound)
+
+    def _outcome_row(self, most: int, outcome: Outcome) -> Assisted:
+        bound = outcome.bounds.get(Objective.SUCCESS)
+        units = outcome.units
+        return Assisted(
+            most,
+            outcome.status,
+            None if units is None else tuple(map(self._original, units)),
+            frozenset(self._original(u) for u in units or () if u >= len(self._problem.network)),
+            outcome.costs,
+            None if bound is None else Fraction(bound),
+        )
+
+    def _unlimited(self) -> Outcome:
+        """Solve with any number of units done by the person: then all that he or she is better at are."""
+        if self._priced is None:
+            return self._counted(len(self._originals))
+        return self._unbounded(replace(self._problem, rates={**(self._problem.rates or {}), **self._better}))
+
+    def _counted(self, most: int) -> Outcome:
+        network = self._problem.network
+        if self._twins is None:
+            copies = network.with_copies(self._originals)
+            own = {len(network) + k: self._better[network.motions[u]] for k, u in enumerate(self._originals)}
+            self._twins = replace(self._problem, network=copies, own_rates=own)
+        number = self._twins.network.unit_number
+        bounded = assisted(
+            {number(twin): number(self._original(twin)) for twin in self._twins.own_rates}, most
+        )
+        others = self._settings.bounded
+        if others is not None:
+            bounded = Bounded(others.rules + bounded.rules, (*others.files, *bounded.files))
+        return solve(self._twins, _SUCCESS, self._left._replace(bounded=bounded), self._heard())
+
+    @cached_property
+    def _originals(self) -> list[int]:
+        """The units that are there twice where those of the person are counted."""
+        problem = self._problem
+        reached = reach(problem)
+        units = relevant(problem, reached) if self._own else sorted(reached.units)
+        return [unit for unit in units if problem.network.motions[unit] in self._better]
+
+    def _original(self, unit: int) -> int:
+        here = len(self._problem.network)
+        return unit if unit < here else self._originals[unit - here]
+
+    def _unbounded(self, problem: Problem) -> Outcome:
+        return solve(problem, _SUCCESS, self._left, self._heard())
+
+    def _ranked(self, problem: Problem) -> Ranked:
+        return Ranked(problem, _SUCCESS, self._left, self._heard())
+
+    @property
+    def _left(self) -> Settings:
+        """The settings, with the time that is left."""
+        seconds = None if self._end is None else max(0.0, self._end - time.monotonic())
+        return self._settings._replace(time_limit=seconds)
+
+    def _heard(self) -> Reporter:
+        """Give the reporter to the first search: what it warns of all do, and others ask another thing."""
+        reporter = self._reporter if self._first else Reporter()
+        self._first = False
+        return reporter
+
+
+def _beside(row: Assisted, before: Assisted, unlimited: Outcome | None) -> Assisted:
+    """Put into a row what is known from the one before and from the best with any number of units.
+
+    A tree with less help is one with more, and the one to keep where it is as good.
+    """
+    if before.costs is not None and (row.costs is None or _key(before.costs) <= _key(row.costs)):
+        status = row.status if row.status is Status.OPTIMAL else Status.FEASIBLE
+        row = before._replace(most=row.most, status=status, bound=row.bound)
+    if unlimited is not None and unlimited.costs is not None and row.status is not Status.INFEASIBLE:
+        bounds = [bound for bound in (row.bound, unlimited.costs.success) if bound is not None]
+        row = row._replace(bound=min(bounds))
+    return row
+
+
+def _key(costs: Costs | None) -> tuple[int | Fraction, ...]:
+    return () if costs is None else costs.key((Objective.SUCCESS, Objective.UNITS))
+
+
+def _reaches(row: Assisted, wanted: Fraction) -> bool:
+    return row.success is not None and row.success >= wanted
+
+
+def _check_rates(problem: Problem, person: Mapping[str, Fraction] | None) -> None:
+    if problem.rates is None:
+        raise UserError(
+            "the success with help needs the success rates of the motions; give a rates file with --rates"
+        )
+    of_person: Sequence[tuple[str, Fraction]] = [] if person is None else list(person.items())
+    for motion, rate in (*problem.rates.items(), *of_person):
+        if not 0 < rate <= 1:
+            raise UserError(
+                f"found the success rate {rate} of {motion!r}, expected one above 0 and at most 1"
+            )
