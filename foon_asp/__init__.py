@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from foon_asp.api.alternatives import Alternatives, alternatives
     from foon_asp.api.answer import Answer, SoftAnswer, solve, solve_soft
+    from foon_asp.api.assist import Assistance, assist
     from foon_asp.api.certified import Certified, VerifiedCertificate, certify, verify
     from foon_asp.api.check import Checked, check
     from foon_asp.api.clash import Clash, clash
@@ -44,6 +45,7 @@ __version__ = "0.1.0"
 _ROOMS = {
     "api.alternatives": ("Alternatives", "alternatives"),
     "api.answer": ("Answer", "SoftAnswer", "solve", "solve_soft"),
+    "api.assist": ("Assistance", "assist"),
     "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
     "api.check": ("Checked", "check"),
     "api.clash": ("Clash", "clash"),
@@ -70,6 +72,7 @@ _ROOMS = {
 __all__ = [
     "Alternatives",
     "Answer",
+    "Assistance",
     "BugError",
     "Certified",
     "Checked",
@@ -106,6 +109,7 @@ __all__ = [
     "Verdict",
     "VerifiedCertificate",
     "alternatives",
+    "assist",
     "certify",
     "check",
     "clash",

@@ -8,7 +8,7 @@ import random
 import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
-from dataclasses import FrozenInstanceError
+from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -131,6 +131,13 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
         lambda p: foon_asp.regret(p, "success", units=[3]),
     ),
     "menu": (["menu"], ["ice", "tea"], "strict", foon_asp.menu),
+    "assist": (["assist"], ["macaroni"], "implied", foon_asp.assist),
+    "assist, and a success to reach": (
+        ["assist", "--reach", "0.95", "--constraint", "forbid_motion", *CONSTANT],
+        ["ice"],
+        "strict",
+        lambda p: foon_asp.assist(p, reach=0.95, constraints="forbid_motion", **CRUSH),
+    ),
     "pareto": (["pareto"], ["whipped cream"], "implied", foon_asp.pareto),
     "pareto under a constraint": (
         ["pareto", "--objective", "units,kitchen", "--constraint", "forbid_motion", *CONSTANT],
@@ -196,6 +203,32 @@ def test_prices_from_a_file_and_by_name(foon: Foon, tmp_path: Path) -> None:
     assert by_name.lists[0].price == 6
     with pytest.warns(FoonWarning, match="no node that one can buy has this label: unicorn"):
         foon_asp.shopping_list(problem, prices={**prices, "unicorn": 1})
+
+
+def test_rates_of_single_units_stay_when_a_problem_varies(foon: Foon) -> None:
+    problem = foon.problem("ice")
+    units = foon_asp.solve(problem).units
+    assert units is not None
+    sure = replace(problem, own_rates=dict.fromkeys(units, Fraction(1)))
+    varied = [sure.vary(containers="implied"), sure.vary(goals="tea")]
+    found = [foon_asp.solve(each, "success").costs for each in varied]
+    assert [costs is not None and costs.success == 1 for costs in found] == [True, False]
+
+
+def test_help_takes_rates_by_motion_and_from_a_file(foon: Foon, tmp_path: Path) -> None:
+    problem = foon.problem("ice")
+    file = tmp_path / "person.txt"
+    file.write_text("crush\t0.95\n")
+    by_motion = foon_asp.assist(problem, person={"crush": "0.95"})
+    assert by_motion.json() == foon_asp.assist(problem, person=file).json()
+    assert by_motion.rows[1].success == by_motion.greatest
+    assert [len(tree or ()) for tree in by_motion.task_trees] == [
+        len(row.units or ()) for row in by_motion.rows
+    ]
+    with pytest.warns(FoonWarning, match="the motion 'fly' has no rate for the robot"):
+        foon_asp.assist(problem, person={"fly": 1})
+    with pytest.raises(UserError, match="found 0 for the success to reach, expected a number above 0"):
+        foon_asp.assist(problem, reach=0)
 
 
 def test_the_chart_of_a_front(foon: Foon, tmp_path: Path) -> None:
@@ -577,7 +610,7 @@ FAULTS: dict[str, tuple[Callable[[Foon], object], str]] = {
     ),
     "rate": (
         lambda f: f.vary(rates={"crush": 1.5}),
-        "found the success rate 1.5 of 'crush', expected one above",
+        "found 1.5 for the success rate of 'crush', expected a number above 0",
     ),
     "number": (
         lambda f: f.vary(rates={"crush": "much"}),

@@ -90,6 +90,14 @@ def exact(given: Number, what: str) -> Fraction:
         raise UserError(f"found {given!r} for {what}, expected a number such as '0.85'") from None
 
 
+def success_rate(given: Number, what: str) -> Fraction:
+    """Read an exact success rate."""
+    rate = exact(given, what)
+    if not 0 < rate <= 1:
+        raise UserError(f"found {given} for {what}, expected a number above 0 and at most 1")
+    return rate
+
+
 def at_least(number: int, least: int, what: str) -> int:
     """Hold that a number is large enough."""
     if number < least:

@@ -6,7 +6,7 @@ from fractions import Fraction
 from os import PathLike
 from pathlib import Path
 
-from foon_asp.api.arguments import File, Files, Number, container_rule, exact, files
+from foon_asp.api.arguments import File, Files, Number, container_rule, files, success_rate
 from foon_asp.api.problem import Problem, taken
 from foon_asp.api.warning import warn
 from foon_asp.errors import UserError
@@ -227,11 +227,7 @@ class Foon:
             return known
         rates = dict(known or {})
         for motion, given in changed.items():
-            rate = exact(given, f"the success rate of {motion!r}")
-            if not 0 < rate <= 1:
-                raise UserError(
-                    f"found the success rate {given} of {motion!r}, expected one above 0 and at most 1"
-                )
+            rate = success_rate(given, f"the success rate of {motion!r}")
             if known is not None and motion not in known:
                 near = difflib.get_close_matches(motion, known, n=3, cutoff=0.6)
                 similar = f"; similar are {', '.join(map(repr, near))}" if near else ""

@@ -1,7 +1,7 @@
 """One question, ready to be asked, and cheap to vary."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -75,7 +75,12 @@ class Problem(plain.Problem):
             ids = tuple(self.network.object_number(goal) for goal in self.goals)
         else:
             ids = foon.goal_ids(goals)
-        return foon.pose(ids, self.containers if containers is None else containers)
+        posed = foon.pose(ids, self.containers if containers is None else containers)
+        if not self.own_rates:
+            return posed
+        numbered = {self.network.unit_number(unit): rate for unit, rate in self.own_rates.items()}
+        own = {posed.network.unit_of_number(number): rate for number, rate in numbered.items()}
+        return replace(posed, own_rates={unit: rate for unit, rate in own.items() if unit is not None})
 
     def at_hand(self, node: ObjectNode) -> bool:
         """Whether the kitchen has an object node."""
