@@ -93,6 +93,7 @@ def _child(work: Work, writing: int) -> None:
         os.write(writing, b"started\n")
         began[0] = time.perf_counter()
 
+    gc.set_threshold(100_000, 50, 50)  # as the command line has it, for all
     try:
         os.setsid()
         said = work(start)

@@ -77,6 +77,7 @@ class _Solver:
         self.seconds: dict[str, float] = {}
         self._facts: str | None = None
         self._best: Costs | None = None  # the best tree reported
+        self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
         if Objective.SUCCESS in self.levels and problem.rates is None:
             raise UserError(
                 "the objective success needs the success rates of the motions; give a rates file with --rates"
@@ -160,7 +161,7 @@ class _Solver:
         """
         if self.reduced is None or self.program.bounded or Reduction.BOUNDS not in self.settings.reductions:
             return "opt", False
-        costs = self.problem.costs(incumbent)
+        costs = self._costs(incumbent)
         if Objective.SUCCESS in self.levels:
             before = self.levels[: self.levels.index(Objective.SUCCESS)]
             return ",".join(["opt", *(str(costs.measure(o)) for o in before)]), False
@@ -173,7 +174,7 @@ class _Solver:
         return ",".join(["opt", *map(str, figures)]), True
 
     def _optimal(self, units: Units) -> Outcome:
-        costs = self.problem.costs(units)
+        costs = self._costs(units)
         return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
 
     def facts(self) -> str:
@@ -229,7 +230,7 @@ class _Solver:
         before, after = self.levels[:place], self.levels[place + 1 :]
         exponents = write_exponents(self.problem, self.units, scale)
         seen = ""
-        fixed = [self.problem.costs(best).measure(objective) for objective in before]
+        fixed = [self._costs(best).measure(objective) for objective in before]
         chosen, rival, number = best, best, 0
         while True:
             # A better product has a weight of at most W + n - 1, where n units of the tree weigh less
@@ -262,7 +263,7 @@ class _Solver:
         """
         if ended.units is None:
             return False
-        costs = self.problem.costs(ended.units)
+        costs = self._costs(ended.units)
         weights = [
             self._weight(ended.units) if objective is Objective.SUCCESS else costs.measure(objective)
             for objective in self.levels
@@ -283,14 +284,20 @@ class _Solver:
     def _better(self, one: Units, other: Units | None) -> Units:
         if other is None:
             return one
-        return min(other, one, key=lambda units: self.problem.costs(units).key(self.levels))
+        return min(other, one, key=lambda units: self._costs(units).key(self.levels))
 
     def _weight(self, units: Iterable[int]) -> int:
         weights = self.scale.weights if self.scale else {}
         return sum(weights[self.problem.rate(unit)] for unit in units)
 
+    def _costs(self, units: Units) -> Costs:
+        """Give what units cost, worked out once for a tree in hand."""
+        if self._costed is None or self._costed[0] != units:
+            self._costed = units, self.problem.costs(units)
+        return self._costed[1]
+
     def _success(self, units: Units) -> Fraction:
-        return self.problem.costs(units).success or Fraction(0)
+        return self._costs(units).success or Fraction(0)
 
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
@@ -324,7 +331,7 @@ class _Solver:
         return bounds
 
     def _report_tree(self, units: Units) -> None:
-        costs = self.problem.costs(units)
+        costs = self._costs(units)
         if self._best is None or costs.key(self.levels) < self._best.key(self.levels):
             self._best = costs
             self.reporter.tree(costs)
@@ -369,7 +376,7 @@ class _Solver:
                 raise BugError(message)
             raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
         self._spent("check", began)
-        costs = problem.costs(listed)
+        costs = self._costs(units)
         cuts = self.reduced.cuts.cuts if self.reduced and self.reduced.cuts else ()
         return Outcome(
             problem,

@@ -78,7 +78,12 @@ class Problem:
         return Costs(
             units=len(chosen),
             inputs=sum(len(network.inputs[unit]) for unit in chosen),
-            ingredients=sum(len(network.objects[o].ingredients) for u in chosen for o in network.inputs[u]),
+            ingredients=sum(
+                len(contents.ingredients)
+                for unit in chosen
+                for o in network.inputs[unit]
+                for contents in network.objects[o].contents
+            ),
             kitchen=len(taken),
             success=None if self.rates is None else math.prod(map(self.rate, chosen), start=Fraction(1)),
         )
