@@ -2,11 +2,14 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    from foon_asp.asp.session import Session
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
@@ -31,6 +34,9 @@ _RESERVED = (
     "--version",
 )
 
+# Predicates of a search and not of its question: programs that are kept have them otherwise.
+_OF_ONE_SEARCH = frozenset(("agrees", "exponent", "optimize", "product", "seen", "wanted"))
+
 
 class Relaxed(NamedTuple):
     """Constraint files that are loaded in other words.
@@ -51,7 +57,7 @@ class Settings(NamedTuple):
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
     interrupted. ``reductions`` come before the search, unless there are constraints or other encodings.
-    ``relaxed`` are constraints in other words.
+    ``relaxed`` are constraints in other words. ``session`` keeps ground programs for the next question.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -61,6 +67,7 @@ class Settings(NamedTuple):
     time_limit: float | None = None
     reductions: frozenset[Reduction] = ALL
     relaxed: Relaxed | None = None
+    session: "Session | None" = None
 
 
 class Program(NamedTuple):
@@ -68,7 +75,9 @@ class Program(NamedTuple):
 
     ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates
     are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
-    matter.
+    matter. ``looked_at`` are the names of the predicates that rules of the user's look at. ``text`` is all
+    that the files said when they were looked over. ``open`` says that the program means the same when facts
+    are left open (:mod:`foon_asp.asp.session`).
     """
 
     files: tuple[Path, ...]
@@ -76,6 +85,9 @@ class Program(NamedTuple):
     arguments: tuple[str, ...]
     own: bool
     rules: str = ""
+    looked_at: frozenset[str] = frozenset()
+    text: str = ""
+    open: bool = False
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
@@ -94,6 +106,8 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         loaded = (*(file for file in added if file not in relaxed.files), relaxed.encoding)
         added = tuple(dict.fromkeys((*added, *relaxed.files)))
     constants: list[str] = []
+    looked_at: frozenset[str] = frozenset()
+    text, is_open = "", False
     if added or settings.encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
@@ -106,12 +120,23 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         for message in encoding.unset_constants(extra, settings.constants):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
+        looked_at = frozenset(name for each in extra for name, _ in each.used)
+        text = "\n".join(each.text for each in (*parsed, *extra))
+        is_open = (
+            settings.encodings is None
+            and relaxed is None
+            and not looked_at & _OF_ONE_SEARCH
+            and not any(each.assigns for each in extra)
+        )
     return Program(
         (*base, *loaded),
         ours / _EXACT_SUCCESS,
         (*constants, *_clingo_options(settings.clingo_options)),
         own=not added and settings.encodings is None,
         rules="" if relaxed is None else relaxed.rules,
+        looked_at=looked_at,
+        text=text,
+        open=is_open,
     )
 
 
