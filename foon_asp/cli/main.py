@@ -29,6 +29,7 @@ _VERBS = (
     "regret",
     "menu",
     "diff",
+    "shell",
     "constraints",
     "facts",
     "stats",

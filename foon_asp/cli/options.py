@@ -4,7 +4,7 @@ import functools
 import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import click
 
@@ -25,6 +25,9 @@ from foon_asp.text import (
     read_data,
     summarize,
 )
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    from foon_asp.asp.session import Session
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _PATH = click.Path(path_type=Path)
@@ -141,7 +144,10 @@ class Question:
     """The data that the options name, read, and how many seconds that took.
 
     Verbs ask for goals and problems and leave the rest to it; ``data`` is everything, for those that need it.
+    ``session`` keeps what was grounded, where there is a session.
     """
+
+    session: "Session | None" = None
 
     def __init__(self, data: Data, read_seconds: float) -> None:
         self._data = data
@@ -183,6 +189,21 @@ class Question:
         data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items))
         return Question(data, self.read_seconds)
 
+    @property
+    def motions(self) -> list[str]:
+        """The motions of the network, in alphabetical order."""
+        return sorted(set(self.data.network.motions))
+
+    @property
+    def at_hand(self) -> frozenset[int]:
+        """The object nodes of the kitchen, by id."""
+        return self.data.kitchen
+
+    def with_changes(self, added: frozenset[int], removed: frozenset[int]) -> "Question":
+        """Give the same data with object nodes added to the kitchen and taken from it."""
+        data = self.data._replace(kitchen=self.data.kitchen - removed | added)
+        return Question(data, self.read_seconds)
+
     def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals, which are those of the problem in the same order, under a container rule.
 
@@ -204,6 +225,14 @@ class Question:
         for unit in units:
             if not 0 <= unit < count:
                 raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
+
+
+class Held(NamedTuple):
+    """What a session has read, for the verbs that are asked within it, and how it was read."""
+
+    question: Question
+    lenient: bool
+    level: int
 
 
 def data_files(
@@ -234,8 +263,16 @@ def read_question(
     """Read the data that the options name; warnings go to stderr.
 
     Without --data and --network it is the bundled kitchen. A network of its own does not get the bundled
-    kitchen and rates, which are made for another one.
+    kitchen and rates, which are made for another one. Within a session the data is there already.
     """
+    context = click.get_current_context(silent=True)
+    held = context and context.find_object(Held)
+    if held:
+        if any((folder, network, kitchen, rates, utensils, goals)) or (lenient, level) != held[1:]:
+            raise UserError(
+                "the data of a session is what it was started with; another kitchen is given by: kitchen FILE"
+            )
+        return held.question
     began = time.perf_counter()
     files = data_files(folder, network, kitchen, rates, utensils, goals)
     if any(map(is_store, files.network)):

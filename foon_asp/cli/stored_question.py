@@ -92,6 +92,21 @@ class StoredQuestion(Question):
         began = time.perf_counter()
         return StoredQuestion(self._store, items, self._listed, self._rates, self._utensils, began)
 
+    def with_changes(self, added: frozenset[int], removed: frozenset[int]) -> Question:
+        """Give the same store with object nodes added to the kitchen and taken from it."""
+        return _ChangedQuestion(self, added, removed)
+
+    @property
+    def motions(self) -> list[str]:
+        """The motions of the network, in alphabetical order."""
+        return sorted(motion for motion, _ in self._store.motion_sources())
+
+    @cached_property
+    def at_hand(self) -> frozenset[int]:
+        """The object nodes of the kitchen, by id: its entries are looked up, and no more is read."""
+        items = self._store.kitchen_items() if self._kitchen is None else self._kitchen
+        return frozenset(o for item in items for o in self._store.find(item.pattern))
+
     @cached_property
     def data(self) -> Data:
         """Everything there is: the whole store is read."""
@@ -147,6 +162,26 @@ class StoredQuestion(Question):
         goals = tuple(self._listed)
         left_out = self._store.left_out
         return Data(network, kitchen, (), goals, self._rates, self._utensils, (), left_out)
+
+
+class _ChangedQuestion(StoredQuestion):
+    """A store with another kitchen than the ``base`` has; what that reads is read once."""
+
+    def __init__(self, base: StoredQuestion, added: frozenset[int], removed: frozenset[int]) -> None:
+        vars(self).update({k: v for k, v in vars(base).items() if k not in {"at_hand", "data"}})
+        self._base, self._added, self._removed = base, added, removed
+        self._at_hand = lambda o: o in added or (o not in removed and base._at_hand(o))
+
+    @cached_property
+    def at_hand(self) -> frozenset[int]:
+        """The object nodes of the kitchen, by id."""
+        return self._base.at_hand - self._removed | self._added
+
+    @cached_property
+    def data(self) -> Data:
+        """Everything there is."""
+        data = self._base.data
+        return data._replace(kitchen=data.kitchen - self._removed | self._added)
 
 
 def _places(part: Network, goals: Sequence[int]) -> tuple[int, ...]:
