@@ -102,7 +102,9 @@ def _lines(script: Path | None) -> Iterator[str]:
         return
     try:
         text = script.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise UserError(f"{script}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
         raise UserError(f"{script}: cannot be read: {error}") from None
     yield from text.splitlines()
 

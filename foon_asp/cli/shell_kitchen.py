@@ -6,10 +6,12 @@ from pathlib import Path
 import click
 
 from foon_asp.cli.options import Question
+from foon_asp.cli.shell_line import quoted
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode, pattern_at_level
 from foon_asp.text import (
     Diagnostic,
+    ListedObject,
     NodeNames,
     SomeNames,
     Wording,
@@ -47,14 +49,14 @@ class ShellKitchen:
     def have(self, words: Sequence[str]) -> None:
         """Put object nodes into the kitchen, by name."""
         before = self.question.at_hand
-        found = self._find(words, self.names, _HAVE)
+        found = find_nodes(words, self.names, _HAVE)
         self._change(self._added.union(found), self._removed.difference(found))
         for o in found:
             _say(f"{'already ' if o in before else ''}at hand: {self.names.node(o)}")
 
     def lack(self, words: Sequence[str]) -> None:
         """Take object nodes out of the kitchen, by name."""
-        found = self._find(words, self.names_at_hand, _LACK)
+        found = find_nodes(words, self.names_at_hand, _LACK)
         self._change(self._added.difference(found), self._removed.union(found))
         for o in found:
             _say(f"no longer at hand: {self.names.node(o)}")
@@ -87,11 +89,6 @@ class ShellKitchen:
         """List what was put in, behind a plus, and taken out, behind a minus."""
         return [f"+ {n}" for n in self._sorted(self._added)] + [f"- {n}" for n in self._sorted(self._removed)]
 
-    def _find(self, words: Sequence[str], among: NodeNames, wording: Wording) -> list[int]:
-        if not words:
-            raise UserError(f"name an object node: {wording.before} NAME...")
-        return list(dict.fromkeys(find_goal(w, among, (), wording, by_beginning=True) for w in words))
-
     def _change(self, added: frozenset[int], removed: frozenset[int]) -> None:
         at_hand = self._read.at_hand
         self._added, self._removed = added - at_hand, removed & at_hand
@@ -101,6 +98,26 @@ class ShellKitchen:
     def _sorted(self, ids: Iterable[int]) -> list[str]:
         nodes: list[ObjectNode] = [self.names.node(o) for o in ids]
         return sorted(map(str, nodes))
+
+
+def find_nodes(
+    words: Sequence[str], among: NodeNames, wording: Wording, listed: Sequence[ListedObject] = ()
+) -> list[int]:
+    """Find the nodes that are named, each once; the beginning of a name is enough where it is the only one.
+
+    Raises :class:`UserError` like :func:`foon_asp.text.find_goal`.
+    """
+    if not words:
+        raise UserError(f"name an object node: {wording.before} NAME...")
+    alone = len(words) == 1
+    try:
+        found = [find_goal(word, among, listed, wording, by_beginning=alone) for word in words]
+    except UserError as error:
+        if alone:
+            raise
+        whole = quoted(" ".join(words))
+        raise UserError(f"{error}\na name with blanks is in quotes: {wording.before} {whole}") from None
+    return list(dict.fromkeys(found))
 
 
 def _say(text: str) -> None:

@@ -16,11 +16,11 @@ from foon_asp.asp.program import assemble, find_constraint
 from foon_asp.asp.session import Session
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.options import Held, Question
-from foon_asp.cli.shell_kitchen import ShellKitchen
+from foon_asp.cli.shell_kitchen import ShellKitchen, find_nodes
 from foon_asp.cli.shell_line import quoted, take_apart
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
-from foon_asp.text import Wording, find_goal, notation
+from foon_asp.text import Wording, notation
 
 # The verbs that ask something of a network and a kitchen.
 QUESTIONS = (
@@ -124,7 +124,8 @@ class ShellSession:
         elif word in QUESTIONS:
             self._ask(word, rest)
         else:
-            near = get_close_matches(word, [*WORDS, *QUESTIONS], n=1)
+            known = [*WORDS, *QUESTIONS]
+            near = [each for each in known if each.startswith(word)] or get_close_matches(word, known, n=1)
             hint = f"did you mean {near[0]}?" if near else "help lists the words"
             raise UserError(f"found {word!r}, expected a word of the session or a question; {hint}")
 
@@ -162,8 +163,7 @@ class ShellSession:
             labels = "".join(f"\n  goal {quoted(entry.pattern.label)}" for entry in question.listed)
             raise UserError("name a goal" + (f"; the goals file has{labels}" if labels else ""))
         known = self.kitchen.names
-        found = [find_goal(name, known, question.listed, _GOAL, by_beginning=True) for name in names]
-        nodes = [known.node(o) for o in dict.fromkeys(found)]
+        nodes = [known.node(o) for o in find_nodes(names, known, _GOAL, question.listed)]
         self.goals = tuple(map(notation, nodes))
         for node in nodes:
             _say(f"goal: {node}")
