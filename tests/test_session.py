@@ -100,11 +100,30 @@ def test_one_program_serves_many_questions(monkeypatch: pytest.MonkeyPatch) -> N
     assert len(grounded) == 2
     for objectives in orders:
         for goal in range(len(problem.network.objects)):
-            for kitchen in (problem.kitchen, problem.kitchen ^ {goal}):
-                solve(replace(problem, goals=(goal,), kitchen=kitchen), objectives, settings)
+            solve(replace(everything, goals=(goal,)), objectives, settings)
     assert len(grounded) == 2
-    solve(replace(everything, containers=ContainerRule.IMPLIED), (Objective.SUCCESS,), settings)
+    item = min(everything.kitchen - set(everything.goals))
+    for _ in range(3):  # what has changed once is left open
+        for kitchen in (everything.kitchen - {item}, everything.kitchen):
+            solve(replace(everything, kitchen=kitchen), orders[0], settings)
     assert len(grounded) == 3
+    solve(replace(everything, containers=ContainerRule.IMPLIED), (Objective.SUCCESS,), settings)
+    assert len(grounded) == 4
+
+
+def test_a_kitchen_that_changes_too_much_is_grounded_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was left open is forgotten when it is too much; and answers stay the same."""
+    monkeypatch.setattr("foon_asp.asp.session._MOST_OPEN", 2)
+    monkeypatch.setattr("foon_asp.asp.session._MOST_PRODUCTS", 1)
+    session = Session()
+    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=5",))
+    rng = random.Random(1)
+    problem = random_problem(3, ContainerRule.STRICT, 20)
+    for _ in range(40):
+        problem = change(problem, rng, [ContainerRule.STRICT])
+        afresh = solve(problem, (Objective.SUCCESS,), settings)
+        kept = solve(problem, (Objective.SUCCESS,), settings._replace(session=session))
+        assert measured(kept) == measured(afresh)
 
 
 def test_a_constraint_file_that_changed_is_read_again(tmp_path: Path) -> None:

@@ -399,7 +399,8 @@ def terminal(words: list[str | Path], steps: list[tuple[str, str]], state: Path)
         cwd=ROOT,
         env=environment,
         start_new_session=True,
-        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),  # ctrl-C reaches those of this terminal
+        # ctrl-C reaches those of this terminal
+        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),  # noqa: PLW1509
     )
     os.close(theirs)
     printed, seen = "", 0

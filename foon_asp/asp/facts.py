@@ -90,32 +90,42 @@ def write_facts(
 
 
 def write_open_facts(
-    problem: Problem, units: Sequence[int], scale: RateScale | None, looked_at: Collection[str]
+    problem: Problem,
+    closed: Collection[tuple[str, int]],
+    left_open: Collection[tuple[str, int]],
+    scale: RateScale | None,
+    looked_at: Collection[str],
 ) -> str:
-    """Describe units and their object nodes as :func:`write_facts` does, but leave open which there are.
+    """Describe a question as :func:`write_facts` does, but leave open some of what is the case.
 
-    ``unit/1``, ``object/1``, ``kitchen/1`` and ``goal/1`` are externals. What else the facts say of a unit
-    or a node holds only where it is there, if its predicate is one of those ``looked_at``; of the
-    others the rules that read them see to that.
+    ``closed`` are facts, ``left_open`` externals: pairs of ``unit``, ``object`` or ``kitchen`` and an id of
+    the network. What else the facts say of a unit or a node that is left open holds only where it is there,
+    if its predicate is one of those ``looked_at``; of the others the rules that read them see to that. Every
+    node may be a goal.
     """
     name = problem.network.object_number
     lines = []
 
-    def add(subject: str, atoms: Iterable[str]) -> None:
-        lines.append(f"#external {subject}.")
+    def add(subject: str, is_open: bool, atoms: Iterable[str]) -> None:
+        lines.append(f"#external {subject}." if is_open else f"{subject}.")
         lines.extend(
-            f"{atom} :- {subject}." if atom.partition("(")[0] in looked_at else f"{atom}." for atom in atoms
+            f"{atom} :- {subject}." if is_open and atom.partition("(")[0] in looked_at else f"{atom}."
+            for atom in atoms
         )
 
-    for unit in units:
-        add(_unit_atom(problem, unit), _unit_atoms(problem, unit, scale, with_sources=True))
-    for o in described(problem, units):
-        atoms = _object_atoms(problem, o)
-        label = problem.network.objects[o].label
-        if label in problem.utensils:
-            atoms.append(f"utensil({quote(label)})")
-        add(_object_atom(problem, o), atoms)
-        lines.append(f"#external kitchen({name(o)}). #external goal({name(o)}).")
+    for kind, id_ in sorted({*closed, *left_open}):
+        is_open = (kind, id_) in left_open
+        if kind == "unit":
+            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scale, with_sources=True))
+        elif kind == "kitchen":
+            add(f"kitchen({_check(name(id_))})", is_open, ())
+        else:
+            atoms = _object_atoms(problem, id_)
+            label = problem.network.objects[id_].label
+            if label in problem.utensils:
+                atoms.append(f"utensil({quote(label)})")
+            add(_object_atom(problem, id_), is_open, atoms)
+            lines.append(f"#external goal({name(id_)}).")
     return "\n".join(lines) + "\n"
 
 

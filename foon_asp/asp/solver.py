@@ -309,7 +309,9 @@ class _Solver:
                 chosen, wanted = rival, len(products)
         if not after:
             return chosen, True
-        ended = self._run((*before, *after), products, wanted)
+        costs = self.problem.costs(chosen)
+        mode = ",".join(["opt", *map(str, fixed), *(str(costs.measure(o)) for o in after)])
+        ended = self._run((*before, *after), products, wanted, mode)
         if ended.exhausted and ended.units is None:
             raise BugError("the best product of success rates was lost")
         return (ended.units or chosen), ended.exhausted
