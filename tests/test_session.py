@@ -42,9 +42,13 @@ def change(problem: Problem, rng: random.Random, rules: list[ContainerRule]) -> 
         case 0:
             return replace(problem, kitchen=problem.kitchen ^ {rng.choice(objects)})
         case 1:
-            return replace(problem, kitchen=frozenset(rng.sample(objects, rng.randint(0, 5))))
+            return replace(
+                problem, kitchen=frozenset(rng.sample(objects, rng.randint(0, min(5, len(objects)))))
+            )
         case 2:
-            return replace(problem, goals=tuple(rng.sample(objects, rng.choice((1, 1, 2, 3)))))
+            return replace(
+                problem, goals=tuple(rng.sample(objects, min(len(objects), rng.choice((1, 1, 2, 3)))))
+            )
         case _:
             return replace(problem, containers=rng.choice(rules))
 
