@@ -52,6 +52,7 @@ LIBRARIES = {
     "clingo": {"asp"},
     "lark": {"text"},
     "click": {"cli"},
+    "prompt_toolkit": {"cli"},
     "rich": {"report", "cli"},
     "highspy": {"bounds", "engines"},
     "numpy": {"bounds", "engines"},  # what highspy speaks

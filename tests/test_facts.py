@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings, program_facts
-from foon_asp.asp.facts import write_wanted
+from foon_asp.asp.facts import write_product
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -75,9 +75,9 @@ def test_the_facts_say_what_the_table_says() -> None:
 
 
 def test_numbers_too_large_for_clingo_are_refused() -> None:
-    assert write_wanted({0: 2**31 - 1}) == "wanted(0,2147483647).\n"
+    assert write_product(4, {0: 2**31 - 1}) == "product(4,0,2147483647).\n"
     with pytest.raises(UserError, match="32 bits"):
-        write_wanted({0: 2**31})
+        write_product(4, {0: 2**31})
 
 
 def test_the_same_input_gives_the_same_tree(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import doctest
 import re
 import shlex
+import sys
 from pathlib import Path
 
 import pytest
@@ -35,7 +36,10 @@ def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch
             command, _, target = command.partition(" > ")
             program, *words = shlex.split(command)
             assert program == "foon-asp", command
-            ran = cli(*words)
+            with monkeypatch.context() as both:
+                if not target:  # in the order in which a terminal shows them
+                    both.setattr(sys, "stderr", sys.stdout)
+                ran = cli(*words)
             assert ran.code in {0, 1, 2}, command
             printed = (ran.err + ran.out).replace(f"{ROOT}/", "")
             if target:

@@ -12,7 +12,7 @@ from foon_asp.api.warning import warn
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, TaskTree, node_at_level, pattern_at_level
 from foon_asp.question import Question, ask, question_files, read_question
-from foon_asp.text import Data, GoalError, find_goal, kitchen_item_warning, read_object_list
+from foon_asp.text import Data, GoalError, Wording, find_goal, kitchen_item_warning, read_object_list
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
@@ -192,7 +192,9 @@ class Foon:
                 raise UserError(f"no object node of the network is the {what} {str(name)!r}")
             return found
         try:
-            return find_goal(name, names, self._question.listed if what == "goal" else (), what)
+            return find_goal(
+                name, names, self._question.listed if what == "goal" else (), Wording(what, "", "")
+            )
         except GoalError as error:
             raise UserError(_in_python(error)) from None
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from clingo.ast import AST, ASTType, Location, Transformer, parse_files
+from clingo.ast import AST, ASTType, ComparisonOperator, Location, Transformer, parse_files
 
 from foon_asp.asp.facts import FACT_PREDICATES, quote
 from foon_asp.errors import UserError
@@ -27,7 +27,8 @@ class Encoding:
     where each is met first, ``declared`` those under ``#defined``. ``constants`` maps the names of
     ``#const`` statements to their values as written. ``minimizes`` are the places of ``#minimize`` and
     weak constraints, ``parts`` those of ``#program`` statements other than ``base``, ``scripts`` those
-    of ``#script``.
+    of ``#script``. ``assigns`` says that a variable may get its value from an aggregate
+    (``N = #count {...}``). ``text`` is every statement as clingo understands it.
     """
 
     path: Path
@@ -38,6 +39,8 @@ class Encoding:
     minimizes: list[Source] = field(default_factory=list)
     parts: list[Source] = field(default_factory=list)
     scripts: list[Source] = field(default_factory=list)
+    assigns: bool = False
+    text: str = ""
 
 
 def read_encoding(path: Path) -> Encoding:
@@ -66,6 +69,7 @@ class _Collector(Transformer):
 
     def statement(self, statement: AST) -> None:
         encoding = self.encoding
+        encoding.text += f"{statement}\n"
         kind = statement.ast_type
         if kind == ASTType.Script:
             encoding.scripts.append(_source(statement.location))
@@ -109,6 +113,20 @@ class _Collector(Transformer):
             else:
                 self.encoding.used.setdefault(signature, _source(symbol.location))
         return atom
+
+    def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
+        self._note_assignment(aggregate)
+        return aggregate.update(**self.visit_children(aggregate))
+
+    def visit_Aggregate(self, aggregate: AST) -> AST:  # noqa: N802
+        if not self._in_head:
+            self._note_assignment(aggregate)
+        return aggregate.update(**self.visit_children(aggregate))
+
+    def _note_assignment(self, aggregate: AST) -> None:
+        guard = aggregate.left_guard
+        if guard is not None and guard.comparison == ComparisonOperator.Equal:
+            self.encoding.assigns |= guard.term.ast_type != ASTType.SymbolicTerm
 
     def _head(self, head: AST) -> None:
         self._in_head = True

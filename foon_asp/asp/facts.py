@@ -31,8 +31,9 @@ FACT_PREDICATES = {
     "risk": 2,
     "optimize": 2,
     "exponent": 3,
-    "seen": 3,
-    "wanted": 2,
+    "product": 3,
+    "seen": 1,
+    "wanted": 1,
     "for_sale": 2,
     "second_choice": 1,
     "found_list": 1,
@@ -74,42 +75,105 @@ def write_facts(
     of ``risk/2``; ``None`` where no rates are known. ``with_sources`` adds where each unit was read, which
     only constraints look at.
     """
-    network = problem.network
-    number, name = network.unit_number, network.object_number
-    described: dict[int, None] = {}
+    name = problem.network.object_number
+    nodes = described(problem, units)
     lines = []
     for unit in units:
-        inputs, outputs = network.inputs[unit], network.outputs[unit]
-        described.update(dict.fromkeys(inputs + outputs))
-        ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
-        u = _check(number(unit))
-        facts = [f"unit({u}). motion({u},{quote(network.motions[unit])})."]
-        facts += [f"input({u},{name(o)})." for o in inputs]
-        facts += [f"needs({u},{name(o)})." for o in problem.needs[unit]]
-        facts += [f"output({u},{name(o)})." for o in outputs]
-        facts.append(f"inputs({u},{len(inputs)}). ingredients({u},{_check(ingredients)}).")
-        if scale:
-            rate = problem.rate(unit)
-            facts.append(f"rate({u},{_millionths(rate)}). risk({u},{_check(scale.weights[rate])}).")
-        if with_sources:
-            facts += [f"source({u},{quote(source)})." for source in _source_names(network.sources[unit])]
-        lines.append(" ".join(facts))
-    described.update(dict.fromkeys(problem.goals))
-    labels: set[str] = set()
-    for o in sorted(described):
-        node = network.objects[o]
-        labels.add(node.label)
-        i = _check(name(o))
-        facts = [f"object({i}). label({i},{quote(node.label)})."]
-        facts += [f"state({i},{quote(state)})." for state in sorted(node.states)]
-        facts += [f"located({i},{quote(word)},{quote(related)})." for word, related in sorted(node.relations)]
-        facts += [f"ingredient({i},{quote(item)})." for item in dict.fromkeys(node.ingredients)]
+        atoms = [_unit_atom(problem, unit), *_unit_atoms(problem, unit, scale, with_sources)]
+        lines.append(". ".join(atoms) + ".")
+    for o in nodes:
+        atoms = [_object_atom(problem, o), *_object_atoms(problem, o)]
         if o in problem.kitchen:
-            facts.append(f"kitchen({i}).")
-        lines.append(" ".join(facts))
+            atoms.append(f"kitchen({name(o)})")
+        lines.append(". ".join(atoms) + ".")
+    labels = {problem.network.objects[o].label for o in nodes}
     lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
     lines += [f"goal({name(o)})." for o in problem.goals]
     return "\n".join(lines) + "\n"
+
+
+def write_open_facts(
+    problem: Problem,
+    closed: Collection[tuple[str, int]],
+    left_open: Collection[tuple[str, int]],
+    scale: RateScale | None,
+    looked_at: Collection[str],
+) -> str:
+    """Describe a question as :func:`write_facts` does, but leave open some of what is the case.
+
+    ``closed`` are facts, ``left_open`` externals: pairs of ``unit``, ``object`` or ``kitchen`` and an id of
+    the network. What else the facts say of a unit or a node that is left open holds only where it is there,
+    if its predicate is one of those ``looked_at``; of the others the rules that read them see to that. Every
+    node may be a goal.
+    """
+    name = problem.network.object_number
+    lines = []
+
+    def add(subject: str, is_open: bool, atoms: Iterable[str]) -> None:
+        lines.append(f"#external {subject}." if is_open else f"{subject}.")
+        lines.extend(
+            f"{atom} :- {subject}." if is_open and atom.partition("(")[0] in looked_at else f"{atom}."
+            for atom in atoms
+        )
+
+    for kind, id_ in sorted({*closed, *left_open}):
+        is_open = (kind, id_) in left_open
+        if kind == "unit":
+            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scale, with_sources=True))
+        elif kind == "kitchen":
+            add(f"kitchen({_check(name(id_))})", is_open, ())
+        else:
+            atoms = _object_atoms(problem, id_)
+            label = problem.network.objects[id_].label
+            if label in problem.utensils:
+                atoms.append(f"utensil({quote(label)})")
+            add(_object_atom(problem, id_), is_open, atoms)
+            lines.append(f"#external goal({name(id_)}).")
+    return "\n".join(lines) + "\n"
+
+
+def _unit_atom(problem: Problem, unit: int) -> str:
+    return f"unit({_check(problem.network.unit_number(unit))})"
+
+
+def _unit_atoms(problem: Problem, unit: int, scale: RateScale | None, with_sources: bool) -> list[str]:
+    """Give what the facts say of a unit, beside that it is one."""
+    network = problem.network
+    inputs, name = network.inputs[unit], network.object_number
+    ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
+    u = network.unit_number(unit)
+    atoms = [f"motion({u},{quote(network.motions[unit])})"]
+    atoms += [f"input({u},{name(o)})" for o in inputs]
+    atoms += [f"needs({u},{name(o)})" for o in problem.needs[unit]]
+    atoms += [f"output({u},{name(o)})" for o in network.outputs[unit]]
+    atoms += [f"inputs({u},{len(inputs)})", f"ingredients({u},{_check(ingredients)})"]
+    if scale:
+        rate = problem.rate(unit)
+        atoms += [f"rate({u},{_millionths(rate)})", f"risk({u},{_check(scale.weights[rate])})"]
+    if with_sources:
+        atoms += [f"source({u},{quote(source)})" for source in _source_names(network.sources[unit])]
+    return atoms
+
+
+def _object_atom(problem: Problem, o: int) -> str:
+    return f"object({_check(problem.network.object_number(o))})"
+
+
+def _object_atoms(problem: Problem, o: int) -> list[str]:
+    """Give what the facts say of an object node, beside that it is one and whether it is at hand."""
+    node, i = problem.network.objects[o], problem.network.object_number(o)
+    atoms = [f"label({i},{quote(node.label)})"]
+    atoms += [f"state({i},{quote(state)})" for state in sorted(node.states)]
+    atoms += [f"located({i},{quote(word)},{quote(related)})" for word, related in sorted(node.relations)]
+    atoms += [f"ingredient({i},{quote(item)})" for item in dict.fromkeys(node.ingredients)]
+    return atoms
+
+
+def described(problem: Problem, units: Iterable[int]) -> list[int]:
+    """Give the object nodes that facts about some units speak of, the goals among them, in order."""
+    network = problem.network
+    touched = {o for unit in units for side in (network.inputs, network.outputs) for o in side[unit]}
+    return sorted(touched.union(problem.goals))
 
 
 def write_objectives(objectives: Sequence[Objective]) -> str:
@@ -129,14 +193,19 @@ def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) ->
     )
 
 
-def write_seen(number: int, exponents: Mapping[int, int]) -> str:
-    """Rule out a product of rates, given by its exponents."""
-    return "".join(f"seen({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
+def write_product(number: int, exponents: Mapping[int, int]) -> str:
+    """Describe a product of rates by its exponents."""
+    return "".join(f"product({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
 
 
-def write_wanted(exponents: Mapping[int, int]) -> str:
+def write_seen(numbers: Iterable[int]) -> str:
+    """Rule products of rates out, by number."""
+    return "".join(f"seen({number}).\n" for number in numbers)
+
+
+def write_wanted(number: int) -> str:
     """Ask for trees with exactly that product of rates."""
-    return "".join(f"wanted({factor},{_check(exponent)}).\n" for factor, exponent in exponents.items())
+    return f"wanted({number}).\n"
 
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:

@@ -2,11 +2,14 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    from foon_asp.asp.session import Session
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
@@ -30,6 +33,9 @@ _RESERVED = (
     "--text",
     "--version",
 )
+
+# Predicates of a search and not of its question: programs that are kept have them otherwise.
+_OF_ONE_SEARCH = frozenset(("agrees", "exponent", "optimize", "product", "seen", "wanted"))
 
 
 class Relaxed(NamedTuple):
@@ -63,7 +69,8 @@ class Settings(NamedTuple):
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
     interrupted. ``reductions`` come before the search, unless there are constraints, bounds or other
-    encodings. ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``.
+    encodings. ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``session``
+    keeps ground programs for the next question.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -74,6 +81,7 @@ class Settings(NamedTuple):
     reductions: frozenset[Reduction] = ALL
     relaxed: Relaxed | None = None
     bounded: Bounded | None = None
+    session: "Session | None" = None
 
 
 class Program(NamedTuple):
@@ -81,7 +89,10 @@ class Program(NamedTuple):
 
     ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates
     are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
-    matter. ``bounded`` says that a tree of the unbounded question need not be one.
+    matter. ``bounded`` says that a tree of the unbounded question need not be one. ``looked_at`` are the
+    names of the predicates that rules of the user's look at. ``text`` is all that the files said when they
+    were looked over. ``open`` says that the program means the same when facts are left open
+    (:mod:`foon_asp.asp.session`).
     """
 
     files: tuple[Path, ...]
@@ -90,6 +101,9 @@ class Program(NamedTuple):
     own: bool
     rules: str = ""
     bounded: bool = False
+    looked_at: frozenset[str] = frozenset()
+    text: str = ""
+    open: bool = False
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
@@ -115,6 +129,8 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         questions += bounded.files
         rules += bounded.rules
     constants: list[str] = []
+    looked_at: frozenset[str] = frozenset()
+    text, is_open = "", False
     if added or settings.encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
@@ -126,6 +142,15 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         for message in encoding.unset_constants(extra, settings.constants):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
+        looked_at = frozenset(name for each in extra for name, _ in each.used)
+        text = "\n".join(each.text for each in (*parsed, *extra))
+        is_open = (
+            settings.encodings is None
+            and relaxed is None
+            and bounded is None
+            and not looked_at & _OF_ONE_SEARCH
+            and not any(each.assigns for each in extra)
+        )
     return Program(
         (*base, *loaded, *questions),
         ours / _EXACT_SUCCESS,
@@ -133,6 +158,9 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         own=not added and settings.encodings is None,
         rules=rules,
         bounded=bounded is not None,
+        looked_at=looked_at,
+        text=text,
+        open=is_open,
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from clingo import Control, Model
-from clingo.symbol import SymbolType
+from clingo.symbol import Number, SymbolType
 
 from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.run import Run
@@ -33,31 +33,55 @@ def run(
     on_tree: Callable[[frozenset[int]], None] | None = None,
     on_bound: Callable[[list[int]], None] | None = None,
     predicates: Sequence[str] = (),
+    products: int = 0,
 ) -> Run:
     """Ground the files and facts and search for the best answer.
 
     ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-    ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. Raises
+    ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. ``products``
+    says how many products of rates the facts describe. Raises
     what :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
     """
-    messages: list[str] = []
-    result = Run()
     began = time.perf_counter()
+    control = ground(files, facts, arguments, products)
+    grounded = time.perf_counter()
+    result = search(control, deadline, opt_mode, on_tree, on_bound, predicates)
+    result.ground_seconds = grounded - began
+    return result
+
+
+def ground(files: Sequence[Path], facts: str, arguments: Sequence[str], products: int = 0) -> Control:
+    """Ground the files and facts; raises like :func:`run`."""
+    messages: list[str] = []
     try:
         control = Control(list(arguments), logger=lambda _, text: messages.append(text), message_limit=1000)
         for file in files:
             control.load(str(file))
         control.add("base", [], facts)
-        control.ground([("base", [])])
-        models = 1 if opt_mode == "ignore" else 0
-        _set(control, opt_mode=opt_mode, models=models, enum_mode="auto", project="no", opt_stop="no")
+        control.ground([("base", []), *(("product", [Number(number)]) for number in range(products))])
     except RuntimeError as error:
         from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
         raise fault(messages, str(error)) from None
-    grounded = time.perf_counter()
-    result.ground_seconds = grounded - began
+    return control
 
+
+def search(
+    control: Control,
+    deadline: Deadline,
+    opt_mode: str,
+    on_tree: Callable[[frozenset[int]], None] | None = None,
+    on_bound: Callable[[list[int]], None] | None = None,
+    predicates: Sequence[str] = (),
+) -> Run:
+    """Search a ground program for the best answer; see :func:`run`."""
+    result = Run()
+    began = time.perf_counter()
+    models = 1 if opt_mode == "ignore" else 0
+    try:
+        _set(control, opt_mode=opt_mode, models=models, enum_mode="auto", project="no", opt_stop="no")
+    except RuntimeError as error:
+        raise UserError(str(error)) from None
     faults: list[UserError] = []  # raised in clingo's thread, to be raised in ours
 
     def model(model: Model) -> bool:
@@ -92,7 +116,7 @@ def run(
     if faults:
         raise faults[0]
     result.exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
-    result.solve_seconds = time.perf_counter() - grounded
+    result.solve_seconds = time.perf_counter() - began
     return result
 
 

@@ -1,12 +1,21 @@
 """Optimal task trees: the cut, the runs of clingo, and the claim that comes out of them."""
 
+import itertools
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import RateScale, problem_scale
-from foon_asp.asp.facts import write_exponents, write_facts, write_objectives, write_seen, write_wanted
+from foon_asp.asp.facts import (
+    write_exponents,
+    write_facts,
+    write_objectives,
+    write_product,
+    write_seen,
+    write_wanted,
+)
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.program import Program, Settings, assemble
 from foon_asp.asp.run import Run
@@ -14,6 +23,9 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    from foon_asp.asp.session import OpenProgram
 
 Units = frozenset[int]
 
@@ -76,6 +88,7 @@ class _Solver:
         self.scale: RateScale | None = None
         self.seconds: dict[str, float] = {}
         self._facts: str | None = None
+        self._open: OpenProgram | None = None
         self._best: Costs | None = None  # the best tree reported
         self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
         if Objective.SUCCESS in self.levels and problem.rates is None:
@@ -187,26 +200,77 @@ class _Solver:
         return self._facts
 
     def _run(
-        self, objectives: Sequence[Objective], extra: str = "", opt_mode: str = "opt", report: bool = False
+        self,
+        objectives: Sequence[Objective],
+        products: Sequence[Mapping[int, int]] = (),
+        wanted: int | None = None,
+        opt_mode: str = "opt",
+        report: bool = False,
     ) -> Run:
-        from foon_asp.asp.search import run  # noqa: PLC0415 (slow to import, and often there is nothing left)
+        """Ask clingo for the best tree by some of the levels.
 
-        facts = self.facts() + self.program.rules + write_objectives(objectives) + extra
-        files = (*self.program.files, self.program.exact_success) if extra else self.program.files
-        ended = run(
-            files,
-            facts,
-            self.program.arguments,
-            self.deadline,
-            opt_mode,
-            on_tree=(lambda units: self._report_tree(self._ids(units))) if report else None,
-            on_bound=self._report_bound if report else None,
-        )
+        ``products`` of rates, by exponents, are ruled out; with ``wanted`` the one of that number is asked
+        for instead.
+        """
+        on_tree = (lambda units: self._report_tree(self._ids(units))) if report else None
+        on_bound = self._report_bound if report else None
+        if self.settings.session is not None and self.program.open:
+            ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
+        else:
+            from foon_asp.asp.search import run  # noqa: PLC0415 (slow to import, often there is nothing left)
+
+            facts, files = (
+                self.facts() + self.program.rules + write_objectives(objectives),
+                self.program.files,
+            )
+            if products and self.scale:
+                files = (*files, self.program.exact_success)
+                facts += write_exponents(self.problem, self.units, self.scale)
+                facts += "".join(itertools.starmap(write_product, enumerate(products)))
+                facts += write_seen(range(len(products))) if wanted is None else write_wanted(wanted)
+            arguments, deadline = self.program.arguments, self.deadline
+            ended = run(
+                files, facts, arguments, deadline, opt_mode, on_tree, on_bound, products=len(products)
+            )
         self.seconds["ground"] = self.seconds.get("ground", 0.0) + ended.ground_seconds
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
         if ended.units is not None:
             ended.units = self._ids(ended.units)
         return ended
+
+    def _run_open(
+        self,
+        objectives: Sequence[Objective],
+        products: Sequence[Mapping[int, int]],
+        wanted: int | None,
+        opt_mode: str,
+        on_tree: Callable[[Units], None] | None,
+        on_bound: Callable[[list[int]], None] | None,
+    ) -> Run:
+        """Ask a program that is kept from question to question."""
+        session = self.settings.session
+        assert session is not None
+        began = time.perf_counter()
+        if self._open is None:
+            self._open = session.program(self.program, self.problem, self.units, self.levels)
+            self.scale = self._open.scale
+        self._spent("ground", began)
+        try:
+            return self._open.run(
+                self.problem,
+                self.units,
+                self.levels,
+                objectives,
+                products,
+                wanted,
+                self.deadline,
+                opt_mode,
+                on_tree,
+                on_bound,
+            )
+        except BaseException:  # ctrl-C too: nobody knows what was set and what was not
+            session.forget(self._open)
+            raise
 
     def _ids(self, numbers: Units) -> Units:
         """Give the ids of units in an answer, whose numbers come from encodings, which may be the user's."""
@@ -228,30 +292,29 @@ class _Solver:
             return best, True
         place = self.levels.index(Objective.SUCCESS)
         before, after = self.levels[:place], self.levels[place + 1 :]
-        exponents = write_exponents(self.problem, self.units, scale)
-        seen = ""
+        products: list[dict[int, int]] = []
         fixed = [self._costs(best).measure(objective) for objective in before]
-        chosen, rival, number = best, best, 0
+        chosen, rival, wanted = best, best, 0
         while True:
             # A better product has a weight of at most W + n - 1, where n units of the tree weigh less
             # than their logarithm (all but those of rate 1).
             inexact = sum(self.problem.rate(unit) != 1 for unit in chosen)
             band = self._weight(chosen) + inexact - 1
-            seen += write_seen(number, scale.product_exponents(map(self.problem.rate, rival)))
-            number += 1
+            products.append(scale.product_exponents(map(self.problem.rate, rival)))
             mode = ",".join(["opt", *map(str, fixed), str(band)])
-            ended = self._run((*before, Objective.SUCCESS), exponents + seen, mode)
+            ended = self._run((*before, Objective.SUCCESS), products, opt_mode=mode)
             if not ended.exhausted:
                 return chosen, False
             if ended.units is None:
                 break
             rival = ended.units
             if self._success(rival) > self._success(chosen):
-                chosen = rival
+                chosen, wanted = rival, len(products)
         if not after:
             return chosen, True
-        wanted = write_wanted(scale.product_exponents(map(self.problem.rate, chosen)))
-        ended = self._run((*before, *after), exponents + wanted)
+        costs = self._costs(chosen)
+        mode = ",".join(["opt", *map(str, fixed), *(str(costs.measure(o)) for o in after)])
+        ended = self._run((*before, *after), products, wanted, mode)
         if ended.exhausted and ended.units is None:
             raise BugError("the best product of success rates was lost")
         return (ended.units or chosen), ended.exhausted

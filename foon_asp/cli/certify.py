@@ -71,7 +71,9 @@ def command(
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
     # a certificate speaks about the whole network, by its digest
     problem = question.problem(question.goals(goals_named), containers, everything=True)
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    settings = Settings(
+        constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
+    )
     expired = expiry(time_limit)
     name = "standard output" if file is None else str(file)
     if tree_file is not None:

@@ -61,7 +61,9 @@ def command(
     of_file = weighted_files(weights, "--weight")
     question = options.read_question(**data)  # type: ignore[arg-type]
     problem = question.problem(question.goals(goals_named), containers, everything=True)
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    settings = Settings(
+        constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
+    )
     with Progress() as progress:
         clash = find_clash(problem, chosen, settings, of_file, progress)
     click.echo({"text": clash_text, "json": clash_json}[format_](clash), nl=False)

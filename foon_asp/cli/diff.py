@@ -93,7 +93,8 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     from foon_asp.cli.solve import command as solve_command
 
     words = shlex.split(question_text)[1:]
-    asked = dict(solve_command.make_context(f"diff '{question_text}'", words).params)
+    defaults = click.get_current_context().default_map  # what a session has to say
+    asked = dict(solve_command.make_context(f"diff '{question_text}'", words, default_map=defaults).params)
     if any(asked.pop(name) for name in ("certificate_file", "cross_check", "soft")):
         raise UserError(
             f"found {question_text!r}, expected a question without --certificate, --cross-check, --soft"
@@ -105,6 +106,7 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     reductions = parse_reductions(asked.pop("reductions"))
     settings = Settings(*map(asked.pop, names))._replace(reductions=reductions)
     question = read_question(**asked)
+    settings = settings._replace(session=options.session_here())
     problem = question.problem(question.goals(goals), containers, everything=True)
     with Progress() as progress:
         outcome = solve(problem, objectives, settings, progress)

@@ -93,7 +93,7 @@ def command(
         raise UserError("--tree and --unit are two different drawings: give one of them")
     to_solve = bool(goals_named) and tree_file is None and not units
     source = click.get_current_context().get_parameter_source("objectives")
-    if not to_solve and source is not ParameterSource.DEFAULT:
+    if not to_solve and source not in {ParameterSource.DEFAULT, ParameterSource.DEFAULT_MAP}:
         raise UserError("--objective chooses among the task trees for a --goal: here is nothing to choose")
     chosen = parse_objectives(objectives)
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]

@@ -31,6 +31,7 @@ _VERBS = (
     "menu",
     "assist",
     "diff",
+    "shell",
     "constraints",
     "facts",
     "stats",

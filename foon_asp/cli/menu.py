@@ -49,7 +49,9 @@ def command(
     if len(goals) < 2:
         raise UserError("a menu has several goals: name them with --goal, again and again")
     problem = question.problem(goals, containers, everything=bool(constraints or encodings))
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    settings = Settings(
+        constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
+    )
     with Progress() as progress:
         found = menu(problem, chosen, settings, progress)
     render = {"text": menu_text, "json": menu_json}[format_]

@@ -3,12 +3,16 @@
 import functools
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import click
 
+from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.question import Question, question_files, reading
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    from foon_asp.asp.session import Session
 
 Command = TypeVar("Command", bound=Callable[..., object])
 _PATH = click.Path(path_type=Path)
@@ -115,6 +119,30 @@ def constraint_options(command: Command) -> Command:
     return functools.reduce(lambda f, option: option(f), reversed(_CONSTRAINT_OPTIONS), command)
 
 
+class Held(NamedTuple):
+    """What a session has read, for the verbs that are asked within it, and how it was read.
+
+    ``session`` keeps what was grounded.
+    """
+
+    question: Question
+    lenient: bool
+    level: int
+    session: "Session"
+
+
+def held() -> Held | None:
+    """Give what the session has in which a verb is asked, if it is asked in one."""
+    context = click.get_current_context(silent=True)
+    return context.find_object(Held) if context else None
+
+
+def session_here() -> "Session | None":
+    """Give what keeps ground programs for the next question, if there may be one."""
+    here = held()
+    return here.session if here else None
+
+
 def read_question(
     folder: Path | None,
     network: Sequence[Path],
@@ -126,7 +154,14 @@ def read_question(
     level: int,
     kitchen_expected: bool = True,
 ) -> Question:
-    """Read the data that the options name; warnings go to stderr."""
+    """Read the data that the options name; warnings go to stderr. Within a session it is there already."""
+    here = held()
+    if here:
+        if any((folder, network, kitchen, rates, utensils, goals)) or (lenient, level) != here[1:3]:
+            raise UserError(
+                "the data of a session is what it was started with; another kitchen is given by: kitchen FILE"
+            )
+        return here.question
     files = question_files(folder, network, kitchen, rates, utensils, goals)
     question = reading.read_question(files, lenient, level)
     for text in question.remarks:

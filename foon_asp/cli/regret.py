@@ -56,7 +56,9 @@ def command(
         if unit is None:
             raise UserError(f"there is no unit {number} in the network")
         asked.append(unit)
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    settings = Settings(
+        constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
+    )
     with Progress() as progress:
         found = regrets(problem, chosen, settings, asked, progress)
     render = {"text": regrets_text, "json": regrets_json}[format_]

@@ -63,7 +63,9 @@ def command(
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
     problem = question.problem(question.goals(goals_named), containers, everything=True)
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    settings = Settings(
+        constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
+    )
     with Progress() as progress:
         prices = None
         if price_file is not None:

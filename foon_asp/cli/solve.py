@@ -93,7 +93,13 @@ def command(
     everything = bool(constraints or encodings or soft) or certificate_file is not None
     problem = question.problem(question.goals(goals_named), containers, everything)
     settings = Settings(
-        constraints, encodings, constants, clingo_options, time_limit, parse_reductions(reductions)
+        constraints,
+        encodings,
+        constants,
+        clingo_options,
+        time_limit,
+        parse_reductions(reductions),
+        session=options.session_here(),
     )
     if soft:
         if certificate_file is not None or cross_check:

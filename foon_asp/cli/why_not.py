@@ -58,7 +58,9 @@ def command(
         lines.append("foon-asp shopping-list with the same options says what to add to the kitchen")
         code = ExitCode.NEGATIVE
     elif constraints or encodings:
-        settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+        settings = Settings(
+            constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
+        )
         with Progress() as progress:
             clash = find_clash(problem, (Objective.UNITS,), settings, reporter=progress)
         found["clash"] = clash_dict(clash)

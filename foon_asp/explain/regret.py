@@ -74,7 +74,8 @@ def regrets(
     found = []
     for unit in sorted(tree.union(units)):
         fewer = replace(problem, network=problem.network.without([unit]))
-        found.append(_regret(Part.UNIT, unit, solve(fewer, objectives, settings, quiet)))
+        alone = settings._replace(session=None)  # another network: a program kept for it would be of no use
+        found.append(_regret(Part.UNIT, unit, solve(fewer, objectives, alone, quiet)))
     for o in taken:
         fewer = replace(problem, kitchen=problem.kitchen - {o})
         found.append(_regret(Part.ITEM, o, solve(fewer, objectives, settings, quiet)))

@@ -56,6 +56,16 @@ class Question:
         """The labels that the container rule ``implied`` looks at."""
         return self.data.utensils
 
+    @property
+    def motions(self) -> list[str]:
+        """The motions of the network, in alphabetical order."""
+        return sorted(set(self.data.network.motions))
+
+    @property
+    def kitchen(self) -> frozenset[int]:
+        """The object nodes at hand, by id."""
+        return self.data.kitchen
+
     def at_hand(self, o: int) -> bool:
         """Whether the kitchen has an object node, by id."""
         return o in self.data.kitchen

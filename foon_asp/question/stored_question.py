@@ -85,6 +85,7 @@ class StoredQuestion(Question):
         self._at_hand: Callable[[int], bool] = store.in_kitchen
         if kitchen is not None:
             self._at_hand = {o for item in kitchen for o in store.find(item.pattern)}.__contains__
+        self._all_at_hand = self._from_entries
         self._read_whole: list[tuple[Network, frozenset[int]]] = []  # shared by all that vary it
         self.remarks = remarks
         self.has_kitchen = kitchen is not None or store.has_kitchen
@@ -105,8 +106,12 @@ class StoredQuestion(Question):
         """Give the same store with another kitchen and other rates; nothing is read."""
         before = self._at_hand if only is None else frozenset(only).__contains__
         other = copy.copy(self)
-        other.__dict__.pop("data", None)
+        for known in ("data", "kitchen"):
+            other.__dict__.pop(known, None)
         other._at_hand = lambda o: o not in less and (o in more or before(o))
+        other._all_at_hand = lambda: (
+            (self.kitchen if only is None else frozenset(only)).union(more).difference(less)
+        )
         other._kitchen = self._kitchen if only is None else ()
         other._rates = rates
         return other
@@ -120,7 +125,7 @@ class StoredQuestion(Question):
         network, kitchen = self._read_whole[0]
         items = self._store.kitchen_items() if self._kitchen is None else tuple(self._kitchen)
         if self._at_hand != self._store.in_kitchen:
-            kitchen = frozenset(o for o in range(len(network.objects)) if self._at_hand(o))
+            kitchen = self.kitchen
         data = self._with(network, kitchen)._replace(kitchen_items=items)
         self.read_seconds += time.perf_counter() - began
         return data
@@ -134,6 +139,20 @@ class StoredQuestion(Question):
     def utensils(self) -> frozenset[str]:
         """The labels that the container rule ``implied`` looks at."""
         return self._utensils
+
+    @property
+    def motions(self) -> list[str]:
+        """The motions of the network, in alphabetical order."""
+        return sorted(motion for motion, _ in self._store.motion_sources())
+
+    @cached_property
+    def kitchen(self) -> frozenset[int]:
+        """The object nodes at hand, by id: the kitchen's entries are looked up, and no more is read."""
+        return self._all_at_hand()
+
+    def _from_entries(self) -> frozenset[int]:
+        items = self._store.kitchen_items() if self._kitchen is None else self._kitchen
+        return frozenset(o for item in items for o in self._store.find(item.pattern))
 
     def at_hand(self, o: int) -> bool:
         """Whether the kitchen has an object node, by id."""

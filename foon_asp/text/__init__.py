@@ -14,7 +14,18 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_
 from foon_asp.text.dialect import Dialect
 from foon_asp.text.folder_files import FolderFile, foon_files
 from foon_asp.text.formatter import Change, Formatted, format_text
-from foon_asp.text.goal_name import GoalError, NodeNames, find_goal, listed_nodes, near_labels
+from foon_asp.text.goal_name import (
+    GoalError,
+    NodeNames,
+    SomeNames,
+    Wording,
+    find_goal,
+    listed_nodes,
+    near_labels,
+    node_names,
+    nodes_beginning,
+    notation,
+)
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
@@ -45,6 +56,8 @@ __all__ = [
     "NodeNames",
     "Price",
     "Severity",
+    "SomeNames",
+    "Wording",
     "excerpt_with_caret",
     "find_data",
     "find_goal",
@@ -57,6 +70,9 @@ __all__ = [
     "merged_text",
     "near_labels",
     "network_files",
+    "node_names",
+    "nodes_beginning",
+    "notation",
     "parse_node",
     "read_data",
     "read_labels",

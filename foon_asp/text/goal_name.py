@@ -1,10 +1,10 @@
-"""Finding the object node that a goal's name means."""
+"""Finding the object node that a name means: of a goal, or of a thing in the kitchen."""
 
 import difflib
 import shlex
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
-from typing import Protocol
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, Protocol
 
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NodePattern, ObjectNode, node_at_level
@@ -15,15 +15,28 @@ _SHOWN = 12
 _NEAR = 3  # labels shown that are like one that nobody has
 
 
+class Wording(NamedTuple):
+    """How messages call what is named, where it was looked for, and what stands before a name to paste."""
+
+    thing: str
+    where: str
+    before: str
+
+
+_GOAL = Wording("goal", "", "--goal")
+
+
 class GoalError(UserError):
     """A name that means no object node, or several.
 
     ``said`` is the message without candidates, ``candidates`` are those shown, in one-line notation, and
-    ``more`` counts the others. As a string they are options of the command line.
+    ``more`` counts the others. As a string they are ready to paste, behind the words that stand ``before``.
     """
 
-    def __init__(self, said: str, candidates: Sequence[str] = (), more: int = 0) -> None:
-        lines = [said, *(f"  --goal {shlex.quote(candidate)}" for candidate in candidates)]
+    def __init__(
+        self, said: str, candidates: Sequence[str] = (), more: int = 0, before: str = _GOAL.before
+    ) -> None:
+        lines = [said, *(f"  {before} {shlex.quote(candidate)}" for candidate in candidates)]
         if more:
             lines.append(f"  ... and {more} more")
         super().__init__("\n".join(lines))
@@ -57,42 +70,75 @@ class NodeNames(Protocol):
 
 
 def find_goal(
-    name: str, network: Network | NodeNames, listed: Sequence[ListedObject] = (), what: str = "goal"
+    name: str,
+    network: Network | NodeNames,
+    listed: Sequence[ListedObject] = (),
+    wording: Wording = _GOAL,
+    by_beginning: bool = False,
 ) -> int:
-    """Give the id of the object node that a goal, or ``what`` else is asked for, names.
+    """Give the id of the object node that a goal names.
 
     A name is a label (of an entry of the goals file first, then of the network's nodes) or the one-line
     notation ``sweet potato; chopped; in [cutting board]``; a semicolon at the end (``onion;``) makes the
-    notation of a node that is only a label. Raises :class:`GoalError` with candidates ready
-    to paste when it is unknown or means several nodes.
+    notation of a node that is only a label. ``by_beginning`` takes the beginning of a notation too, where
+    one node alone begins so and no name is just this. Raises :class:`GoalError` with candidates ready
+    to paste when it is unknown or means several nodes; ``wording`` is for other things than goals.
     """
-    names = _names(network)
+    names = node_names(network)
+    begun = [] if not by_beginning else nodes_beginning(name, names, 2)
     try:
         named = parse_node(name)
     except LineError as error:
-        raise GoalError(f"the {what} {name!r} cannot be read: at column {error.column}, {error}") from None
+        if len(begun) == 1:
+            return begun[0]
+        raise GoalError(
+            f"the {wording.thing} {name!r} cannot be read: at column {error.column}, {error}"
+        ) from None
     bare = named == ObjectNode(named.label) and not _is_closed(name, named)
     node = node_at_level(named, names.level)
     entries = [entry for entry in listed if bare and entry.pattern.label == node.label]
     if entries:
         found = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
-        return _only(f"the {what} {name!r}", names, len(found), found)
+        return _only(name, names, len(found), found, wording)
     if bare:
         count, labelled = names.labelled(node.label)
         if count:
-            return _only(f"the {what} {name!r}", names, count, labelled)
+            return _only(name, names, count, labelled, wording)
     exact = names.object_id(node)
     if exact is not None:
         return exact
     if not bare:  # a label with a semicolon in it, as it is
         count, labelled = names.labelled(name)
         if count:
-            return _only(f"the {what} {name!r}", names, count, labelled)
+            return _only(name, names, count, labelled, wording)
+    if len(begun) == 1:
+        return begun[0]
     count, labelled = names.labelled(node.label)
     if count:
-        said = f"no object node is exactly {str(node)!r}; with that label there are"
-        raise _unclear(said, names, count, labelled)
-    raise _unknown(f"no object node has the label {node.label!r}", node.label, names)
+        said = f"no object node{wording.where} is exactly {str(node)!r}; with that label there are"
+        raise _unclear(said, names, count, labelled, wording)
+    raise _unknown(f"no object node{wording.where} has the label {node.label!r}", node.label, names, wording)
+
+
+def nodes_beginning(start: str, network: Network | NodeNames, most: int) -> list[int]:
+    """Give the ids of nodes whose one-line notation begins so, in the order of their labels; so many at most.
+
+    Up to the first semicolon that is a label, and of it as many letters as there are.
+    """
+    names = node_names(network)
+    label, semicolon, _ = start.partition(";")
+    labels = [label] if semicolon else names.beginning(label, most)
+    found: list[int] = []
+    for each in labels:
+        found += (o for o in names.labelled(each)[1] if str(names.node(o)).startswith(start))
+        if len(found) >= most:
+            break
+    return found[:most]
+
+
+def notation(node: ObjectNode) -> str:
+    """Give the one-line notation that names a node and no other: a label alone is closed by a semicolon."""
+    return f"{node};" if node == ObjectNode(node.label) else str(node)
 
 
 def _is_closed(name: str, node: ObjectNode) -> bool:
@@ -103,15 +149,15 @@ def _is_closed(name: str, node: ObjectNode) -> bool:
 
 def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[int]:
     """Give the nodes that an entry of a goals file stands for; raises :class:`UserError` for none."""
-    names = _names(network)
+    names = node_names(network)
     found = names.find(entry.pattern)
     if not found:
         count, labelled = names.labelled(entry.pattern.label)
         place = f"{entry.source.file}:{entry.source.line}:{entry.source.column}"
         said = f"{place}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
-            raise _unclear(f"{said}; with that label there are", names, count, labelled)
-        raise _unknown(f"{said} of the network", entry.pattern.label, names)
+            raise _unclear(f"{said}; with that label there are", names, count, labelled, _GOAL)
+        raise _unknown(f"{said} of the network", entry.pattern.label, names, _GOAL)
     return found
 
 
@@ -138,6 +184,42 @@ class _NetworkNames:
         return near_labels(label, self._network.by_label, most)
 
 
+class SomeNames:
+    """The names of some nodes, by id: those of a kitchen."""
+
+    def __init__(self, nodes: Mapping[int, ObjectNode], level: int) -> None:
+        self.level = level
+        self._nodes = nodes
+        self._labels: defaultdict[str, list[int]] = defaultdict(list)
+        for o, node in nodes.items():
+            self._labels[node.label].append(o)
+
+    def object_id(self, node: ObjectNode) -> int | None:
+        """Give the id of a node, or ``None`` when it is not there."""
+        return next((o for o in self._labels.get(node.label, ()) if self._nodes[o] == node), None)
+
+    def node(self, object_id: int) -> ObjectNode:
+        """Give the node with that id."""
+        return self._nodes[object_id]
+
+    def find(self, pattern: NodePattern) -> Sequence[int]:
+        """Give the ids of the nodes that an entry stands for."""
+        return [o for o in self._labels.get(pattern.label, ()) if pattern.matches(self._nodes[o])]
+
+    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
+        """Give how many nodes have a label, and which."""
+        found = self._labels.get(label, [])
+        return len(found), found
+
+    def beginning(self, start: str, most: int) -> Sequence[str]:
+        """Give labels that begin so, in alphabetical order, at most so many."""
+        return sorted(label for label in self._labels if label.startswith(start))[:most]
+
+    def near(self, label: str, most: int) -> Sequence[str]:
+        """Give labels that are like one, the likest first, at most so many."""
+        return near_labels(label, self._labels, most)
+
+
 def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
     """Give those of the known labels that are like one, whatever their capitals, the likest first."""
     lower: defaultdict[str, list[str]] = defaultdict(list)
@@ -147,17 +229,19 @@ def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
     return [name for small in close for name in lower[small]]
 
 
-def _names(network: Network | NodeNames) -> NodeNames:
+def node_names(network: Network | NodeNames) -> NodeNames:
+    """Give what names are looked up in."""
     return _NetworkNames(network) if isinstance(network, Network) else network
 
 
-def _only(what: str, names: NodeNames, count: int, found: Sequence[int]) -> int:
+def _only(name: str, names: NodeNames, count: int, found: Sequence[int], wording: Wording) -> int:
     if count > 1:
-        raise _unclear(f"{what} means {count} object nodes; paste the one you mean", names, count, found)
+        said = f"the {wording.thing} {name!r} means {count} object nodes{wording.where}"
+        raise _unclear(f"{said}; paste the one you mean", names, count, found, wording)
     return found[0]
 
 
-def _unknown(said: str, label: str, names: NodeNames) -> GoalError:
+def _unknown(said: str, label: str, names: NodeNames, wording: Wording) -> GoalError:
     """Name nodes whose labels begin so or are near, a few of each label, if there are any."""
     labels = dict.fromkeys((*names.beginning(label, _SHOWN), *names.near(label, _NEAR)))
     found = [names.labelled(like) for like in labels]
@@ -165,11 +249,10 @@ def _unknown(said: str, label: str, names: NodeNames) -> GoalError:
         return GoalError(said)
     each = max(1, _SHOWN // len(found))
     total = sum(count for count, _ in found)
-    return _unclear(f"{said}; similar are", names, total, [o for _, first in found for o in first[:each]])
+    first = [o for _, some in found for o in some[:each]]
+    return _unclear(f"{said}; similar are", names, total, first, wording)
 
 
-def _unclear(said: str, names: NodeNames, count: int, first: Iterable[int]) -> GoalError:
-    shown = [names.node(o) for o in [*first][:_SHOWN]]
-    # a semicolon makes the notation of a node that is only a label
-    texts = [f"{node};" if node == ObjectNode(node.label) else str(node) for node in shown]
-    return GoalError(said, texts, count - len(shown))
+def _unclear(said: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording) -> GoalError:
+    shown = [notation(names.node(o)) for o in [*first][:_SHOWN]]
+    return GoalError(said, shown, count - len(shown), wording.before)

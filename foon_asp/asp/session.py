@@ -1,0 +1,226 @@
+"""Ground programs that are kept from one question to the next: multi-shot solving.
+
+With rules of the user's all that can be made is grounded, which takes most of the time of a question. Here
+it is grounded once. Goals and objectives are external atoms, which are set before each search, and so is what
+has changed since: units that could run or not, items of the kitchen. What was always the case stays a
+fact: searches with the whole kitchen left open were up to a hundred times as long.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+
+from clingo.symbol import Function, Number, Symbol
+
+from foon_asp.asp.deadline import Deadline
+from foon_asp.asp.exact_success import RateScale, problem_scale
+from foon_asp.asp.facts import OBJECTIVE_TERMS, described, write_exponents, write_open_facts, write_product
+from foon_asp.asp.program import Program
+from foon_asp.asp.run import Run
+from foon_asp.asp.search import ground, search
+from foon_asp.network import Network
+from foon_asp.problem import Objective, Problem
+
+_KEPT = 4  # programs: the container rules, with and without some constraint
+_MOST_OPEN = 50  # items of the kitchen
+_MOST_PRODUCTS = 40  # each is some counting over all units that later searches carry along
+
+Case = tuple[str, int]  # that there is a unit or an object, or that one is in the kitchen; by id
+
+
+class Session:
+    """Ground programs of the questions asked last, for :attr:`foon_asp.asp.Settings.session`.
+
+    An answer is what it is without: in status, proof and costs by the objectives. Among trees that are as
+    good it may be another one.
+    """
+
+    def __init__(self) -> None:
+        self._programs: list[OpenProgram] = []  # the one used last at the end
+
+    def program(
+        self, program: Program, problem: Problem, units: Sequence[int], levels: Sequence[Objective]
+    ) -> "OpenProgram":
+        """Give a ground program for a question: one at hand, or a new one where none fits.
+
+        ``units`` are those that there are, by id, and ``levels`` the objectives as optimized. Raises like
+        :func:`foon_asp.asp.search.ground`.
+        """
+        cases = frozenset(_cases(problem, units))
+        like = next((kept for kept in self._programs if kept.is_like(program, problem)), None)
+        if like is None:
+            like = OpenProgram(program, problem, cases, frozenset(), _pairs(levels))
+        else:
+            self._programs.remove(like)
+            if not like.fits(problem, cases, levels):
+                like = like.extended(problem, cases, levels)
+        self._programs = [*self._programs[1 - _KEPT :], like]
+        return like
+
+    def forget(self, program: "OpenProgram") -> None:
+        """Drop a program that was left halfway."""
+        if program in self._programs:
+            self._programs.remove(program)
+
+
+class OpenProgram:
+    """A ground program that leaves some cases open, and what is asked.
+
+    ``closed`` is always the case, ``left_open`` may be. ``pairs`` are objectives with the priorities that
+    they may have. ``scale`` is that of the success rates, ``None`` where no rates are known.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        problem: Problem,
+        closed: frozenset[Case],
+        left_open: frozenset[Case],
+        pairs: Iterable[tuple[Objective, int]],
+    ) -> None:
+        self._program = program
+        self._problem = problem
+        self._closed, self._open = closed, left_open
+        self._units = _units({*closed, *left_open})
+        self._pairs = frozenset(pairs)
+        self._priorities = max(priority for _, priority in self._pairs)
+        self.scale: RateScale | None = None
+        if problem.rates is not None:
+            self.scale = problem_scale(problem, self._units)
+        facts = write_open_facts(problem, closed, left_open, self.scale, program.looked_at)
+        facts += "".join(
+            f"#external optimize({OBJECTIVE_TERMS[objective]},{priority}).\n"
+            for objective, priority in sorted(self._pairs)
+        )
+        self._control = ground((*program.files, program.exact_success), facts, program.arguments)
+        self._true: set[Symbol] = set()
+        self._products: dict[tuple[tuple[int, int], ...], int] = {}
+
+    def is_like(self, program: Program, problem: Problem) -> bool:
+        """Whether it speaks of the same network and rules, whatever is in the kitchen and asked for."""
+        ours = self._problem
+        return (
+            program == self._program
+            and problem.network is ours.network
+            and problem.containers is ours.containers
+            and problem.rates == ours.rates
+            and problem.own_rates == ours.own_rates
+            and problem.utensils == ours.utensils
+        )
+
+    def fits(self, problem: Problem, cases: frozenset[Case], levels: Sequence[Objective]) -> bool:
+        """Whether it can be made to say just what a question says."""
+        return (
+            self._closed <= cases <= self._closed | self._open
+            and self._pairs.issuperset(_pairs(levels))
+            and len(self._products) <= _MOST_PRODUCTS
+            and self._measures_like(problem, cases)
+        )
+
+    def extended(
+        self, problem: Problem, cases: frozenset[Case], levels: Sequence[Objective]
+    ) -> "OpenProgram":
+        """Give a program for this question and, as far as can be, for those before it."""
+        pairs = self._pairs.union(_pairs(levels))
+        left_open = self._open | (self._closed ^ cases)
+        if sum(kind == "kitchen" for kind, _ in left_open) <= _MOST_OPEN:
+            more = OpenProgram(self._program, problem, cases - left_open, left_open, pairs)
+            if more._measures_like(problem, cases):
+                return more
+        return OpenProgram(self._program, problem, cases, frozenset(), pairs)
+
+    def _measures_like(self, problem: Problem, cases: Iterable[Case]) -> bool:
+        """Whether the rates of all units have the weights that those of the question have by themselves."""
+        return self.scale is None or problem_scale(problem, _units(cases)).scale == self.scale.scale
+
+    def run(
+        self,
+        problem: Problem,
+        units: Sequence[int],
+        levels: Sequence[Objective],
+        objectives: Sequence[Objective],
+        products: Sequence[Mapping[int, int]],
+        wanted: int | None,
+        deadline: Deadline,
+        opt_mode: str,
+        on_tree: Callable[[frozenset[int]], None] | None = None,
+        on_bound: Callable[[list[int]], None] | None = None,
+    ) -> Run:
+        """Search for the best answer by those of the levels that are among ``objectives``.
+
+        ``products`` of success rates, by exponents, are ruled out; with ``wanted`` the one of that number is
+        asked for instead. ``opt_mode`` is as for :func:`foon_asp.asp.search.run`, its bounds those of the
+        ``objectives``.
+        """
+        numbers = [self._product(product) for product in products]
+        network = problem.network
+        true = {_case(case, network) for case in self._open.intersection(_cases(problem, units))}
+        true |= {_atom("goal", network.object_number(o)) for o in problem.goals}
+        true |= {
+            Function("optimize", [Function(OBJECTIVE_TERMS[objective]), Number(priority)])
+            for objective, priority in _pairs(levels)
+            if objective in objectives
+        }
+        if wanted is None:
+            true |= {_atom("seen", number) for number in numbers}
+        else:
+            true.add(_atom("wanted", numbers[wanted]))
+        for atom in self._true - true:
+            self._control.assign_external(atom, False)
+        for atom in true - self._true:
+            self._control.assign_external(atom, True)
+        self._true = true
+        above = self._priorities - len(levels)  # that nothing is measured under here
+        mode, *bounds = opt_mode.split(",")
+        bound_of = dict(zip(objectives, bounds, strict=False))
+        if bounds:  # what is not measured costs nothing
+            bounds = ["0"] * above + [bound_of.get(level, "0") for level in levels]
+        ended = search(
+            self._control,
+            deadline,
+            ",".join([mode, *bounds]),
+            on_tree,
+            None if on_bound is None else lambda lower: on_bound(lower[above:]),
+        )
+        ended.cost, ended.lower = ended.cost[above:], ended.lower[above:]
+        return ended
+
+    def _product(self, exponents: Mapping[int, int]) -> int:
+        """Give the number of a product of rates, grounding what is said of it when it is new."""
+        key = tuple(sorted(exponents.items()))
+        if key in self._products:
+            return self._products[key]
+        number = len(self._products)
+        facts = write_product(number, exponents) + f"#external seen({number}). #external wanted({number}).\n"
+        if not number and self.scale is not None:
+            facts += write_exponents(self._problem, self._units, self.scale)
+        part = f"facts of product {number}"
+        self._control.add(part, [], facts)
+        self._control.ground([(part, []), ("product", [Number(number)])])
+        self._products[key] = number
+        return number
+
+
+def _pairs(levels: Sequence[Objective]) -> list[tuple[Objective, int]]:
+    """Give objectives with their priorities, the first with the highest."""
+    return [(objective, len(levels) - place) for place, objective in enumerate(levels)]
+
+
+def _cases(problem: Problem, units: Collection[int]) -> Iterable[Case]:
+    """Give what is the case in a question: just what its facts say when it is asked by itself."""
+    yield from (("unit", unit) for unit in units)
+    for o in described(problem, units):
+        yield "object", o
+        if o in problem.kitchen:
+            yield "kitchen", o
+
+
+def _units(cases: Iterable[Case]) -> list[int]:
+    return sorted(unit for kind, unit in cases if kind == "unit")
+
+
+def _case(case: Case, network: Network) -> Symbol:
+    kind, id_ = case
+    return _atom(kind, network.unit_number(id_) if kind == "unit" else network.object_number(id_))
+
+
+def _atom(name: str, number: int) -> Symbol:
+    return Function(name, [Number(number)])

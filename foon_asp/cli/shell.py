@@ -1,0 +1,113 @@
+"""``foon-asp shell``: a session, in which data is read once and questions are asked again and again."""
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.shell_session import Leave, ShellSession
+from foon_asp.errors import UserError
+from foon_asp.problem import ContainerRule
+
+
+@click.command("shell")
+@click.argument("script", required=False, type=click.Path(path_type=Path), metavar="[SCRIPT]")
+@options.goal_option
+@options.objective_option
+@options.containers_option
+@options.constraint_options
+@options.constant_option
+@options.time_limit_option
+@options.data_options
+def command(
+    script: Path | None,
+    goals_named: tuple[str, ...],
+    objectives: tuple[str, ...],
+    containers: str,
+    constraints: tuple[Path, ...],
+    encodings: Path | None,
+    constants: tuple[str, ...],
+    time_limit: float | None,
+    lenient: bool,
+    level: int,
+    **data: object,
+) -> ExitCode:
+    """Read the data once, then change kitchen, goals, rule, constraints and objectives, and ask again.
+
+    \b
+    foon-asp shell --data my_foon
+    foon-asp shell evening.txt           the lines of a file
+    foon-asp shell < evening.txt
+
+    \b
+    goal macaroni
+    solve
+    lack 'pot; empty'
+    why-not
+    constraint forbid_motion forbidden_motion=pour
+    solve --objective success
+
+    help lists the words. Questions are asked as on the command line, with the same options; what stands in
+    the session counts for those that are not given. Ctrl-C ends a question with the best answer so far.
+
+    On a terminal a fault is said and the session goes on, and leaving exits with 0. A script ends at the
+    first fault, with its line, and exits with 2; else with the code of the question asked last.
+    """
+    from_terminal = script is None and sys.stdin.isatty() and sys.stdout.isatty()
+    question = options.read_question(lenient=lenient, level=level, **data)  # type: ignore[arg-type]
+    session = ShellSession(question, lenient, level, encodings)
+    session.containers = ContainerRule(containers)
+    session.time_limit = time_limit
+    session.choose(objectives)
+    if constraints or constants or encodings:
+        session.constrain(constraints, constants)
+    if goals_named:
+        session.set_goals(goals_named)
+    if not from_terminal:
+        return _run_script(session, script)
+    from foon_asp.cli.shell_prompt import prompted_lines  # slow to import, and only for terminals
+
+    click.echo("help lists the words, tab completes them, ctrl-D leaves", err=True)
+    for line in prompted_lines(session):
+        try:
+            session.run(line)
+        except Leave:
+            break
+        except (UserError, click.ClickException) as error:
+            click.echo(f"error: {_message(error)}", err=True)
+        except (click.Abort, KeyboardInterrupt):
+            click.echo("interrupted before there was an answer", err=True)
+    return ExitCode.DONE
+
+
+def _run_script(session: ShellSession, script: Path | None) -> ExitCode:
+    name = "<stdin>" if script is None else str(script)
+    for number, line in enumerate(_lines(script), 1):
+        try:
+            session.run(line)
+        except Leave:
+            break
+        except (UserError, click.ClickException) as error:
+            raise UserError(f"{name}:{number}: error: {_message(error)}") from error
+    return session.code
+
+
+def _lines(script: Path | None) -> Iterator[str]:
+    """Give line after line, each as soon as it is there."""
+    if script is None:
+        yield from sys.stdin
+        return
+    try:
+        text = script.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{script}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise UserError(f"{script}: cannot be read: {error}") from None
+    yield from text.splitlines()
+
+
+def _message(error: UserError | click.ClickException) -> str:
+    return error.format_message() if isinstance(error, click.ClickException) else str(error)

@@ -1,0 +1,118 @@
+"""What a word of a session that is not finished can become."""
+
+from collections.abc import Callable, Iterable
+from itertools import islice
+from typing import NamedTuple
+
+import click
+
+from foon_asp.asp.constraint_library import library_constraints
+from foon_asp.cli.shell_line import quoted, take_apart
+from foon_asp.cli.shell_session import QUESTIONS, WORDS, ShellSession, verb_command
+from foon_asp.problem import ContainerRule, Objective
+from foon_asp.text import NodeNames, nodes_beginning, notation
+
+_MOST = 200  # candidates shown
+
+# Constants whose values are names: those that end so are motions, or labels.
+_MOTIONS, _LABELS = "_motion", ("_object", "_intermediate", "_ingredient")
+
+
+class Candidates(NamedTuple):
+    """Texts that can stand from a column, from 0, to the end of the line."""
+
+    start: int
+    texts: tuple[str, ...]
+
+
+def candidates(text: str, session: ShellSession) -> Candidates:
+    """Give what the last word of a line can become: words, nodes, constraints, options and their values."""
+    line = take_apart(text)
+    words = list(line.words)
+    if not line.open_quote and (not words or text[-1:].isspace()):
+        fragment, start = "", len(text)
+    else:
+        fragment, start = words.pop()
+    before = [word.text for word in words]
+    if before[:1] == ["foon-asp"]:
+        del before[0]
+    found = dict.fromkeys(_words(before, fragment, session))
+    return Candidates(start, tuple(quoted(each) for each in islice(found, _MOST)))
+
+
+def _words(before: list[str], fragment: str, session: ShellSession) -> Iterable[str]:
+    """Give words that begin like the fragment, behind the words that stand before it."""
+    if not before:
+        return _beginning([*WORDS, *QUESTIONS], fragment)
+    first, *rest = before
+    if first in QUESTIONS:
+        return _options(first, before[-1], fragment, session)
+    if first == "constraint" and rest:
+        return _constants(rest[0], fragment, session)
+    kitchen = session.kitchen
+    known: dict[str, Callable[[], Iterable[str]]] = {
+        "goal": lambda: _goals(fragment, session),
+        "have": lambda: _nodes(fragment, kitchen.names),
+        "lack": lambda: _nodes(fragment, kitchen.names_at_hand),
+        "objective": lambda: _list(fragment),
+        "containers": lambda: _beginning(ContainerRule, fragment),
+        "constraint": lambda: _beginning((each.name for each in library_constraints()), fragment),
+        "drop": lambda: _beginning(map(str, session.constraints), fragment),
+        "time-limit": lambda: _beginning(["none"], fragment),
+        "help": lambda: _beginning([*WORDS, *QUESTIONS], fragment),
+    }
+    return known[first]() if first in known else ()
+
+
+def _options(verb: str, last: str, fragment: str, session: ShellSession) -> Iterable[str]:
+    """Give the options of a verb, or the values of the one that stands before."""
+    options = [each for each in verb_command(verb).params if isinstance(each, click.Option)]
+    option = next((each for each in options if last in each.opts and not each.is_flag), None)
+    if option is None:
+        names = (name for each in options for name in each.opts if name.startswith("--"))
+        return _beginning(sorted(names), fragment)
+    if option.name == "goals_named":
+        return _goals(fragment, session)
+    if option.name == "objectives":
+        return _list(fragment)
+    if option.name == "constraints":
+        return _beginning((constraint.name for constraint in library_constraints()), fragment)
+    if isinstance(option.type, click.Choice):
+        return _beginning(map(str, option.type.choices), fragment)
+    return ()
+
+
+def _goals(fragment: str, session: ShellSession) -> Iterable[str]:
+    """Give the labels of the goals file before all other nodes."""
+    yield from _beginning((entry.pattern.label for entry in session.kitchen.question.listed), fragment)
+    yield from _nodes(fragment, session.kitchen.names)
+
+
+def _nodes(fragment: str, names: NodeNames) -> Iterable[str]:
+    return (notation(names.node(o)) for o in nodes_beginning(fragment, names, _MOST))
+
+
+def _list(fragment: str) -> Iterable[str]:
+    """Go on with a list of objectives."""
+    done, comma, last = fragment.rpartition(",")
+    left = [objective for objective in Objective if objective not in done.split(",")]
+    return (f"{done}{comma}{objective}" for objective in _beginning(left, last))
+
+
+def _constants(constraint: str, fragment: str, session: ShellSession) -> Iterable[str]:
+    """Give the constants of a ready-made constraint, or values of one that is a motion or a label."""
+    name, equals, value = fragment.partition("=")
+    if not equals:
+        ours = {each.name: each.parameters for each in library_constraints()}
+        return _beginning((f"{parameter.name}=" for parameter in ours.get(constraint, ())), fragment)
+    if name.endswith(_MOTIONS):
+        values = _beginning(session.kitchen.question.motions, value)
+    elif name.endswith(_LABELS):
+        values = session.kitchen.names.beginning(value, _MOST)
+    else:
+        values = ()
+    return (f"{name}={each}" for each in values)
+
+
+def _beginning(known: Iterable[str], fragment: str) -> Iterable[str]:
+    return (each for each in known if each.startswith(fragment))

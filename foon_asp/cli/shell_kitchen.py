@@ -1,0 +1,126 @@
+"""The kitchen of a session: the one that was read, and what was put into it and taken out since."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import click
+
+from foon_asp.cli.shell_line import quoted
+from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode, pattern_at_level
+from foon_asp.question import Question
+from foon_asp.text import (
+    Diagnostic,
+    ListedObject,
+    NodeNames,
+    SomeNames,
+    Wording,
+    find_goal,
+    kitchen_item_warning,
+    node_names,
+    read_object_list,
+    summarize,
+)
+
+_HAVE = Wording("kitchen item", "", "have")
+_LACK = Wording("kitchen item", " at hand", "lack")
+
+
+class ShellKitchen:
+    """What is at hand; ``question`` is asked with it. What changes is said on stderr."""
+
+    def __init__(self, question: Question) -> None:
+        self.question = question
+        self._read = question
+        self._added: frozenset[int] = frozenset()
+        self._removed: frozenset[int] = frozenset()
+
+    @property
+    def names(self) -> NodeNames:
+        """What the names of object nodes are looked up in."""
+        return node_names(self.question.names)
+
+    @property
+    def names_at_hand(self) -> NodeNames:
+        """What the names of things at hand are looked up in."""
+        nodes = {o: self.names.node(o) for o in sorted(self.question.kitchen)}
+        return SomeNames(nodes, self.names.level)
+
+    def have(self, words: Sequence[str]) -> None:
+        """Put object nodes into the kitchen, by name."""
+        before = self.question.kitchen
+        found = find_nodes(words, self.names, _HAVE)
+        self._change(self._added.union(found), self._removed.difference(found))
+        for o in found:
+            _say(f"{'already ' if o in before else ''}at hand: {self.names.node(o)}")
+
+    def lack(self, words: Sequence[str]) -> None:
+        """Take object nodes out of the kitchen, by name."""
+        found = find_nodes(words, self.names_at_hand, _LACK)
+        self._change(self._added.difference(found), self._removed.union(found))
+        for o in found:
+            _say(f"no longer at hand: {self.names.node(o)}")
+
+    def take(self, file: Path) -> None:
+        """Take the kitchen of a file instead; raises :class:`InputError` for what is not understood in it."""
+        if not file.is_file():
+            raise UserError(f"{file}: no such file; have and lack change single object nodes")
+        warnings: list[Diagnostic] = []
+        items = read_object_list(file, warnings)
+        level, find = self.names.level, self.names.find
+        warnings += (kitchen_item_warning(i) for i in items if not find(pattern_at_level(i.pattern, level)))
+        for text in summarize(warnings):
+            _say(text)
+        self._read = self._read.with_kitchen(items)
+        self._change(frozenset(), frozenset())
+        _say(f"kitchen: {self.size} from {file}")
+
+    @property
+    def size(self) -> str:
+        """Say how much is at hand."""
+        count = len(self.question.kitchen)
+        return "1 object node" if count == 1 else f"{count} object nodes"
+
+    def nodes(self) -> list[str]:
+        """List what is at hand."""
+        return self._sorted(self.question.kitchen)
+
+    def changes(self) -> list[str]:
+        """List what was put in, behind a plus, and taken out, behind a minus."""
+        return [f"+ {n}" for n in self._sorted(self._added)] + [f"- {n}" for n in self._sorted(self._removed)]
+
+    def _change(self, added: frozenset[int], removed: frozenset[int]) -> None:
+        at_hand = self._read.kitchen
+        self._added, self._removed = added - at_hand, removed & at_hand
+        changed = self._added or self._removed
+        self.question = self._read
+        if changed:
+            self.question = self._read.varied(self._added, self._removed, None, self._read.rates)
+
+    def _sorted(self, ids: Iterable[int]) -> list[str]:
+        nodes: list[ObjectNode] = [self.names.node(o) for o in ids]
+        return sorted(map(str, nodes))
+
+
+def find_nodes(
+    words: Sequence[str], among: NodeNames, wording: Wording, listed: Sequence[ListedObject] = ()
+) -> list[int]:
+    """Find the nodes that are named, each once; the beginning of a name is enough where it is the only one.
+
+    Raises :class:`UserError` like :func:`foon_asp.text.find_goal`.
+    """
+    if not words:
+        raise UserError(f"name an object node: {wording.before} NAME...")
+    alone = len(words) == 1
+    try:
+        found = [find_goal(word, among, listed, wording, by_beginning=alone) for word in words]
+    except UserError as error:
+        if alone:
+            raise
+        whole = quoted(" ".join(words))
+        raise UserError(f"{error}\na name with blanks is in quotes: {wording.before} {whole}") from None
+    return list(dict.fromkeys(found))
+
+
+def _say(text: str) -> None:
+    click.echo(text, err=True)

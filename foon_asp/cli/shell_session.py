@@ -1,0 +1,315 @@
+"""What stands in a session (goals, kitchen, rule, constraints, objectives) and the words that change it."""
+
+import importlib
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+
+from foon_asp.asp import Settings
+from foon_asp.asp.constraint_library import library_constraints
+from foon_asp.asp.encoding import read_encoding
+from foon_asp.asp.program import assemble, find_constraint
+from foon_asp.asp.session import Session
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.options import Held
+from foon_asp.cli.shell_kitchen import ShellKitchen, find_nodes
+from foon_asp.cli.shell_line import quoted, take_apart
+from foon_asp.errors import UserError
+from foon_asp.problem import ContainerRule, Objective, parse_objectives
+from foon_asp.question import Question
+from foon_asp.text import Wording, notation
+
+# The verbs that ask something of a network and a kitchen.
+QUESTIONS = (
+    "solve",
+    "optima",
+    "search",
+    "compare",
+    "check",
+    "certify",
+    "verify",
+    "draw",
+    "why-not",
+    "shopping-list",
+    "clash",
+    "alternatives",
+    "pareto",
+    "regret",
+    "assist",
+    "menu",
+    "diff",
+    "facts",
+    "constraints",
+)
+
+_GOAL = Wording("goal", "", "goal")
+
+
+class Usage(NamedTuple):
+    """How a word is used, and what it does."""
+
+    usage: str
+    purpose: str
+
+
+WORDS = {
+    "goal": Usage("goal NAME...", "make this, or all of these by one tree"),
+    "have": Usage("have NAME...", "put object nodes into the kitchen"),
+    "lack": Usage("lack NAME...", "take object nodes out of the kitchen"),
+    "kitchen": Usage("kitchen [FILE]", "list what is at hand, or take another kitchen"),
+    "containers": Usage("containers strict|implied", "whether a unit needs every input"),
+    "objective": Usage("objective LIST", "what is best, most important first"),
+    "constraint": Usage(
+        "constraint NAME|FILE.lp [CONSTANT=VALUE...]", "add a constraint, or set its constants"
+    ),
+    "drop": Usage("drop NAME|FILE.lp...", "take constraints away"),
+    "time-limit": Usage("time-limit SECONDS|none", "stop each search after so long"),
+    "show": Usage("show", "say what stands"),
+    "help": Usage("help [WORD]", "list the words, or explain one"),
+    "quit": Usage("quit", "leave, as ctrl-D does"),
+}
+
+
+class Leave(Exception):  # noqa: N818 (no error: the session is over)
+    """Raised where a line asks to leave."""
+
+
+class ShellSession:
+    """A session: data that was read once, and what stands until another line changes it.
+
+    ``code`` is that of the question asked last. ``lenient`` and ``level`` are how the data was read,
+    ``encodings`` the folder with encodings to use instead of ours. What is said about the session goes to
+    stderr, answers go to stdout.
+    """
+
+    def __init__(self, question: Question, lenient: bool, level: int, encodings: Path | None) -> None:
+        self.code = ExitCode.DONE
+        self.goals: tuple[str, ...] = ()
+        self.containers = ContainerRule.STRICT
+        self.objectives: tuple[str, ...] = ()
+        self.constraints: dict[Path, frozenset[str]] = {}  # with the names of their constants
+        self.constants: dict[str, str] = {}
+        self.time_limit: float | None = None
+        self.kitchen = ShellKitchen(question)
+        self._encodings = encodings
+        self._lenient, self._level = lenient, level
+        self._session = Session()
+        self._words: dict[str, Callable[[list[str]], None]] = {
+            "goal": self.set_goals,
+            "have": self.kitchen.have,
+            "lack": self.kitchen.lack,
+            "kitchen": self._kitchen,
+            "containers": self._containers,
+            "objective": self._objective,
+            "constraint": self._constraint,
+            "drop": self._drop,
+            "time-limit": self._time_limit,
+            "show": self._show,
+            "help": self._help,
+            "quit": self._quit,
+            "exit": self._quit,
+        }
+
+    def run(self, line: str) -> None:
+        """Do what a line says. Raises :class:`UserError`, what click raises, and :class:`Leave`."""
+        words = take_apart(line).texts
+        if words[:1] == ["foon-asp"]:  # pasted from a page or a message
+            del words[0]
+        if not words:
+            return
+        word, *rest = words
+        if word in self._words:
+            self._words[word](rest)
+        elif word in QUESTIONS:
+            self._ask(word, rest)
+        else:
+            known = [*WORDS, *QUESTIONS]
+            near = [each for each in known if each.startswith(word)] or get_close_matches(word, known, n=1)
+            hint = f"did you mean {near[0]}?" if near else "help lists the words"
+            raise UserError(f"found {word!r}, expected a word of the session or a question; {hint}")
+
+    def _ask(self, verb: str, words: list[str]) -> None:
+        """Ask a question by its verb; what stands counts for all options that are not given."""
+        question = self.kitchen.question
+        given: dict[str, object] = {
+            "goals_named": self.goals,
+            "objectives": self._objectives_for(verb),
+            "containers": str(self.containers),
+            "constraints": tuple(self.constraints),
+            "constants": _settings(self.constants),
+            "encodings": self._encodings,
+            "time_limit": self.time_limit,
+            "lenient": self._lenient,
+            "level": self._level,
+        }
+        ended = verb_command(verb).main(
+            words,
+            prog_name=verb,
+            standalone_mode=False,
+            default_map={name: value for name, value in given.items() if value not in {None, ()}},
+            obj=Held(question, self._lenient, self._level, self._session),
+            help_option_names=["-h", "--help"],
+        )
+        self.code = ExitCode(ended or 0)
+
+    def _objectives_for(self, verb: str) -> tuple[str, ...]:
+        """Give what stands as best, or nothing where a verb cannot ask by it and has its own."""
+        alone = len(parse_objectives(self.objectives)) == 1
+        return () if verb == "optima" or (verb == "pareto" and alone) else self.objectives
+
+    # --- The words.
+
+    def set_goals(self, names: Sequence[str]) -> None:
+        """Make these the goals."""
+        question = self.kitchen.question
+        if not names:
+            labels = "".join(f"\n  goal {quoted(entry.pattern.label)}" for entry in question.listed)
+            raise UserError("name a goal" + (f"; the goals file has{labels}" if labels else ""))
+        known = self.kitchen.names
+        nodes = [known.node(o) for o in find_nodes(names, known, _GOAL, question.listed)]
+        self.goals = tuple(map(notation, nodes))
+        for node in nodes:
+            _say(f"goal: {node}")
+
+    def _kitchen(self, files: list[str]) -> None:
+        if files:
+            self.kitchen.take(Path(_only(files, "kitchen")))
+        else:
+            for node in self.kitchen.nodes():
+                click.echo(node)
+
+    def _containers(self, rules: list[str]) -> None:
+        rule = _only(rules, "containers")
+        if rule not in list(ContainerRule):
+            raise UserError(f"found the container rule {rule!r}, expected {' or '.join(ContainerRule)}")
+        self.containers = ContainerRule(rule)
+        _say(f"containers: {rule}")
+
+    def _objective(self, lists: list[str]) -> None:
+        if not lists:
+            raise UserError(f"expected {WORDS['objective'].usage}, of {', '.join(Objective)}")
+        self.choose(lists)
+        _say(f"objective: {', '.join(parse_objectives(self.objectives))}")
+
+    def choose(self, objectives: Sequence[str]) -> None:
+        """Choose what is best, as ``--objective`` does."""
+        self.objectives = (",".join(parse_objectives(objectives)),)
+
+    def _constraint(self, words: list[str]) -> None:
+        if not words:
+            raise UserError(f"name a constraint: {WORDS['constraint'].usage}; ours are {', '.join(_ours())}")
+        name, *constants = words
+        self.constrain((Path(name),), constants)
+        _say(f"constraint: {' '.join(words)}")
+
+    def constrain(self, constraints: Sequence[Path], constants: Sequence[str]) -> None:
+        """Add constraints and set constants, if with them there is nothing at fault."""
+        named = {find_constraint(path): path for path in (*constraints, *self.constraints)}
+        known = dict(self.constants)
+        for constant in constants:
+            name, equals, value = constant.partition("=")
+            if not equals:
+                raise UserError(f"found the constant {constant!r}, expected NAME=VALUE")
+            known[name] = value
+        files = {path: file for file, path in named.items()}
+        files = {path: files[path] for path in (*self.constraints, *constraints) if path in files}
+        assemble(Settings(tuple(files), self._encodings, _settings(known)), _say)
+        self.constraints = {path: frozenset(read_encoding(file).constants) for path, file in files.items()}
+        self.constants = known
+
+    def _drop(self, names: list[str]) -> None:
+        standing = {str(path): path for path in self.constraints}
+        if not names or not standing.keys() >= set(names):
+            stand = ", ".join(standing) or "none"
+            wrong = next((name for name in names if name not in standing), None)
+            found = "name a constraint" if wrong is None else f"no constraint {wrong!r} stands"
+            raise UserError(f"{found}; those that stand are: {stand}")
+        gone = [self.constraints.pop(standing[name]) for name in dict.fromkeys(names)]
+        for constant in frozenset().union(*gone).difference(*self.constraints.values()):
+            self.constants.pop(constant, None)
+        for name in names:
+            _say(f"dropped: {name}")
+
+    def _time_limit(self, limits: list[str]) -> None:
+        limit = _only(limits, "time-limit")
+        try:
+            seconds = None if limit == "none" else float(limit)
+        except ValueError:
+            seconds = -1
+        if seconds is not None and not seconds >= 0:
+            raise UserError(f"found the time limit {limit!r}, expected seconds, or none")
+        self.time_limit = seconds
+        _say(f"time-limit: {limit}")
+
+    def _show(self, words: list[str]) -> None:
+        _none(words, "show")
+        for goal in self.goals or ("(none)",):
+            click.echo(f"goal: {goal}")
+        click.echo(f"objective: {', '.join(parse_objectives(self.objectives or ('units',)))}")
+        click.echo(f"containers: {self.containers}")
+        for path, has in self.constraints.items():
+            constants = [f"{n}={v}" for n, v in self.constants.items() if n in has]
+            click.echo(" ".join(["constraint:", str(path), *map(quoted, constants)]))
+        if self._encodings:
+            click.echo(f"encodings: {self._encodings}")
+        click.echo(f"time-limit: {'none' if self.time_limit is None else f'{self.time_limit:g}'}")
+        click.echo(f"kitchen: {self.kitchen.size}")
+        for change in self.kitchen.changes():
+            click.echo(f"  {change}")
+
+    def _help(self, words: list[str]) -> None:
+        if words:
+            word = _only(words, "help")
+            if word in QUESTIONS:
+                command = verb_command(word)
+                click.echo(command.get_help(click.Context(command, info_name=word)))
+            elif word in WORDS:
+                click.echo(f"{WORDS[word].usage}\n    {WORDS[word].purpose}")
+            else:
+                raise UserError(f"found {word!r}, expected a word of the session or a question")
+            return
+        for each in WORDS.values():
+            click.echo(f"  {each.usage:<46}{each.purpose}")
+        questions = textwrap.fill(", ".join(QUESTIONS), 76, initial_indent="  ", subsequent_indent="  ")
+        click.echo(f"\nQuestions, with the options they have on the command line:\n{questions}")
+        click.echo(
+            "\nOptions on a line count for that line. A NAME is a label, a node in one-line notation, or\n"
+            "the beginning of one; names with blanks are in quotes: goal 'greek salad'"
+        )
+
+    def _quit(self, words: list[str]) -> None:
+        _none(words, "quit")
+        raise Leave
+
+
+def verb_command(verb: str) -> click.Command:
+    """Give the command of a verb that asks something."""
+    command: click.Command = importlib.import_module(f"foon_asp.cli.{verb.replace('-', '_')}").command
+    return command
+
+
+def _settings(constants: Mapping[str, str]) -> tuple[str, ...]:
+    return tuple(f"{name}={value}" for name, value in constants.items())
+
+
+def _say(text: str) -> None:
+    click.echo(text, err=True)
+
+
+def _only(words: Sequence[str], word: str) -> str:
+    if len(words) != 1:
+        raise UserError(f"expected {WORDS[word].usage}")
+    return words[0]
+
+
+def _none(words: Sequence[str], word: str) -> None:
+    if words:
+        raise UserError(f"found {words[0]!r} behind {word}, expected nothing")
+
+
+def _ours() -> list[str]:
+    return [constraint.name for constraint in library_constraints()]
