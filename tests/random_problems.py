@@ -3,6 +3,8 @@
 import random
 from fractions import Fraction
 
+import pytest
+
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Problem
 
@@ -12,6 +14,9 @@ MOTIONS = ("pour", "cut", "mix", "wash", "cook", "bake")
 # Products of these collide exactly (0.3 * 0.3 = 0.09, 0.1 * 0.9 = 0.09, 0.5 * 0.18 = 0.09) or nearly
 # (0.300000001 * 0.3 and 0.09 * 1 differ in the ninth digit), and 1 costs nothing.
 RATES = ("0.3", "0.09", "0.1", "0.9", "0.5", "0.18", "0.300000001", "0.090000001", "1", "0.25")
+
+# Which seeds of a series a test takes: every third, and all of them among the slow tests.
+SERIES = pytest.mark.parametrize("step", [3, pytest.param(1, marks=pytest.mark.slow)])
 
 
 def random_problem(seed: int, rule: ContainerRule, units: int = 8) -> Problem:
