@@ -15,8 +15,8 @@ MOTIONS = ("pour", "cut", "mix", "wash", "cook", "bake")
 # (0.300000001 * 0.3 and 0.09 * 1 differ in the ninth digit), and 1 costs nothing.
 RATES = ("0.3", "0.09", "0.1", "0.9", "0.5", "0.18", "0.300000001", "0.090000001", "1", "0.25")
 
-# Which seeds of a series a test takes: every third, and all of them among the slow tests.
-SERIES = pytest.mark.parametrize("step", [3, pytest.param(1, marks=pytest.mark.slow)])
+# How many seeds of a series a test takes: the first third of them, and all among the slow tests.
+SERIES = pytest.mark.parametrize("part", [3, pytest.param(1, marks=pytest.mark.slow)])
 
 
 def random_problem(seed: int, rule: ContainerRule, units: int = 8) -> Problem:
