@@ -1,64 +1,44 @@
 """``foon-asp alternatives``: the other trees, optimal ones or next best, and what all have in common."""
 
 from fractions import Fraction
-from pathlib import Path
 
 import click
 
-from foon_asp.asp import Settings
-from foon_asp.cli import options
+from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.explain.alternatives import all_optimal, best_trees, most_different
-from foon_asp.problem import parse_objectives
 from foon_asp.report.alternatives import alternatives_json, alternatives_text
 
 
 @click.command("alternatives")
-@options.goal_option
-@options.objective_option
-@options.containers_option
-@click.option("--best", type=click.IntRange(min=1), metavar="K", help="The K best trees, in order of cost.")
-@click.option(
-    "--different", type=click.IntRange(min=2), metavar="K", help="K trees that differ most from each other."
+@asking(
+    click.option("--best", type=click.IntRange(min=1), metavar="K", help="The K best trees, in order."),
+    click.option(
+        "--different",
+        type=click.IntRange(min=2),
+        metavar="K",
+        help="K trees that differ most from each other.",
+    ),
+    click.option(
+        "--within",
+        type=click.IntRange(min=0),
+        default=0,
+        show_default=True,
+        metavar="PERCENT",
+        help="With --different: how much worse by the first objective a tree may be.",
+    ),
+    click.option(
+        "--limit",
+        type=click.IntRange(min=1),
+        default=100,
+        show_default=True,
+        metavar="N",
+        help="Trees to look at, at most.",
+    ),
 )
-@click.option(
-    "--within",
-    type=click.IntRange(min=0),
-    default=0,
-    show_default=True,
-    metavar="PERCENT",
-    help="With --different: how much worse by the first objective a tree may be.",
-)
-@click.option(
-    "--limit",
-    type=click.IntRange(min=1),
-    default=100,
-    show_default=True,
-    metavar="N",
-    help="Trees to look at, at most.",
-)
-@options.constraint_options
-@options.constant_option
-@options.time_limit_option
-@options.format_option("text", "json")
-@options.data_options
-def command(
-    goals_named: tuple[str, ...],
-    objectives: tuple[str, ...],
-    containers: str,
-    best: int | None,
-    different: int | None,
-    within: int,
-    limit: int,
-    constraints: tuple[Path, ...],
-    encodings: Path | None,
-    constants: tuple[str, ...],
-    time_limit: float | None,
-    format_: str,
-    **data: object,
-) -> ExitCode:
+def command(asked: Asked, best: int | None, different: int | None, within: int, limit: int) -> ExitCode:
     """List other trees: all that are optimal, the next best, or those that differ most.
 
     \b
@@ -76,20 +56,17 @@ def command(
         raise UserError("--best and --different ask for different things; give one of them")
     if within and different is None:
         raise UserError("--within goes with --different")
-    chosen = parse_objectives(objectives)
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    everything = bool(constraints or encodings)
-    problem = question.problem(question.goals(goals_named), containers, everything)
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    problem = asked.problem()
+    objectives, settings = asked.objectives, asked.settings
     with Progress() as progress:
         if best is not None:
-            found = best_trees(problem, chosen, settings, best, progress)
+            found = best_trees(problem, objectives, settings, best, progress)
         elif different is not None:
             worse = Fraction(within, 100)
-            found = most_different(problem, chosen, settings, different, worse, limit, progress)
+            found = most_different(problem, objectives, settings, different, worse, limit, progress)
         else:
-            found = all_optimal(problem, chosen, settings, limit, progress)
-    render = {"text": alternatives_text, "json": alternatives_json}[format_]
+            found = all_optimal(problem, objectives, settings, limit, progress)
+    render = {"text": alternatives_text, "json": alternatives_json}[asked.format_]
     click.echo(render(found), nl=False)
     if not found.complete:
         return ExitCode.LIMIT

@@ -5,8 +5,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.asp import Settings
-from foon_asp.cli import options
+from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
@@ -16,38 +15,29 @@ from foon_asp.text import read_rates
 
 
 @click.command("assist")
-@options.goal_option
-@click.option(
-    "--assist", "most", type=click.IntRange(min=0), metavar="M", help="Units that the person does, at most."
+@asking(
+    click.option(
+        "--assist",
+        "most",
+        type=click.IntRange(min=0),
+        metavar="M",
+        help="How many units the person does at most.",
+    ),
+    click.option(
+        "--reach",
+        "reach",
+        metavar="SUCCESS",
+        help="The success that is wanted: the fewest units that reach it.",
+    ),
+    click.option(
+        "--person",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="Success rates of the motions that the person can do; without it all, never failing.",
+    ),
+    objective=None,
 )
-@click.option(
-    "--reach", "reach", metavar="SUCCESS", help="The success that is wanted: the fewest units that reach it."
-)
-@click.option(
-    "--person",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Success rates of the motions that the person can do; without it all, never failing.",
-)
-@options.containers_option
-@options.constraint_options
-@options.constant_option
-@options.time_limit_option
-@options.format_option("text", "json")
-@options.data_options
-def command(
-    goals_named: tuple[str, ...],
-    most: int | None,
-    reach: str | None,
-    person: Path | None,
-    containers: str,
-    constraints: tuple[Path, ...],
-    encodings: Path | None,
-    constants: tuple[str, ...],
-    time_limit: float | None,
-    format_: str,
-    **data: object,
-) -> ExitCode:
+def command(asked: Asked, most: int | None, reach: str | None, person: Path | None) -> ExitCode:
     """Find the best success when a person does at most 0, 1, 2, ... units, and which.
 
     \b
@@ -62,17 +52,17 @@ def command(
     limit came first.
     """
     wanted = None if reach is None else _success(reach)
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers, bool(constraints or encodings))
+    problem = asked.problem()
     rates = None if person is None else read_rates(person)
     for motion in rates or ():
         if problem.rates is not None and motion not in problem.rates:
             click.echo(f"{person}: warning: the motion {motion!r} has no rate for the robot", err=True)
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    # every number of units has programs of its own, which no other question can use
+    settings = asked.settings._replace(session=None)
     with Progress() as progress:
         found = assist(problem, rates, most, wanted, settings, progress)
     with_tree = most is not None
-    text = assistance_json(found) if format_ == "json" else assistance_text(found, with_tree)
+    text = assistance_json(found) if asked.format_ == "json" else assistance_text(found, with_tree)
     click.echo(text, nl=False)
     return _code(found)
 

@@ -5,55 +5,37 @@ from pathlib import Path
 
 import click
 
-from foon_asp.asp import Settings
-from foon_asp.cli import options
+from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
 from foon_asp.explain.pareto import Front, pareto_front
-from foon_asp.problem import Objective, parse_objectives
+from foon_asp.problem import Objective
 from foon_asp.report.chart_file import check_suffix
 from foon_asp.report.pareto import front_json, front_text
 
 
 @click.command("pareto")
-@options.goal_option
-@click.option(
-    "--objective",
-    "objectives",
-    multiple=True,
-    default=("units,success",),
-    show_default=True,
-    metavar="LIST",
-    help=f"Two or three of {', '.join(Objective)}.",
+@asking(
+    click.option("--trees", is_flag=True, help="List the units of the trees too."),
+    click.option(
+        "--chart",
+        "charts",
+        multiple=True,
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="Draw the front (.svg or .png); repeatable.",
+    ),
+    objective=click.option(
+        "--objective",
+        "objectives",
+        multiple=True,
+        default=("units,success",),
+        show_default=True,
+        metavar="LIST",
+        help=f"Two or three of {', '.join(Objective)}.",
+    ),
 )
-@options.containers_option
-@click.option("--trees", is_flag=True, help="List the units of the trees too.")
-@click.option(
-    "--chart",
-    "charts",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Draw the front (.svg or .png); repeatable.",
-)
-@options.constraint_options
-@options.constant_option
-@options.time_limit_option
-@options.format_option("text", "json")
-@options.data_options
-def command(
-    goals_named: tuple[str, ...],
-    objectives: tuple[str, ...],
-    containers: str,
-    trees: bool,
-    charts: tuple[Path, ...],
-    constraints: tuple[Path, ...],
-    encodings: Path | None,
-    constants: tuple[str, ...],
-    time_limit: float | None,
-    format_: str,
-    **data: object,
-) -> ExitCode:
+def command(asked: Asked, trees: bool, charts: tuple[Path, ...]) -> ExitCode:
     """Find the whole Pareto front of two or three objectives, with a tree for every point.
 
     \b
@@ -69,16 +51,12 @@ def command(
     """
     for chart in charts:
         check_suffix(chart)
-    chosen = parse_objectives(objectives)
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    everything = bool(constraints or encodings)
-    problem = question.problem(question.goals(goals_named), containers, everything)
-    settings = Settings(constraints, encodings, constants, time_limit=time_limit)
+    problem = asked.problem()
     with Progress() as progress:
-        front = pareto_front(problem, chosen, settings, progress)
+        front = pareto_front(problem, asked.objectives, asked.settings, progress)
     for chart in charts:
         _write_chart(front, chart)
-    click.echo(front_json(front) if format_ == "json" else front_text(front, trees), nl=False)
+    click.echo(front_json(front) if asked.format_ == "json" else front_text(front, trees), nl=False)
     if not front.complete:
         return ExitCode.LIMIT
     return ExitCode.DONE if front.points else ExitCode.NEGATIVE

@@ -4,48 +4,29 @@ from pathlib import Path
 
 import click
 
-from foon_asp.asp import Settings, Status
-from foon_asp.cli import options
+from foon_asp.asp import Status
+from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
 from foon_asp.explain.shopping_list import priced, shopping_list
-from foon_asp.problem import parse_objectives
 from foon_asp.report.shopping import shopping_json, shopping_text
 from foon_asp.text import read_prices
 
 
 @click.command("shopping-list")
-@options.goal_option
-@options.objective_option
-@options.containers_option
-@click.option(
-    "--prices",
-    "price_file",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Buy only what has a price: lines of an object node, a tab and a price.",
+@asking(
+    click.option(
+        "--prices",
+        "price_file",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="Buy only what has a price: lines of an object node, a tab and a price.",
+    ),
+    click.option(
+        "--lists", type=click.IntRange(min=1), default=3, show_default=True, help="How many lists at most."
+    ),
 )
-@click.option(
-    "--lists", type=click.IntRange(min=1), default=3, show_default=True, help="How many lists at most."
-)
-@options.constraint_options
-@options.constant_option
-@options.time_limit_option
-@options.format_option("text", "json")
-@options.data_options
-def command(
-    goals_named: tuple[str, ...],
-    objectives: tuple[str, ...],
-    containers: str,
-    price_file: Path | None,
-    lists: int,
-    constraints: tuple[Path, ...],
-    encodings: Path | None,
-    constants: tuple[str, ...],
-    time_limit: float | None,
-    format_: str,
-    **data: object,
-) -> ExitCode:
+def command(asked: Asked, price_file: Path | None, lists: int) -> ExitCode:
     """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
 
     \b
@@ -60,18 +41,13 @@ def command(
     Exits with 0 when there is a list, proved; with 1 when no list helps, proved; with 3 when stopped at a
     limit.
     """
-    chosen = parse_objectives(objectives)
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers, everything=True)
-    settings = Settings(
-        constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
-    )
+    problem = asked.problem(everything=True)
     with Progress() as progress:
         prices = None
         if price_file is not None:
             prices = priced(problem, read_prices(price_file), progress.warning)
-        shopping = shopping_list(problem, chosen, settings, prices, lists, progress)
-    render = {"text": shopping_text, "json": shopping_json}[format_]
+        shopping = shopping_list(problem, asked.objectives, asked.settings, prices, lists, progress)
+    render = {"text": shopping_text, "json": shopping_json}[asked.format_]
     click.echo(render(shopping), nl=False)
     if not shopping.lists:
         return ExitCode.NEGATIVE if shopping.complete else ExitCode.LIMIT

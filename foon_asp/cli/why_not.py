@@ -1,12 +1,10 @@
 """``foon-asp why-not``: why there is no tree."""
 
 import json
-from pathlib import Path
 
 import click
 
-from foon_asp.asp import Settings
-from foon_asp.cli import options
+from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.clash import code_of
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.progress import Progress
@@ -19,23 +17,10 @@ from foon_asp.report.explanation import explanation_dict, explanation_text
 
 
 @click.command("why-not")
-@options.goal_option
-@options.containers_option
-@options.constraint_options
-@options.constant_option
-@options.time_limit_option
-@options.format_option("text", "json")
-@options.data_options
-def command(
-    goals_named: tuple[str, ...],
-    containers: str,
-    constraints: tuple[Path, ...],
-    encodings: Path | None,
-    constants: tuple[str, ...],
-    time_limit: float | None,
-    format_: str,
-    **data: object,
-) -> ExitCode:
+@asking(
+    objective=None,
+)
+def command(asked: Asked) -> ExitCode:
     """Explain why there is no task tree.
 
     \b
@@ -49,20 +34,16 @@ def command(
 
     Exits with 1 when there is no tree, 0 when there is one, 3 when stopped at a limit.
     """
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers, everything=True)
-    explanation = why_not(problem, question.data.kitchen_items)
+    problem = asked.problem(everything=True)
+    explanation = why_not(problem, asked.question.data.kitchen_items)
     found = explanation_dict(explanation)
     if explanation.goals:
         lines = [explanation_text(explanation).rstrip("\n")]
         lines.append("foon-asp shopping-list with the same options says what to add to the kitchen")
         code = ExitCode.NEGATIVE
-    elif constraints or encodings:
-        settings = Settings(
-            constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
-        )
+    elif asked.by_users_rules:
         with Progress() as progress:
-            clash = find_clash(problem, (Objective.UNITS,), settings, reporter=progress)
+            clash = find_clash(problem, (Objective.UNITS,), asked.settings, reporter=progress)
         found["clash"] = clash_dict(clash)
         lines = [*goal_lines(problem), *clash_lines(clash)]
         code = code_of(clash)
@@ -72,5 +53,7 @@ def command(
             f"there is a task tree ({problem.conditions}); foon-asp solve finds the best",
         ]
         code = ExitCode.DONE
-    click.echo(json.dumps(found, indent=2, ensure_ascii=False) if format_ == "json" else "\n".join(lines))
+    click.echo(
+        json.dumps(found, indent=2, ensure_ascii=False) if asked.format_ == "json" else "\n".join(lines)
+    )
     return code
