@@ -61,11 +61,11 @@ def test_random_sessions(seeds: range, tmp_path: Path) -> None:
         rng = random.Random(seed)
         session = Session()
         problem = random_problem(seed, ContainerRule.STRICT, units=rng.choice((7, 8, 20)))
-        name, constants, allowed = constraint(seed, problem)
         nosy = tmp_path / "nosy.lp"
         nosy.write_text(rng.choice(NOSY))
         for _ in range(12):
             problem = change(problem, rng, list(ContainerRule))
+            name, constants, allowed = constraint(seed, problem)  # the same, of these goals and this kitchen
             objectives = tuple(rng.sample(sorted(Objective), rng.randint(1, 3)))
             with_nosy = rng.random() < 0.5
             files = (nosy,) if with_nosy else (Path(name),)
