@@ -41,7 +41,7 @@ def foon() -> Foon:
     return foon_asp.load()
 
 
-@pytest.fixture(params=["text", "store"])
+@pytest.fixture(params=["text", pytest.param("store", marks=pytest.mark.slow)])
 def source(request: pytest.FixtureRequest, store: Path) -> Path:
     """Give the bundled kitchen as a folder, and as a store."""
     return KITCHEN if request.param == "text" else store

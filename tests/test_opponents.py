@@ -33,7 +33,10 @@ OPPONENTS = [
     pytest.param(
         engine,
         id=engine.name,
-        marks=pytest.mark.skipif(not engine.installed, reason=f"{engine.package} is not installed"),
+        marks=[
+            pytest.mark.skipif(not engine.installed, reason=f"{engine.package} is not installed"),
+            *([pytest.mark.slow] if engine.name == "Fast Downward" else []),
+        ],
     )
     for engine in ENGINES
 ]

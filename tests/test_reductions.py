@@ -2,6 +2,7 @@
 
 import sys
 from itertools import combinations
+from typing import Any
 
 import pytest
 
@@ -47,9 +48,14 @@ def _sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
         monkeypatch.setattr(sys.modules["foon_asp.bounds.landmark_cuts"], "_FRESH", 1)
 
 
+def some(count: int) -> list[Any]:
+    """Give seeds, the last two thirds of them for slow tests."""
+    return [*range(count // 3), *(pytest.param(n, marks=pytest.mark.slow) for n in range(count // 3, count))]
+
+
 @pytest.mark.usefixtures("_sizes")
 @pytest.mark.parametrize("rule", ContainerRule)
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", some(60))
 def test_what_is_left_has_an_optimum(seed: int, rule: ContainerRule) -> None:
     problem = random_problem(seed, rule)
     found = list(trees(problem))
@@ -84,7 +90,7 @@ def test_what_is_left_has_an_optimum(seed: int, rule: ContainerRule) -> None:
 
 @pytest.mark.usefixtures("_sizes")
 @pytest.mark.parametrize("rule", ContainerRule)
-@pytest.mark.parametrize("seed", range(100))
+@pytest.mark.parametrize("seed", some(100))
 def test_answers_are_the_same(seed: int, rule: ContainerRule) -> None:
     problem = random_problem(seed, rule, units=14)
     names = LISTS[seed % len(LISTS)]
@@ -98,7 +104,7 @@ def test_answers_are_the_same(seed: int, rule: ContainerRule) -> None:
             assert outcome.bounds == plain.bounds
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", some(60))
 def test_cuts_of_the_reductions_make_certificates(seed: int) -> None:
     problem = random_problem(seed, list(ContainerRule)[seed % 2], units=14)
     names = LISTS[seed % len(LISTS)]

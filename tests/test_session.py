@@ -186,6 +186,7 @@ def test_after_a_limit_the_session_goes_on() -> None:
         constraints=(Path("at_most_units"),), constants=("max_units=99",), time_limit=0, session=session
     )
     assert solve(problem, (Objective.UNITS,), settings).status in {Status.UNKNOWN, Status.FEASIBLE}
+    assert not session._programs  # a search that was stopped is not gone on with
     in_time = settings._replace(time_limit=None)
     kept = solve(problem, (Objective.UNITS,), in_time)
     assert measured(kept) == measured(solve(problem, (Objective.UNITS,), in_time._replace(session=None)))

@@ -256,7 +256,7 @@ class _Solver:
             self.scale = self._open.scale
         self._spent("ground", began)
         try:
-            return self._open.run(
+            ended = self._open.run(
                 self.problem,
                 self.units,
                 self.levels,
@@ -271,6 +271,10 @@ class _Solver:
         except BaseException:  # ctrl-C too: nobody knows what was set and what was not
             session.forget(self._open)
             raise
+        if not ended.exhausted:  # what a search that was stopped leaves behind can make the next one endless
+            session.forget(self._open)
+            self._open = None
+        return ended
 
     def _ids(self, numbers: Units) -> Units:
         """Give the ids of units in an answer, whose numbers come from encodings, which may be the user's."""
