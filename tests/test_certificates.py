@@ -66,7 +66,7 @@ def test_every_optimum_of_random_networks(rule: ContainerRule) -> None:
     assert trees > 100
 
 
-@pytest.mark.parametrize("corners", [3, 4, pytest.param(5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("corners", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in (4, 5))])
 def test_branching_closes_gaps(corners: int) -> None:
     branched = 0
     for seed in range(8):

@@ -34,7 +34,7 @@ needs_fast_downward = pytest.mark.skipif(
 )
 SOLVERS = [
     pytest.param(solve_with_highs, id="HiGHS"),
-    pytest.param(solve_with_fast_downward, id="Fast Downward", marks=needs_fast_downward),
+    pytest.param(solve_with_fast_downward, id="Fast Downward", marks=[needs_fast_downward, pytest.mark.slow]),
 ]
 
 

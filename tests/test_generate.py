@@ -143,7 +143,7 @@ def test_as_many_distinct_units_as_asked(family: str, units: int, seed: int, wri
     assert len(data.kitchen) == len(json.loads((folder / "kitchen.json").read_text(encoding="utf-8")))
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3))])
 @pytest.mark.parametrize("rule", list(ContainerRule))
 def test_each_goal_has_a_tree(family: str, seed: int, rule: ContainerRule, written: Written) -> None:
     folder = written(family, seed=seed)

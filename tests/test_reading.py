@@ -238,7 +238,7 @@ some_units = st.lists(
 )
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=100)
 @given(some_units)
 def test_what_is_written_is_read_again(written: list[FunctionalUnit]) -> None:
     read, reader = units(write_units(written))

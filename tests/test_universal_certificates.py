@@ -60,7 +60,7 @@ def test_every_goal_of_the_goals_file(data: Data, rule: ContainerRule) -> None:
     assert infeasible == ["whipped cream"] * len(OBJECTIVES)
 
 
-@pytest.mark.parametrize("level", [1, 2])
+@pytest.mark.parametrize("level", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_goals_at_lower_levels(universal: Path, level: int) -> None:
     data = read_data(find_data(universal), level=level)
     goals = sorted({node for entry in data.goals for node in data.network.find(entry.pattern)})
@@ -80,6 +80,7 @@ def test_whipped_cream_by_the_command_line(cli: Cli, universal: Path, tmp_path: 
     assert "verified: there is no task tree (strict containers)" in checked.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 def test_all_engines_agree_on_the_goals(data: Data, rule: ContainerRule) -> None:
     for entry in data.goals:

@@ -202,6 +202,7 @@ class Judge:
         )
 
 
+@pytest.mark.slow
 def test_a_mutant_that_is_sealed_anew_passes_only_if_it_is_a_proof() -> None:
     """Such as one with a node in a cut that makes no difference, or with another tree that is as good."""
     passed = refused = 0
