@@ -4,6 +4,7 @@ import itertools
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from foon_asp.asp.deadline import Deadline
@@ -219,13 +220,11 @@ class _Solver:
         else:
             from foon_asp.asp.search import run  # noqa: PLC0415 (slow to import, often there is nothing left)
 
-            facts, files = (
-                self.facts() + self.program.rules + write_objectives(objectives),
-                self.program.files,
-            )
-            if products and self.scale:
+            facts = self.facts() + self.program.rules + write_objectives(objectives)
+            files = self.program.files
+            if products:
                 files = (*files, self.program.exact_success)
-                facts += write_exponents(self.problem, self.units, self.scale)
+                facts += self._exponents
                 facts += "".join(itertools.starmap(write_product, enumerate(products)))
                 facts += write_seen(range(len(products))) if wanted is None else write_wanted(wanted)
             arguments, deadline = self.program.arguments, self.deadline
@@ -237,6 +236,11 @@ class _Solver:
         if ended.units is not None:
             ended.units = self._ids(ended.units)
         return ended
+
+    @cached_property
+    def _exponents(self) -> str:
+        """Give the facts that are there beside the usual ones wherever products of rates are compared."""
+        return write_exponents(self.problem, self.units, self.scale) if self.scale else ""
 
     def _run_open(
         self,
