@@ -1,7 +1,6 @@
 """``foon-asp``: the verbs, and how every ending becomes an exit code."""
 
 import gc
-import importlib
 import os
 import sys
 import traceback
@@ -10,52 +9,18 @@ import click
 
 from foon_asp import __version__
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.verbs import VERBS, verb_command
 from foon_asp.errors import UserError
-
-_VERBS = (
-    "solve",
-    "optima",
-    "search",
-    "compare",
-    "batch",
-    "check",
-    "certify",
-    "verify",
-    "draw",
-    "why-not",
-    "shopping-list",
-    "clash",
-    "alternatives",
-    "pareto",
-    "regret",
-    "menu",
-    "assist",
-    "diff",
-    "shell",
-    "constraints",
-    "facts",
-    "stats",
-    "lint",
-    "fmt",
-    "convert",
-    "merge",
-    "import",
-)
-_MODULES = {"import": "import_files"}  # of verbs that cannot be the name of a module
 
 
 class _Verbs(click.Group):
     """Imports a verb's module only when that verb is asked for."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(_VERBS)
+        return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in _VERBS:
-            return None
-        module = _MODULES.get(cmd_name, cmd_name.replace("-", "_"))
-        command: click.Command = importlib.import_module(f"foon_asp.cli.{module}").command
-        return command
+        return verb_command(cmd_name) if cmd_name in VERBS else None
 
 
 @click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})

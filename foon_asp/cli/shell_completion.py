@@ -8,7 +8,8 @@ import click
 
 from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.cli.shell_line import quoted, take_apart
-from foon_asp.cli.shell_session import QUESTIONS, WORDS, ShellSession, verb_command
+from foon_asp.cli.shell_session import QUESTIONS, WORDS, ShellSession
+from foon_asp.cli.verbs import verb_command
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.text import NodeNames, nodes_beginning, notation
 

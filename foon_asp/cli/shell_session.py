@@ -1,6 +1,5 @@
 """What stands in a session (goals, kitchen, rule, constraints, objectives) and the words that change it."""
 
-import importlib
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from difflib import get_close_matches
@@ -18,6 +17,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.options import Held
 from foon_asp.cli.shell_kitchen import ShellKitchen, find_nodes
 from foon_asp.cli.shell_line import quoted, take_apart
+from foon_asp.cli.verbs import verb_command
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
 from foon_asp.question import Question
@@ -284,12 +284,6 @@ class ShellSession:
     def _quit(self, words: list[str]) -> None:
         _none(words, "quit")
         raise Leave
-
-
-def verb_command(verb: str) -> click.Command:
-    """Give the command of a verb that asks something."""
-    command: click.Command = importlib.import_module(f"foon_asp.cli.{verb.replace('-', '_')}").command
-    return command
 
 
 def _settings(constants: Mapping[str, str]) -> tuple[str, ...]:
