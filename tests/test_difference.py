@@ -1,6 +1,7 @@
 """``foon-asp diff``: two trees beside each other."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from foon_asp.explain.difference import Side, difference, side
 from foon_asp.network import FunctionalUnit, Source
 from foon_asp.problem import ContainerRule
+from foon_asp.resources import bundled_kitchen
 from foon_asp.text import parse_node
 from tests.conftest import Cli
 
@@ -138,3 +140,16 @@ def test_two_kitchens(cli: Cli, universal: Path) -> None:
     ran = cli("diff", f"solve {words}", f"solve {words} --containers implied", "--format", "json")
     assert ran.code == 0
     assert [ran.json[one]["costs"]["units"] for one in "ab"] == [6, 5]
+
+
+def test_what_stands_beside_the_questions_counts_for_both(cli: Cli, tmp_path: Path) -> None:
+    own = tmp_path / "own"
+    shutil.copytree(bundled_kitchen(), own)
+    beside = cli("diff", "solve", "solve --objective success", "--goal", "ice", "--data", own)
+    assert beside.code == 0
+    assert f"[{own / 'FOON.txt'}:" in beside.out
+    assert f"[{bundled_kitchen() / 'FOON.txt'}:" not in beside.out
+    named = cli("diff", "solve --goal tea", f"solve --goal tea --network {own}", "--kitchen", "nowhere.json")
+    assert (named.code, "nowhere.json" in named.err) == (2, True)
+    words = f"solve --goal tea --data {own}"
+    assert cli("diff", words, words, "--kitchen", "nowhere.json").code == 0

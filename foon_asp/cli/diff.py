@@ -4,6 +4,7 @@ import shlex
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from foon_asp.asp import Settings, solve
 from foon_asp.cli import options
@@ -20,6 +21,8 @@ from foon_asp.report.answer import headline
 from foon_asp.report.difference import difference_json, difference_text
 from foon_asp.text import FoonReader, find_goal, summarize
 from foon_asp.text.answer_file import read_listed_tree
+
+_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals")
 
 
 @click.command("diff")
@@ -45,7 +48,9 @@ def command(
     foon-asp diff 'solve --goal macaroni' 'solve --goal macaroni --objective success'
 
     A and B are files (FOON text, or an answer in JSON) or questions: solve with its options, in quotes. The
-    kitchen, the rates and the goal of a file are those that the options name; an answer knows its goals.
+    kitchen, the rates and the goal of a file are those that the options name; an answer knows its goals. What
+    is given beside A and B counts for a question that does not say it itself; one that names data of its own
+    takes none from there.
     Without goals the trees are followed back from all that they make and do not need.
 
     Exits with 0 when both were compared, whether they differ or not, and with 1 when one has no tree.
@@ -92,9 +97,14 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     """Answer a question that is put as the words of a command; ``None`` where it has no tree."""
     from foon_asp.cli.solve import command as solve_command
 
-    words = shlex.split(question_text)[1:]
-    defaults = click.get_current_context().default_map  # what a session has to say
-    asked = dict(solve_command.make_context(f"diff '{question_text}'", words, default_map=defaults).params)
+    words, name = shlex.split(question_text)[1:], f"diff '{question_text}'"
+    context = click.get_current_context()
+    beside = {option: value for option, value in context.params.items() if _is_given(context, option)}
+    own = solve_command.make_context(name, list(words))
+    if any(_is_given(own, option) for option in _DATA):
+        beside = {option: value for option, value in beside.items() if option not in _DATA}
+    defaults = {**(context.default_map or {}), **beside}  # a session has something to say, too
+    asked = dict(solve_command.make_context(name, words, default_map=defaults).params)
     if any(asked.pop(name) for name in ("certificate_file", "cross_check", "soft")):
         raise UserError(
             f"found {question_text!r}, expected a question without --certificate, --cross-check, --soft"
@@ -115,6 +125,10 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
         click.echo(f"{question_text}: {headline(outcome)}", err=True)
         return None, code
     return _side(question_text, problem, outcome.units), code
+
+
+def _is_given(context: click.Context, option: str) -> bool:
+    return context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
 
 def _side(name: str, problem: Problem, units: tuple[int, ...]) -> Side:
