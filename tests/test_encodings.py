@@ -15,6 +15,7 @@ from typing import NamedTuple
 import pytest
 from clingo import Control, Model, Number
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
+from clingo.symbol import SymbolType
 
 from foon_asp.asp import Settings, program_facts
 from foon_asp.asp.facts import FACT_PREDICATES
@@ -110,10 +111,53 @@ def test_survey_tells_heads_from_bodies() -> None:
     assert found.constants == {"y": "1"}
 
 
+# --- What is ours is told from what is the user's by its first letter.
+
+PUBLIC = {
+    ("unit", 1), ("motion", 2), ("input", 2), ("output", 2), ("needs", 2), ("gives", 2), ("object", 1),
+    ("label", 2), ("state", 2), ("ingredient", 2), ("located", 3), ("kitchen", 1), ("goal", 1),
+    ("utensil", 1), ("inputs", 2), ("ingredients", 2), ("rate", 2), ("risk", 2), ("optimize", 2),
+    ("source", 2), ("use", 1), ("available", 1), ("allergen", 1), ("allowed", 1),
+}  # fmt: skip
+TERMS = {"units", "inputs", "inputs_and_ingredients", "success", "kitchen"}  # of optimize/2
+
+
+def functions(node: AST) -> Iterator[str]:
+    """Give the names of constants and functions in terms, and those of atoms."""
+    if node.ast_type == ASTType.Function:
+        yield node.name
+    elif node.ast_type == ASTType.SymbolicTerm and node.symbol.type is SymbolType.Function:
+        yield node.symbol.name
+    for key in node.child_keys:
+        child = getattr(node, key)
+        for part in child if isinstance(child, ASTSequence) else [child]:
+            if isinstance(part, AST):
+                yield from functions(part)
+
+
+def test_every_predicate_of_ours_that_is_not_public_has_the_prefix() -> None:
+    ours = set(FACT_PREDICATES.items()).union(*map(mentioned, FILES))
+    assert {name for name in ours if not name[0].startswith("_")} <= PUBLIC
+    assert not {name for name in PUBLIC if name[0].startswith("_")}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_other_name_of_ours_has_the_prefix(name: str) -> None:
+    """Constants that are set, and the criteria that ``optimize/2`` switches on, are public too."""
+    statements: list[AST] = []
+    parse_files([str(FILES[name])], statements.append)
+    named = {found for statement in statements for found in functions(statement)}
+    for statement in statements:
+        if statement.ast_type == ASTType.Program and statement.name != "base":
+            named |= {statement.name, *(parameter.name for parameter in statement.parameters)}
+    public = TERMS | {predicate for predicate, _ in PUBLIC} | parsed(name).constants.keys()
+    assert not {found for found in named - public if not found.startswith("_")}
+
+
 # --- What the README says.
 
 CODE = re.compile(r"`([^`]+)`")
-ATOM = re.compile(r"([a-z]\w*)\(([^()]*)\)")
+ATOM = re.compile(r"(_?[a-z]\w*)\(([^()]*)\)")
 
 
 class Row(NamedTuple):
@@ -196,7 +240,7 @@ def test_facts_are_what_the_table_says() -> None:
     settings = Settings(constraints=(Path("only_sources"),))
     parse_string(program_facts(problem, tuple(Objective), settings), statements.append)
     assert survey(statements).heads == everything
-    assert second_step == {("exponent", 3), ("product", 3), ("seen", 1), ("wanted", 1)}
+    assert second_step == {("_exponent", 3), ("_product", 3), ("_seen", 1), ("_wanted", 1)}
 
 
 def test_every_constant_is_in_the_table_with_its_own_value() -> None:
@@ -484,7 +528,7 @@ def test_exact_success_rules_out_seen_products_and_keeps_the_wanted_one() -> Non
         for file in (*BASE, FILES["exact_success.lp"]):
             control.load(str(file))
         control.add("base", [], KITCHEN_TABLE + exponents + facts)
-        control.ground([("base", []), ("product", [Number(product)])])
+        control.ground([("base", []), ("_product", [Number(product)])])
         found: set[Tree] = set()
 
         def model(model: Model) -> None:
@@ -493,13 +537,13 @@ def test_exact_success_rules_out_seen_products_and_keeps_the_wanted_one() -> Non
         control.solve(on_model=model)
         return found
 
-    exponents = "exponent(1,0,1). exponent(1,1,-1). exponent(2..4,0,-1)."
-    sliced, quarter = "product(0,0,1). product(0,1,-1).", "product(7,0,-2). product(7,1,0)."
-    third = "product(2,0,0). product(2,1,-1)."
+    exponents = "_exponent(1,0,1). _exponent(1,1,-1). _exponent(2..4,0,-1)."
+    sliced, quarter = "_product(0,0,1). _product(0,1,-1).", "_product(7,0,-2). _product(7,1,0)."
+    third = "_product(2,0,0). _product(2,1,-1)."
     assert trees(0, sliced) == TREES
-    assert trees(0, sliced + "seen(0).") == TREES - {SLICED}
-    assert trees(7, quarter + "seen(7).") == TREES - {CRANKED}
-    assert trees(2, third + "wanted(2).") == {SLICED | {WASH_APPLE}, SLICED | {WASH_KNIFE}}
+    assert trees(0, sliced + "_seen(0).") == TREES - {SLICED}
+    assert trees(7, quarter + "_seen(7).") == TREES - {CRANKED}
+    assert trees(2, third + "_wanted(2).") == {SLICED | {WASH_APPLE}, SLICED | {WASH_KNIFE}}
 
 
 # --- The commands of the README.
@@ -566,7 +610,7 @@ def test_readme_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cli: Cl
         ('ingredients(U,9) :- motion(U,"crush").', "inputs+ingredients"),
         ('risk(U,99999999) :- motion(U,"pound").', "success"),
         ("optimize(inputs,5).", "units"),
-        ("wanted(0). product(0,0,9). exponent(U,0,9) :- unit(U).", "success"),
+        ("_wanted(0). _product(0,0,9). _exponent(U,0,9) :- unit(U).", "success"),
     ],
     ids=["inputs", "ingredients", "risk", "optimize", "wanted"],
 )

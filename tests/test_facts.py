@@ -75,7 +75,7 @@ def test_the_facts_say_what_the_table_says() -> None:
 
 
 def test_numbers_too_large_for_clingo_are_refused() -> None:
-    assert write_product(4, {0: 2**31 - 1}) == "product(4,0,2147483647).\n"
+    assert write_product(4, {0: 2**31 - 1}) == "_product(4,0,2147483647).\n"
     with pytest.raises(UserError, match="32 bits"):
         write_product(4, {0: 2**31})
 

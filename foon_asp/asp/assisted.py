@@ -7,7 +7,7 @@ from foon_asp.asp.facts import write_assisted
 from foon_asp.asp.program import Bounded, find_constraint
 from foon_asp.resources import encodings_folder
 
-_OF_DOERS = {("rate", 2), ("risk", 2), ("takes_over", 2), ("by_person", 1)}
+_OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
 
 def assisted(twins: Mapping[int, int], most: int) -> Bounded:

@@ -30,29 +30,29 @@ FACT_PREDICATES = {
     "rate": 2,
     "risk": 2,
     "optimize": 2,
-    "exponent": 3,
-    "product": 3,
-    "seen": 1,
-    "wanted": 1,
-    "for_sale": 2,
-    "second_choice": 1,
-    "found_list": 1,
-    "on_list": 2,
-    "constraint": 2,
-    "kept": 1,
-    "correction": 2,
-    "soft": 2,
-    "broken": 2,
-    "greatest_penalty": 1,
-    "tree_size": 1,
-    "in_tree": 1,
-    "avoid": 2,
-    "tree": 1,
-    "distance": 3,
-    "chosen_trees": 1,
-    "at_most": 3,
-    "takes_over": 2,
-    "at_most_assisted": 1,
+    "_exponent": 3,
+    "_product": 3,
+    "_seen": 1,
+    "_wanted": 1,
+    "_for_sale": 2,
+    "_second_choice": 1,
+    "_found_list": 1,
+    "_on_list": 2,
+    "_constraint": 2,
+    "_kept": 1,
+    "_correction": 2,
+    "_soft": 2,
+    "_broken": 2,
+    "_greatest_penalty": 1,
+    "_tree_size": 1,
+    "_in_tree": 1,
+    "_avoid": 2,
+    "_tree": 1,
+    "_distance": 3,
+    "_chosen_trees": 1,
+    "_at_most": 3,
+    "_takes_over": 2,
+    "_at_most_assisted": 1,
 }
 
 OBJECTIVE_TERMS = {
@@ -187,7 +187,7 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) -> str:
     """Give every unit's rate over the coprime factors of the scale."""
     return "".join(
-        f"exponent({problem.network.unit_number(unit)},{factor},{_check(exponent)}).\n"
+        f"_exponent({problem.network.unit_number(unit)},{factor},{_check(exponent)}).\n"
         for unit in units
         for factor, exponent in scale.exponents[problem.rate(unit)].items()
     )
@@ -195,40 +195,40 @@ def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) ->
 
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
     """Describe a product of rates by its exponents."""
-    return "".join(f"product({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
+    return "".join(f"_product({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
 
 
 def write_seen(numbers: Iterable[int]) -> str:
     """Rule products of rates out, by number."""
-    return "".join(f"seen({number}).\n" for number in numbers)
+    return "".join(f"_seen({number}).\n" for number in numbers)
 
 
 def write_wanted(number: int) -> str:
     """Ask for trees with exactly that product of rates."""
-    return f"wanted({number}).\n"
+    return f"_wanted({number}).\n"
 
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
     """Say which object nodes can be bought at which price, a whole number, and which only if need be."""
-    facts = [f"for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
-    return "".join([*facts, *(f"second_choice({o}).\n" for o in second_choices)])
+    facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
+    return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
 
 
 def write_list(number: int, items: Iterable[int]) -> str:
     """Give a shopping list that was found before."""
-    return f"found_list({number}).\n" + "".join(f"on_list({number},{o}).\n" for o in items)
+    return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
 
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
     """Say what it costs to drop each constraint, by number, and which are not dropped."""
-    facts = [f"constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
-    return "".join([*facts, *(f"kept({number}).\n" for number in kept)])
+    facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
+    return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 
 
 def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
     """Give sets of constraints, by number, each of which leaves a tree when it is dropped."""
     return "".join(
-        f"correction({place},{number}).\n"
+        f"_correction({place},{number}).\n"
         for place, correction in enumerate(corrections)
         for number in correction
     )
@@ -236,12 +236,12 @@ def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
 
 def write_soft(weights: Mapping[int, int]) -> str:
     """Give the weight of each soft constraint, by number."""
-    return "".join(f"soft({number},{_check(weight)}).\n" for number, weight in weights.items())
+    return "".join(f"_soft({number},{_check(weight)}).\n" for number, weight in weights.items())
 
 
 def write_greatest_penalty(penalty: int) -> str:
     """Bound the sum of the weights of what is broken."""
-    return f"greatest_penalty({_check(penalty)}).\n"
+    return f"_greatest_penalty({_check(penalty)}).\n"
 
 
 def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
@@ -252,34 +252,34 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
     if Objective.SUCCESS in bounds:
         raise ValueError("success is a product, and no sum that a bound could be put on")
     return "".join(
-        f"at_most({number},{OBJECTIVE_TERMS[objective]},{_check(bound)}).\n"
+        f"_at_most({number},{OBJECTIVE_TERMS[objective]},{_check(bound)}).\n"
         for objective, bound in bounds.items()
     )
 
 
 def write_assisted(twins: Mapping[int, int], most: int) -> str:
     """Say which units are a person's, each with the robot's unit that it is, and bound how many are used."""
-    facts = [f"takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
-    return "".join([*facts, f"at_most_assisted({_check(most)}).\n"])
+    facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
+    return "".join([*facts, f"_at_most_assisted({_check(most)}).\n"])
 
 
 def write_tree(units: Collection[int]) -> str:
     """Ask for a tree of exactly these units."""
-    return f"tree_size({len(units)}).\n" + "".join(f"in_tree({unit}).\n" for unit in units)
+    return f"_tree_size({len(units)}).\n" + "".join(f"_in_tree({unit}).\n" for unit in units)
 
 
 def write_avoided(number: int, units: Iterable[int]) -> str:
     """Rule out a tree, by the ids of its units in the whole network, and all that hold it."""
-    return "".join(f"avoid({number},{_check(unit)}).\n" for unit in units)
+    return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
 
 
 def write_distances(trees: Sequence[Collection[int]], chosen: int) -> str:
     """Ask for so many of some trees, given by their units."""
     sets = list(map(frozenset, trees))
-    facts = [f"chosen_trees({chosen}).", *(f"tree({number})." for number in range(len(sets)))]
+    facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
     for number, one in enumerate(sets):
         facts += [
-            f"distance({number},{other},{len(one ^ sets[other])})." for other in range(number + 1, len(sets))
+            f"_distance({number},{other},{len(one ^ sets[other])})." for other in range(number + 1, len(sets))
         ]
     return "\n".join(facts) + "\n"
 

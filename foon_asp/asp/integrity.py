@@ -33,8 +33,9 @@ def relax(
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
     """Number the integrity constraints of some files, from 1, and put all that they say in other words.
 
-    Without ``soft``, constraint number C holds unless ``dropped(C)`` does (``questions/clash.lp``). With it,
-    it is a rule for ``broken(C,Way)``, where ``Way`` has the values of its variables (``questions/soft.lp``).
+    Without ``soft``, constraint number C holds unless ``_dropped(C)`` does (``questions/clash.lp``). With it,
+    it is a rule for ``_broken(C,Way)``, where ``Way`` has the values of its variables
+    (``questions/soft.lp``).
     Other rules stay as they are. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
     """
     found: list[IntegrityConstraint] = []
@@ -79,12 +80,12 @@ def _is_constraint(statement: AST) -> bool:
 
 
 def _unless_dropped(rule: AST, number: int) -> str:
-    return str(rule.update(body=[*rule.body, *_parsed(f":- not dropped({number}).").body]))
+    return str(rule.update(body=[*rule.body, *_parsed(f":- not _dropped({number}).").body]))
 
 
 def _broken(rule: AST, number: int) -> str:
     way = ",".join(sorted(set(_global_variables(rule.body))))
-    head = _parsed(f"broken({number},way({way})).") if way else _parsed(f"broken({number},way).")
+    head = _parsed(f"_broken({number},_way({way})).") if way else _parsed(f"_broken({number},_way).")
     return str(rule.update(head=head.head))
 
 

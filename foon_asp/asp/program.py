@@ -35,7 +35,7 @@ _RESERVED = (
 )
 
 # Predicates of a search and not of its question: programs that are kept have them otherwise.
-_OF_ONE_SEARCH = frozenset(("agrees", "exponent", "optimize", "product", "seen", "wanted"))
+_OF_ONE_SEARCH = frozenset(("_agrees", "_exponent", "optimize", "_product", "_seen", "_wanted"))
 
 
 class Relaxed(NamedTuple):

@@ -58,7 +58,7 @@ def ground(files: Sequence[Path], facts: str, arguments: Sequence[str], products
         for file in files:
             control.load(str(file))
         control.add("base", [], facts)
-        control.ground([("base", []), *(("product", [Number(number)]) for number in range(products))])
+        control.ground([("base", []), *(("_product", [Number(number)]) for number in range(products))])
     except RuntimeError as error:
         from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 

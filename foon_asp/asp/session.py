@@ -160,9 +160,9 @@ class OpenProgram:
             if objective in objectives
         }
         if wanted is None:
-            true |= {_atom("seen", number) for number in numbers}
+            true |= {_atom("_seen", number) for number in numbers}
         else:
-            true.add(_atom("wanted", numbers[wanted]))
+            true.add(_atom("_wanted", numbers[wanted]))
         for atom in self._true - true:
             self._control.assign_external(atom, False)
         for atom in true - self._true:
@@ -189,12 +189,14 @@ class OpenProgram:
         if key in self._products:
             return self._products[key]
         number = len(self._products)
-        facts = write_product(number, exponents) + f"#external seen({number}). #external wanted({number}).\n"
+        facts = (
+            write_product(number, exponents) + f"#external _seen({number}). #external _wanted({number}).\n"
+        )
         if not number and self.scale is not None:
             facts += write_exponents(self._problem, self._units, self.scale)
         part = f"facts of product {number}"
         self._control.add(part, [], facts)
-        self._control.ground([(part, []), ("product", [Number(number)])])
+        self._control.ground([(part, []), ("_product", [Number(number)])])
         self._products[key] = number
         return number
 

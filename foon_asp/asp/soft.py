@@ -81,11 +81,11 @@ def solve_soft(
             "ignore",
             None,
             None,
-            ("broken",),
+            ("_broken",),
         )
         if given.units != frozenset(units):
             raise BugError("the tree found is none when its soft constraints are looked at")
-        ways = given.atoms["broken"]
+        ways = given.atoms["_broken"]
         found = tuple(Broken(c, by_number[c.number], ways[c.number]) for c in constraints)
         return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
 
@@ -94,12 +94,16 @@ def solve_soft(
     proved = True
     if all(reached.available[goal] for goal in problem.goals):
         ended = run(
-            program.files, facts + "optimize(soft,1).\n", program.arguments, deadline, predicates=("broken",)
+            program.files,
+            facts + "optimize(_soft,1).\n",
+            program.arguments,
+            deadline,
+            predicates=("_broken",),
         )
         proved = ended.exhausted
         spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
-            least = sum(by_number[number] * ways for number, ways in ended.atoms["broken"].items())
+            least = sum(by_number[number] * ways for number, ways in ended.atoms["_broken"].items())
     bound = "" if least is None else write_greatest_penalty(least)
     limit = settings.time_limit
     left = None if limit is None else max(0.0, limit - (time.monotonic() - began))

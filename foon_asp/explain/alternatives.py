@@ -98,11 +98,11 @@ def most_different(
         write_distances([tree.units for tree in pool.trees], count),
         CLINGO_OPTIONS,
         Deadline(None),
-        predicates=("chosen",),
+        predicates=("_chosen",),
     )
     if not ended.exhausted or not ended.atoms:
         raise BugError("no trees could be chosen")
-    return pool._replace(trees=tuple(pool.trees[number] for number in sorted(ended.atoms["chosen"])))
+    return pool._replace(trees=tuple(pool.trees[number] for number in sorted(ended.atoms["_chosen"])))
 
 
 def _ranked(

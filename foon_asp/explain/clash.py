@@ -96,22 +96,22 @@ def find_clash(
     units = tuple(sorted(reached.units))
     scale = None if problem.rates is None else problem_scale(problem, units)
     facts = write_facts(problem, units, scale, with_sources=True) + relaxed.rules
-    dropping = "optimize(dropping,1).\n"
+    dropping = "optimize(_dropping,1).\n"
     corrections: list[tuple[int, ...]] = []
     blamed: tuple[int, ...] = ()
     while True:
         question = facts + dropping + write_constraints(weights, blamed)
-        ended = run(program.files, question, program.arguments, deadline, predicates=("dropped",))
+        ended = run(program.files, question, program.arguments, deadline, predicates=("_dropped",))
         if ended.units is None or not ended.exhausted:
             break
-        corrections.append(tuple(sorted(ended.atoms["dropped"])))
+        corrections.append(tuple(sorted(ended.atoms["_dropped"])))
         if not corrections[-1]:
             break
         hit = write_constraints(weights, ()) + write_corrections(corrections)
-        hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=("blamed",))
+        hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=("_blamed",))
         if hitting.units is None or not hitting.exhausted:
             return answer(complete=False)
-        blamed = tuple(sorted(hitting.atoms["blamed"]))
+        blamed = tuple(sorted(hitting.atoms["_blamed"]))
     clashes = ended.units is None and ended.exhausted
     if not corrections:
         return answer(tree_exists=not clashes, complete=clashes)

@@ -168,9 +168,9 @@ def _lists(
     files = (*program.files, encodings_folder() / "questions" / "shopping_list.lp")
     lists: list[ShoppingList] = []
     while len(lists) < most:
-        ended = run(files, facts, program.arguments, deadline, predicates=("buy",))
+        ended = run(files, facts, program.arguments, deadline, predicates=("_buy",))
         if ended.units is not None:
-            items = tuple(sorted(ended.atoms["buy"]))
+            items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((wares[o] for o in items), Fraction(0))
             lists.append(ShoppingList(items, price, ended.exhausted))
             facts += write_list(len(lists), items)
