@@ -3,16 +3,22 @@
 import math
 from decimal import Decimal
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from foon_asp.asp import Status, exact_success, solve
+from foon_asp.asp import Settings, Status, exact_success, solve
 from foon_asp.asp.exact_success import rate_scale
+from foon_asp.errors import UserError
+from foon_asp.explain.alternatives import best_trees
+from foon_asp.explain.assist import assist
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
+from foon_asp.reduce import ALL, NONE, Reduction
 from tests import oracle
+from tests.conftest import Cli
 from tests.random_problems import random_problem
 
 
@@ -64,6 +70,115 @@ def test_products_that_differ_late_are_told_apart(better: list[str], worse: list
     assert motions(two_ways(worse, better), ["success"]) == {"other"}
 
 
+NEAR_1 = [
+    (["0.99999999999"], ["0.999999999"]),  # both weigh 0 on a scale of 10^8
+    (["0.9999999895"], ["0.999999991"] * 5),  # the chain weighs 0, the one unit 1
+    (["1"], ["0." + "9" * 20]),
+    (["0." + "9" * 31], ["0." + "9" * 30]),
+    (["0." + "9" * 30 + "8"], ["0." + "9" * 30, "0." + "9" * 30]),
+    (["0." + "9" * 39], ["0." + "9" * 38]),
+    (["0." + "9" * 400], ["0." + "9" * 399 + "8"]),
+    (["0.5", "0." + "9" * 13], ["0.5", "0." + "9" * 12]),
+    (["0.5", "0." + "9" * 12, "0." + "9" * 12], ["0.25", "1"]),
+    (["0." + "0" * 400 + "1", "0." + "9" * 400], ["0." + "0" * 400 + "1", "0." + "9" * 399]),
+    (["0." + "0" * 200 + "2"], ["0." + "0" * 200 + "1"]),
+    (["0." + "0" * 39 + "1"], ["0.1"] * 41),
+]
+
+
+@pytest.mark.parametrize(("better", "worse"), NEAR_1)
+@pytest.mark.parametrize("encodings", [None, Path("by_need")])
+@pytest.mark.parametrize("reductions", [ALL, NONE])
+def test_rates_next_to_1_and_0_are_told_apart(
+    better: list[str], worse: list[str], encodings: Path | None, reductions: frozenset[Reduction]
+) -> None:
+    for problem, way in ((two_ways(better, worse), "one"), (two_ways(worse, better), "other")):
+        for objectives in (["success"], ["kitchen", "success"], ["success", "inputs"]):
+            how = Settings(encodings=encodings, reductions=reductions)
+            outcome = solve(problem, parse_objectives(objectives), how)
+            assert outcome.status is Status.OPTIMAL
+            assert outcome.units is not None
+            assert {problem.network.motions[unit].split()[0] for unit in outcome.units} == {way}
+
+
+@pytest.mark.parametrize(("better", "worse"), NEAR_1)
+def test_trees_come_in_order_next_to_1_and_0(better: list[str], worse: list[str]) -> None:
+    for problem in (two_ways(better, worse), two_ways(worse, better)):
+        ranked = best_trees(problem, (Objective.SUCCESS,), Settings(), 2)
+        assert ranked.complete
+        first, second = (tree.costs.success for tree in ranked.trees)
+        assert first is not None
+        assert second is not None
+        assert first == max(math.prod(map(Fraction, way)) for way in (better, worse))
+        assert first > second
+        assert best_trees(problem, (Objective.SUCCESS,), Settings(), 1).trees == ranked.trees[:1]
+
+
+@pytest.mark.parametrize(("better", "worse"), NEAR_1)
+def test_a_person_helps_next_to_1_and_0(better: list[str], worse: list[str]) -> None:
+    for problem in (two_ways(better, worse), two_ways(worse, better)):
+        found = assist(problem, most=1)
+        assert found.complete
+        for row in found.rows:
+            assert row.success == max(
+                math.prod(sorted(map(Fraction, way))[row.most :]) for way in (better, worse)
+            )
+
+
+def test_products_of_long_rates_are_shown_in_full(cli: Cli, tmp_path: Path) -> None:
+    units, rates = "//\n", ""
+    for step in range(6):
+        units += f"O1\tdough\nS1\t{step}\nM1\tstir {step}\nO1\tdough\nS1\t{step + 1}\n//\n"
+        rates += f"stir {step}\t0.{'9' * 900}{step + 1}\n"
+    (tmp_path / "FOON.txt").write_text(units)
+    (tmp_path / "motion.txt").write_text(rates)
+    (tmp_path / "kitchen.json").write_text('[{"label": "dough", "states": ["0"]}]')
+    for objective in ("success", "units"):
+        ran = cli(
+            "solve", "--data", tmp_path, "--goal", "dough; 6", "--objective", objective, "--format", "json"
+        )
+        assert ran.code == 0
+        above, below = map(Decimal, ran.json["costs"]["success"]["exact"].split("/"))
+        assert math.prod(1 - Fraction(10 - n, 10**901) for n in range(1, 7)) == Fraction(above) / Fraction(
+            below
+        )
+
+
+def test_exponents_that_clingo_could_not_add_up_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = two_ways(["0.1", "0." + "0" * 200 + "1"], ["0.2"])
+    assert solve(problem, (Objective.SUCCESS,)).status is Status.OPTIMAL
+    monkeypatch.setattr(exact_success, "_exponents", lambda rates: {rate: {0: 2**30} for rate in rates})
+    with pytest.raises(UserError, match="too far apart"):
+        exact_success.problem_scale(problem, range(len(problem.network)))
+
+
+@pytest.mark.parametrize("rate", [Fraction(0), Fraction(-1, 2), Fraction(3, 2)])
+def test_what_is_no_rate_is_refused(rate: Fraction) -> None:
+    with pytest.raises(ValueError, match="above 0"):
+        rate_scale({rate})
+
+
+@settings(deadline=None, derandomize=True)
+@given(
+    st.integers(min_value=1, max_value=10**9),
+    st.integers(min_value=9, max_value=120),
+    st.integers(min_value=0, max_value=130),
+)
+def test_weights_next_to_1_are_exact(lost: int, zeros: int, scale: int) -> None:
+    """Hold a weight against bounds of the logarithm that are fractions: x + x^2/2 < -ln(1 - x) < x + x^2."""
+    part = Fraction(lost, 10 ** (zeros + 1))
+    weight = exact_success._weight(1 - part, 10**scale)
+    assert weight <= 10**scale * (part + part**2)
+    assert weight + 1 > 10**scale * (part + part**2 / 2)
+
+
+def test_a_scale_is_finer_next_to_1_alone() -> None:
+    assert rate_scale({Fraction(17, 20), Fraction(1)}).scale == 10**8
+    near = {1 - Fraction(n, 10**30) for n in (1, 2, 7)}
+    assert list(rate_scale(near).weights.values()) == [70_000, 20_000, 10_000]
+    assert min(rate_scale({*near, Fraction(1, 2)}).weights.values()) == 0
+
+
 def test_rounding_alone_would_choose_the_worse_tree() -> None:
     # Twelve equal rates, each rounded down by almost 1, look cheaper than one rate that is better.
     rate = max(
@@ -87,6 +202,7 @@ def test_a_coarse_scale_still_gives_the_exact_optimum(
     scale: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(exact_success, "_SCALES", (scale,))
+    monkeypatch.setattr(exact_success, "_ENOUGH", 0)
     for seed in range(3000, 3150):
         problem = random_problem(seed, rule)
         found = list(oracle.trees(problem))

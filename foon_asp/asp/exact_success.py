@@ -7,16 +7,18 @@ A product of rates is the sum of their logarithms; clingo adds integers, so each
 
 import math
 from collections.abc import Collection, Iterable, Mapping
-from decimal import ROUND_CEILING, Context, Decimal
+from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.errors import BugError
+from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 
 _LARGEST = 2**31 - 1
 _SCALES = tuple(10**k for k in range(8, -1, -1))
-_CONTEXT = Context(prec=60)
+_ENOUGH = 1000  # what a rate should weigh at least: next to 1 a finer scale is taken where it fits
+_DIGITS = 40  # of a logarithm, at first
+_CONTEXT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 
 class RateScale(NamedTuple):
@@ -24,7 +26,7 @@ class RateScale(NamedTuple):
 
     ``weights[p]`` is ``floor(scale * -ln p)``; ``exponents[p][f]`` is the power to which the rate holds
     factor number ``f``. The factors are pairwise coprime, so two products of rates are equal exactly when
-    the sums of their exponents are.
+    the sums of their exponents are. A weight of 0 says nothing of the rate: it may be next to 1.
     """
 
     scale: int
@@ -50,31 +52,64 @@ class RateScale(NamedTuple):
 
 
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
-    """Scale rates in (0, 1] as finely as clingo's 32-bit integers allow, at most by 10^8."""
-    logarithms = {rate: _minus_log(rate) for rate in sorted(rates)}
+    """Scale rates in (0, 1] as finely as clingo's 32-bit integers allow, but no finer than is of use.
+
+    That is 10^8 at most, and more only where a rate next to 1 would weigh next to nothing. Raises
+    ``ValueError`` for other rates.
+    """
+    if not all(0 < rate <= 1 for rate in rates):
+        raise ValueError("expected success rates above 0 and at most 1")
+    logarithms = {rate: _minus_log(rate, _DIGITS) for rate in sorted(rates)}
     largest = max(logarithms.values(), default=Decimal(0))
+    smallest = min(filter(None, logarithms.values()), default=largest)
     scale = next(s for s in _SCALES if largest * s < _LARGEST)
-    weights = {rate: _floor(logarithm * scale) for rate, logarithm in logarithms.items()}
+    if 0 < smallest * scale < _ENOUGH:
+        useful = (_ENOUGH / smallest).adjusted() + 1
+        fitting = (_LARGEST / largest).adjusted()
+        scale = max(scale, 10 ** min(useful, fitting))
+    weights = {rate: _weight(rate, scale) for rate in logarithms}
     return RateScale(scale, weights, _exponents(weights))
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
-    """Scale the rates of some units of a problem."""
-    return rate_scale(problem.different_rates(units))
+    """Scale the rates of some units of a problem.
+
+    Raises :class:`UserError` where clingo could not add up their exponents.
+    """
+    units = list(units)
+    scale = rate_scale(problem.different_rates(units))
+    most = max((abs(e) for rate in scale.exponents.values() for e in rate.values()), default=0)
+    if most * len(units) > _LARGEST:
+        raise UserError(
+            "the success rates of the motions are too far apart: written as powers of common factors, "
+            f"the exponents of {len(units)} units add up to more than clingo's numbers hold"
+        )
+    return scale
 
 
-def _minus_log(rate: Fraction) -> Decimal:
-    numerator, denominator = Decimal(rate.numerator), Decimal(rate.denominator)
-    return _CONTEXT.subtract(_CONTEXT.ln(denominator), _CONTEXT.ln(numerator))
+def _minus_log(rate: Fraction, digits: int) -> Decimal:
+    """Give ``-ln`` of a rate to so many digits: it is off by less than 10^-digits of itself."""
+    lost = 1 - rate
+    context = Context(prec=2 * digits + 5, Emax=MAX_EMAX, Emin=MIN_EMIN)
+    if lost < Fraction(1, 10 ** (digits + 1)):  # lost < -ln(1 - lost) < lost / (1 - lost)
+        return context.divide(Decimal(lost.numerator), Decimal(lost.denominator))
+    # The logarithm of 1 + x has as many digits fewer than 1 + x as x is small: fewer than half of them.
+    return context.ln(context.divide(Decimal(rate.denominator), Decimal(rate.numerator)))
 
 
-def _floor(value: Decimal) -> int:
-    # The logarithm of a rational other than 1 is never a whole number, so 60 digits settle the floor;
-    # if they ever did not, say so instead of rounding the wrong way.
-    nearest = value.to_integral_value()
-    if value and abs(value - nearest) < Decimal("1e-30"):
-        raise BugError(f"a scaled logarithm is too close to {nearest} to be rounded safely")
-    return math.floor(value)
+def _weight(rate: Fraction, scale: int) -> int:
+    """Give ``floor(scale * -ln rate)``, exactly.
+
+    The logarithm of a rational number other than 1 is irrational, so enough digits always settle the floor.
+    """
+    lost = 1 - rate
+    low, high = math.floor(scale * lost), math.floor(scale * lost / rate)
+    digits = _DIGITS
+    while low < high:
+        value, off = Fraction(_minus_log(rate, digits)) * scale, Fraction(1, 10**digits)
+        low, high = math.floor(value * (1 - off)), math.floor(value * (1 + off))
+        digits *= 2
+    return low
 
 
 def _exponents(rates: Iterable[Fraction]) -> dict[Fraction, dict[int, int]]:

@@ -124,7 +124,7 @@ class Ranked:
         _, rounded, units = tree
         if last[:place] > rounded[:place]:
             return True
-        doubt = sum(self._weight(unit) > 0 for unit in units)
+        doubt = sum(self.problem.rate(unit) != 1 for unit in units)  # also those that weigh 0
         return last[place] > rounded[place] + doubt
 
     def _weight(self, unit: int) -> int:

@@ -131,7 +131,7 @@ class _Solver:
         best = self._better(incumbent, ended.units)
         if not ended.exhausted:
             return self._outcome(Status.FEASIBLE, best, self._bounds(ended.lower))
-        best = ended.units or best
+        best = best if ended.units is None else ended.units
         if self._measures_agree(ended) and Objective.SUCCESS in self.levels:
             best, settled = self._settle_success(best)
             if not settled:
@@ -296,7 +296,7 @@ class _Solver:
         Returns the best tree by exact products, and whether the search came to its end.
         """
         scale = self.scale
-        if scale is None or not any(scale.weights.values()) or not self.problem.rates:
+        if scale is None or all(rate == 1 for rate in scale.weights):  # a weight of 0 may be a rate below 1
             return best, True
         place = self.levels.index(Objective.SUCCESS)
         before, after = self.levels[:place], self.levels[place + 1 :]
@@ -306,9 +306,11 @@ class _Solver:
         while True:
             # A better product has a weight of at most W + n - 1, where n units of the tree weigh less
             # than their logarithm (all but those of rate 1).
-            inexact = sum(self.problem.rate(unit) != 1 for unit in chosen)
-            band = self._weight(chosen) + inexact - 1
             products.append(scale.product_exponents(map(self.problem.rate, rival)))
+            inexact = sum(self.problem.rate(unit) != 1 for unit in chosen)
+            if not inexact:
+                break  # nothing succeeds more often than always
+            band = self._weight(chosen) + inexact - 1
             mode = ",".join(["opt", *map(str, fixed), str(band)])
             ended = self._run((*before, Objective.SUCCESS), products, opt_mode=mode)
             if not ended.exhausted:
@@ -325,7 +327,7 @@ class _Solver:
         ended = self._run((*before, *after), products, wanted, mode)
         if ended.exhausted and ended.units is None:
             raise BugError("the best product of success rates was lost")
-        return (ended.units or chosen), ended.exhausted
+        return (chosen if ended.units is None else ended.units), ended.exhausted
 
     def _measures_agree(self, ended: Run) -> bool:
         """Hold clingo's cost vector (modulo 2^32) against the costs computed from the units.

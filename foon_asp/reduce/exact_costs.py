@@ -185,7 +185,9 @@ class CoarseCosts:
 
 
 def _coarse(rate: Fraction) -> int:
-    return int(-math.log(rate) * _COARSE) if rate > 0 else 100 * _COARSE
+    if not rate:
+        return 100 * _COARSE
+    return int((math.log(rate.denominator) - math.log(rate.numerator)) * _COARSE)  # a float may not hold it
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Collection, Iterable, Iterator
+from decimal import Decimal
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
@@ -12,7 +13,11 @@ from foon_asp.text import write_units
 
 def fraction_json(value: Fraction | None) -> dict[str, object] | None:
     """Give an exact number and a float beside it for people; ``None`` stays ``None``."""
-    return None if value is None else {"exact": str(value), "approx": float(value)}
+    if value is None:
+        return None
+    # through Decimal: products of long rates have more digits than Python turns into text at once
+    parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
+    return {"exact": "/".join(parts) if value.denominator != 1 else parts[0], "approx": float(value)}
 
 
 def costs_json(costs: Costs | None) -> dict[str, object] | None:
