@@ -3,6 +3,7 @@
 import base64
 import html
 import json
+import os
 import pickle
 import random
 import warnings
@@ -376,6 +377,41 @@ def test_varying_reads_nothing_and_indexes_nothing(
     part = stored.vary(goals="ice", containers="strict", without="knife", rates={"pour": 1})
     assert len(part.network) < len(network)
     assert foon_asp.solve(part).costs == foon_asp.solve(foon.problem("ice")).costs
+
+
+def files_held_open(file: Path) -> int:
+    """Count the open files of this process that are this one."""
+    opened = (os.path.realpath(f"/proc/self/fd/{number}") for number in os.listdir("/proc/self/fd"))
+    return sum(Path(name) == file.resolve() for name in opened)
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="the system does not say what is open")
+def test_the_store_behind_a_foon_is_closed(store: Path) -> None:
+    before = files_held_open(store)
+    with foon_asp.load(store) as opened:
+        assert files_held_open(store) == before + 1
+        varied = opened.vary(without="knife")
+        problem = varied.problem("ice")
+    assert files_held_open(store) == before
+    assert foon_asp.solve(problem).status == "optimal"  # what was read stays
+    with pytest.raises(UserError, match=r"kitchen\.foon: the store was closed; open it again"):
+        varied.problem("macaroni")
+    # without `with`, when nothing needs it any more, which a problem that can be varied does
+    loaded = foon_asp.load(store)
+    problem = loaded.problem("ice")
+    del loaded
+    assert files_held_open(store) == before + 1
+    assert problem.vary(goals="macaroni").goals
+    del problem
+    assert files_held_open(store) == before
+    assert foon_asp.load(store, level=2).network
+    assert files_held_open(store) == before
+
+
+def test_data_that_were_read_whole_are_there_after_the_end_of_with() -> None:
+    with foon_asp.load() as loaded:
+        pass
+    assert foon_asp.solve(loaded.problem("ice")).status == "optimal"
 
 
 def test_a_problem_put_together_by_hand() -> None:

@@ -136,6 +136,7 @@ def test_what_stands_for_many_goals(cli: Cli, tmp_path: Path) -> None:
     ("line", "place", "message"),
     [
         ("{", "1:2", "not JSON"),
+        ('{"goal": "ice",\t}', "1:15", "not JSON: found a comma before }, expected none"),
         ("7", "1:1", "expected an object such as"),
         ('{"objective": "units"}', "1:1", "expected an object such as"),
         ('{"goal": "ice", "goals": 1}', "1:1", "found the key 'goals', expected one of goal, objective"),

@@ -187,9 +187,12 @@ def test_numbers_strings_and_repeated_keys_of_json_stay_as_written() -> None:
     assert format_text(text, "file").text == "\r\n".join(lines)
 
 
-@pytest.mark.parametrize("text", ['[{"a": 1,}]', "[" * 100_000, "{"])
-def test_broken_json_is_refused_or_left_alone(text: str) -> None:
-    with pytest.raises(InputError, match="file:1"):
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [('[{"a": 1,}]', "1:9:"), ('[{"a": 1\n,\n}]', "2:1:"), ("[" * 100_000, "1:"), ("{", "1:2:")],
+)
+def test_broken_json_is_refused_or_left_alone(text: str, place: str) -> None:
+    with pytest.raises(InputError, match=f"file:{place}"):
         format_text(text, "file")
     assert format_text(text, "file", lenient=True) == (text, ())
 

@@ -335,6 +335,13 @@ def test_kitchen_entries_know_their_place_and_form(tmp_path: Path) -> None:
         ("[" * 100_000, "1:1"),
         ("[" + "9" * 5000 + "]", "1:2"),
         ('[{"label": "a", "states": ""}]', "1:2"),
+        ('[{"label": "a",\n  }]', "1:15"),
+        ('[{"label": "a"\n ,\t}]', "2:2"),
+        ('[{"label": "a", "states": ["x", ]}]', "1:31"),
+        ('[{"label": "a", "states": [,]}]', "1:28"),
+        ('[{"label": "a", "states": ["x" "y"]}]', "1:32"),
+        ('[{"label": "a", \'states\': []}]', "1:17"),
+        ('[{"label": "a", "states": ["]', "1:28"),
     ],
 )
 def test_broken_json_is_located(tmp_path: Path, text: str, place: str) -> None:

@@ -555,11 +555,11 @@ def test_two_imports_at_once(soup: tuple[DataFiles, Path]) -> None:
 def test_readers_at_once_and_a_new_import_under_them(soup: tuple[DataFiles, Path]) -> None:
     files, store = soup
     data = read_data(files)
-    opened = Store(store)
+    old = Store(store)
     with ThreadPoolExecutor(4) as pool:
         assert all(same_network(network, data.network) for network, _ in pool.map(read_whole, [store] * 16))
     import_files(DataFiles(files.network[1:]), store)
-    assert same_network(opened.whole()[0], data.network)  # the old one, as long as it is open
+    assert same_network(old.whole()[0], data.network)  # the old one, as long as it is open
     assert len(Store(store).whole()[0]) == 2
 
 
@@ -574,6 +574,76 @@ def test_processes_that_read_at_once(soup: tuple[DataFiles, Path]) -> None:
 
 def read_whole(store: Path) -> tuple[Network, frozenset[int]]:
     return Store(store).whole()
+
+
+# A store that was opened is closed.
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> list[sqlite3.Connection]:
+    """Give the connections of all databases that are opened from now on."""
+    connections: list[sqlite3.Connection] = []
+    connect = sqlite3.connect
+
+    def connected(*words: Any, **named: Any) -> sqlite3.Connection:
+        connections.append(connect(*words, **named))
+        return connections[-1]
+
+    monkeypatch.setattr(sqlite3, "connect", connected)
+    return connections
+
+
+def all_closed(connections: list[sqlite3.Connection]) -> bool:
+    assert connections, "nothing was opened"
+    for connection in connections:
+        with pytest.raises(sqlite3.ProgrammingError, match="closed"):
+            connection.execute("SELECT 1")
+    return True
+
+
+def test_a_store_is_closed_at_the_end_of_with(
+    soup: tuple[DataFiles, Path], opened: list[sqlite3.Connection]
+) -> None:
+    with Store(soup[1]) as store:
+        assert store.units == 4
+    assert all_closed(opened)
+    with pytest.raises(UserError, match=r"soup\.foon: the store was closed; open it again"):
+        store.whole()
+    with pytest.raises(UserError, match="the store was closed"):
+        store.node(0)
+    store.close()  # twice does no harm
+
+
+def test_a_store_that_nothing_refers_to_is_closed(
+    soup: tuple[DataFiles, Path], opened: list[sqlite3.Connection]
+) -> None:
+    store = Store(soup[1])
+    network, _ = store.whole()
+    opened[0].execute("SELECT 1")
+    del store
+    assert all_closed(opened)
+    assert len(network) == 4
+
+
+def test_a_store_that_turns_out_damaged_is_closed(
+    soup: tuple[DataFiles, Path], opened: list[sqlite3.Connection]
+) -> None:
+    damaged = sqlite3.connect(soup[1])
+    damaged.execute("DELETE FROM about")
+    damaged.commit()
+    damaged.close()
+    with pytest.raises(UserError, match="block 0 of about is missing"):
+        Store(soup[1])
+    assert all_closed(opened)
+
+
+@pytest.mark.parametrize("level", ["3", "2"])
+@pytest.mark.parametrize("goal", ["soup", "nothing of the kind"])
+def test_a_command_closes_the_store_that_it_read(
+    soup: tuple[DataFiles, Path], cli: Cli, opened: list[sqlite3.Connection], level: str, goal: str
+) -> None:
+    cli("solve", "--network", soup[1], "--level", level, "--goal", goal)
+    assert all_closed(opened)
 
 
 # Damage.

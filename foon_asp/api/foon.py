@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
+from typing import Self
 
 from foon_asp.api.arguments import File, Files, Number, container_rule, files, success_rate
 from foon_asp.api.problem import Problem, taken
@@ -60,11 +61,27 @@ class Foon:
 
     :func:`load` makes one. Object nodes go by name: a label that only one node has (or one entry of the goals
     file), the one-line notation, or an :class:`ObjectNode`.
+
+    A store stays open while questions may read from it. ``with load(...) as foon:`` closes it at the end, as
+    :meth:`close` does; so does Python when nothing refers to the data any more.
     """
 
     def __init__(self, question: Question, name: str) -> None:
         self._question = question
         self._name = name
+
+    def close(self) -> None:
+        """Close the store, for all that vary these data too; data that were read whole stay.
+
+        To read more of a closed store raises :class:`UserError`.
+        """
+        self._question.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def problem(self, *goals: str | ObjectNode, containers: str = "strict") -> Problem:
         """Ask for goals, all of which one tree has to make; without any, for the one of the goals file.

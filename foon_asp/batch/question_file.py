@@ -10,7 +10,7 @@ from foon_asp.batch.asked import Asked, Asker
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import ContainerRule, parse_objectives
-from foon_asp.text import Diagnostic, InputError, Severity, read_plain_text
+from foon_asp.text import Diagnostic, InputError, Severity, json_fault, read_plain_text
 
 _KEYS = ("goal", "objective", "containers", "kitchen", "time_limit")
 
@@ -42,8 +42,9 @@ def read_questions(file: Path, time_limit: float | None) -> list[QuestionLine]:
         try:
             lines.append(_line(json.loads(text), file.parent, time_limit))
         except json.JSONDecodeError as problem:
-            place = Source(str(file), number, problem.colno)
-            errors.append(Diagnostic(Severity.ERROR, "json", f"not JSON: {problem.msg}", place, text))
+            fault = json_fault(problem)
+            place = Source(str(file), number, fault.column)
+            errors.append(Diagnostic(Severity.ERROR, "json", fault.message, place, text))
         except (UserError, ValueError) as problem:
             errors.append(Diagnostic(Severity.ERROR, "json", str(problem), Source(str(file), number), text))
     if errors:

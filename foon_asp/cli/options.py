@@ -164,6 +164,9 @@ def read_question(
         return here.question
     files = question_files(folder, network, kitchen, rates, utensils, goals)
     question = reading.read_question(files, lenient, level)
+    context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
+    if context:
+        context.call_on_close(question.close)
     for text in question.remarks:
         click.echo(text, err=True)
     if not question.has_kitchen and kitchen_expected:

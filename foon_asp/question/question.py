@@ -31,6 +31,9 @@ class Question:
         self.remarks = remarks
         self.has_kitchen = has_kitchen
 
+    def close(self) -> None:
+        """Close the files that are read only as far as questions go; there are none here."""
+
     @property
     def data(self) -> Data:
         """Everything there is."""

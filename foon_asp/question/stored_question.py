@@ -57,6 +57,7 @@ def read_stored(files: DataFiles, level: int) -> Question:
     if level == 3:
         return question
     data = _at_level(question.data, level)
+    question.close()
     return Question(data, time.perf_counter() - began, tuple(remarks), question.has_kitchen)
 
 
@@ -85,11 +86,15 @@ class StoredQuestion(Question):
         self._at_hand: Callable[[int], bool] = store.in_kitchen
         if kitchen is not None:
             self._at_hand = {o for item in kitchen for o in store.find(item.pattern)}.__contains__
-        self._all_at_hand = self._from_entries
+        self._all_at_hand: Callable[[], frozenset[int]] | None = None  # unless it is what the entries say
         self._read_whole: list[tuple[Network, frozenset[int]]] = []  # shared by all that vary it
         self.remarks = remarks
         self.has_kitchen = kitchen is not None or store.has_kitchen
         self.read_seconds = time.perf_counter() - began
+
+    def close(self) -> None:
+        """Close the store, for all that vary this question too."""
+        self._store.close()
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> Question:
         """Give the same store with the kitchen of another file."""
@@ -148,7 +153,7 @@ class StoredQuestion(Question):
     @cached_property
     def kitchen(self) -> frozenset[int]:
         """The object nodes at hand, by id: the kitchen's entries are looked up, and no more is read."""
-        return self._all_at_hand()
+        return self._from_entries() if self._all_at_hand is None else self._all_at_hand()
 
     def _from_entries(self) -> frozenset[int]:
         items = self._store.kitchen_items() if self._kitchen is None else self._kitchen

@@ -5,7 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
 from foon_asp.network.network import UnitKey
@@ -19,6 +19,9 @@ from foon_asp.text import ListedObject
 
 class Store:
     """An opened store. Ids of units and nodes are those that the whole network has when read from text.
+
+    ``with Store(file) as store:`` closes it at the end, as :meth:`close` does; so does Python when nothing
+    refers to the store any more.
 
     Every method reads what it needs and no more, so that what it costs does not grow with the network.
     Opening and each method raise :class:`UserError` where the store turns out to be none, newer or damaged.
@@ -36,6 +39,16 @@ class Store:
         self._counts = about
         self._labels = LabelIndex(self._file.block, about["labels"], about["trigram_blocks"])
         self._nodes: dict[int, ObjectNode] = {}
+
+    def close(self) -> None:
+        """Close the file; to read more of it raises :class:`UserError`."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     @property
     def has_kitchen(self) -> bool:

@@ -2,6 +2,7 @@
 
 import os
 import sqlite3
+import weakref
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
@@ -30,6 +31,7 @@ def is_database_of_ours(file: Path) -> bool:
 class StoreFile:
     """An opened store, read only. Any number of processes can have one open, and it is never written.
 
+    It is closed by :meth:`close`, or when nothing refers to it any more.
     Raises :class:`UserError`, here and at every block, for a file that is no store, was made by a newer
     program, is cut off or damaged. Every block that is read is held against its checksum.
     """
@@ -44,6 +46,11 @@ class StoreFile:
             self._database = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False)
         except sqlite3.Error as error:
             raise UserError(f"{file}: cannot be read: {error}") from None
+        self._closing = weakref.finalize(self, self._database.close)
+
+    def close(self) -> None:
+        """Close the file; blocks that were read stay, and to read another raises :class:`UserError`."""
+        self._closing()
 
     def block(self, table: Table, number: int) -> Any:
         """Give a block, which is not to be changed."""
@@ -76,6 +83,8 @@ class StoreFile:
         return self._database.execute(statement, (number,)).fetchone()
 
     def _guarded(self, read: Callable[[], Value]) -> Value:
+        if not self._closing.alive:
+            raise UserError(f"{self.file}: the store was closed; open it again to read from it")
         # MemoryError and OverflowError: lengths that are none; ValueError: names and checksums.
         try:
             return read()

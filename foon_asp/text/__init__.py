@@ -26,6 +26,7 @@ from foon_asp.text.goal_name import (
     nodes_beginning,
     notation,
 )
+from foon_asp.text.json_fault import JsonFault, json_fault
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
@@ -51,6 +52,7 @@ __all__ = [
     "Formatted",
     "GoalError",
     "InputError",
+    "JsonFault",
     "LineError",
     "ListedObject",
     "NodeNames",
@@ -64,6 +66,7 @@ __all__ = [
     "foon_files",
     "format_text",
     "is_store",
+    "json_fault",
     "kitchen_item_warning",
     "kitchen_nodes",
     "listed_nodes",

@@ -5,6 +5,7 @@ import re
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.json_fault import json_fault
 
 STEP = "    "
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
@@ -36,9 +37,9 @@ def check_json(text: str, file: str) -> None:
     try:
         json.loads(text, parse_int=str, parse_float=str)
     except json.JSONDecodeError as problem:
-        line = text.split("\n")[problem.lineno - 1].rstrip("\r")
-        message = f"not JSON: {problem.msg}"
-        source = Source(file, problem.lineno, problem.colno)
+        fault = json_fault(problem)
+        line = text.split("\n")[fault.line - 1].rstrip("\r")
+        message, source = fault.message, Source(file, fault.line, fault.column)
     except RecursionError:
         line, message, source = "", "found lists within lists without end", Source(file, 1)
     else:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.text.json_fault import json_fault
 
 _SPACE = re.compile(r"[ \t\r\n]*")
 
@@ -40,7 +41,8 @@ class JsonList:
             for offset, value in self._elements():
                 yield JsonElement(value, self.place(offset))
         except json.JSONDecodeError as problem:
-            self.error(self.place(problem.pos), f"not JSON: {problem.msg}")
+            fault = json_fault(problem)
+            self.error(self.place(fault.offset), fault.message)
         except _UnexpectedError as problem:
             found = self._text[problem.position :].split("\n", 1)[0].rstrip("\r")
             found = found if len(found) <= 24 else found[:24] + "..."

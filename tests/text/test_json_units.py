@@ -498,7 +498,7 @@ def test_what_stands_before_a_fault_is_read() -> None:
     one = unit_text()[1:-1]
     found, reader = read(f"[{one},\n{one},\n ]")
     assert len(found) == 2
-    assert [(d.source.line, d.source.column) for d in reader.diagnostics] == [(3, 2)]
+    assert [(d.source.line, d.source.column) for d in reader.diagnostics] == [(2, len(one) + 1)]
 
 
 @pytest.mark.parametrize("text", ["[]", '{"functional_units": []}', " [ ]\n"])
