@@ -24,6 +24,12 @@ def needed(unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str]) 
     return needs
 
 
+def made(unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str]) -> set[ObjectNode]:
+    """Give what a unit makes: nothing that it put out comes from nothing."""
+    asked = needed(unit, rule, utensils)
+    return {node for node in unit.outputs if node in asked or node not in unit.inputs}
+
+
 def makes(problem: Problem, units: tuple[FunctionalUnit, ...]) -> bool:
     """Whether all the units execute in some order and every goal is at hand afterwards."""
     objects = problem.network.objects
@@ -34,7 +40,7 @@ def makes(problem: Problem, units: tuple[FunctionalUnit, ...]) -> bool:
         if not ready:
             return False
         for unit in ready:
-            at_hand |= set(unit.outputs)
+            at_hand |= made(unit, problem.containers, problem.utensils)
         left = [u for u in left if u not in ready]
     return all(objects[goal] in at_hand for goal in problem.goals)
 

@@ -121,7 +121,7 @@ def check_rows(
         at_hand = set(problem.kitchen)
         for unit in row.units:
             assert at_hand.issuperset(problem.needs[unit])
-            at_hand.update(problem.network.outputs[unit])
+            at_hand.update(problem.gives[unit])
         assert succeeds(problem, person, tree, helped) == row.success
         assert allowed(tree, helped)
     successes = [row.success or Fraction(0) for row in found.rows]

@@ -348,10 +348,10 @@ def test_only_plain_statements() -> None:
 # Apple and knife are at hand, slices are wanted. A tree slices or cranks, and to crank it washes the apple.
 
 KITCHEN_TABLE = """
-    unit(1). motion(1,"slice"). input(1,(1;2)). needs(1,(1;2)). output(1,(4;2)).
-    unit(2). motion(2,"wash").  input(2,1).     needs(2,1).     output(2,3).
-    unit(3). motion(3,"crank"). input(3,3).     needs(3,3).     output(3,(4;5)).
-    unit(4). motion(4,"wash").  input(4,2).     needs(4,2).     output(4,6).
+    unit(1). motion(1,"slice"). input(1,(1;2)). needs(1,(1;2)). output(1,(4;2)). gives(1,(4;2)).
+    unit(2). motion(2,"wash").  input(2,1).     needs(2,1).     output(2,3).     gives(2,3).
+    unit(3). motion(3,"crank"). input(3,3).     needs(3,3).     output(3,(4;5)). gives(3,(4;5)).
+    unit(4). motion(4,"wash").  input(4,2).     needs(4,2).     output(4,6).     gives(4,6).
     object(1..6). kitchen(1..2). goal(4).
     label((1;3),"apple"). label((2;6),"knife"). label(4,"slices"). label(5,"peel").
     state(2,"clean"). state(3,"washed"). state(6,"rinsed").

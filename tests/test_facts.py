@@ -54,7 +54,7 @@ def test_the_facts_say_what_the_table_says() -> None:
     salt = ObjectNode.of("salt", ["fine"], [("in", "cup")])
     soup = ObjectNode.of('the "soup"', [], [], [("contains", ["salt", "salt", "water"])])
     water = ObjectNode.of("water")
-    unit = builder.add("stir\\in", [cup, salt, water], [soup], Source("x", 1))
+    unit = builder.add("stir\\in", [cup, salt, water], [soup, cup], Source("x", 1))
     builder.add("unrelated", [water], [ObjectNode.of("tea")], Source("x", 9))
     network = builder.build()
     kitchen = frozenset(o for o in range(3))
@@ -65,6 +65,7 @@ def test_the_facts_say_what_the_table_says() -> None:
     assert facts == {
         *(f"unit({unit})", r'motion(0,"stir\\in")', "inputs(0,3)", "ingredients(0,1)"),
         *("input(0,0)", "input(0,1)", "input(0,2)", "needs(0,1)", "needs(0,2)", "output(0,3)"),
+        *("output(0,0)", "gives(0,3)"),  # the cup was let skip
         *("rate(0,1000000)", "risk(0,0)"),
         *("object(0)", 'label(0,"cup")', 'ingredient(0,"salt")', "kitchen(0)"),
         *("object(1)", 'label(1,"salt")', 'state(1,"fine")', 'located(1,"in","cup")', "kitchen(1)"),

@@ -124,7 +124,7 @@ def waits(problem: Problem, tree: Tree, earlier: str, later: str) -> bool:
     for _ in others:
         for unit in others:
             if oracle.needed(unit, problem.containers, problem.utensils) <= at_hand:
-                at_hand |= set(unit.outputs)
+                at_hand |= oracle.made(unit, problem.containers, problem.utensils)
     ran = [u for u in others if oracle.needed(u, problem.containers, problem.utensils) <= at_hand]
     return all(unit.motion != later for unit in ran)
 
@@ -135,7 +135,7 @@ def passed_on(problem: Problem, tree: Tree, label: str) -> bool:
     return any(
         node in oracle.needed(user, problem.containers, problem.utensils)
         for maker in tree
-        for node in set(maker.outputs) - set(maker.inputs) - at_hand
+        for node in oracle.made(maker, problem.containers, problem.utensils) - set(maker.inputs) - at_hand
         if node.label == label
         for user in tree
     )

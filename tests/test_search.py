@@ -123,7 +123,8 @@ def depths(problem: Problem) -> dict[int, int]:
             needs = [ids[n] for n in oracle.needed(network.unit(u), problem.containers, problem.utensils)]
             if all(o in depth for o in needs):
                 level = 1 + max((depth[o] for o in needs), default=0)
-                for o in network.outputs[u]:
+                made = oracle.made(network.unit(u), problem.containers, problem.utensils)
+                for o in (ids[n] for n in made):
                     if depth.get(o, level + 1) > level:
                         depth[o], changed = level, True
     return depth

@@ -64,15 +64,15 @@ def test_random_trees_against_the_naive_simulator(rule: ContainerRule) -> None:
         at_hand, runs = set(kitchen), True
         for step in chosen:
             runs = runs and oracle.needed(step, rule, problem.utensils) <= at_hand
-            at_hand |= set(step.outputs)
+            at_hand |= oracle.made(step, rule, problem.utensils)
         assert (result.verdict is Verdict.AS_LISTED) is (runs and set(goals) <= at_hand)
 
         at_hand = set(kitchen)
         for position in result.order:
             assert oracle.needed(chosen[position], rule, problem.utensils) <= at_hand
-            at_hand |= set(chosen[position].outputs)
+            at_hand |= oracle.made(chosen[position], rule, problem.utensils)
         if result.obstacle and result.obstacle.cycle:
             ring = result.obstacle.cycle
             for one, following in zip(ring, (*ring[1:], ring[0]), strict=True):
                 lacks = oracle.needed(chosen[one], rule, problem.utensils) - at_hand
-                assert lacks & set(chosen[following].outputs)
+                assert lacks & oracle.made(chosen[following], rule, problem.utensils)

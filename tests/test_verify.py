@@ -230,7 +230,8 @@ def test_weights_landmarks_and_digests_cannot_be_changed_even_if_sealed_anew() -
         for path, mutant in mutants(content):
             if path[0] in {"digests", "proof", "costs", "bound", "claim", "format", "version"}:
                 tried += 1
-                assert accepted(mutant, problem) is None, path
+                same = path == ("version",) and mutant["version"] == 1 and content["containers"] == "strict"
+                assert (accepted(mutant, problem) is not None) is same, path
         for number in range(len(content["cuts"])):  # a landmark and its weight, dropped together
             mutant = copy.deepcopy(content)
             del mutant["cuts"][number]

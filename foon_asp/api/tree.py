@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from foon_asp.api.shown import picture_bundle, svg_text
 from foon_asp.network import Source, TaskTree
+from foon_asp.problem import given_outputs
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.tree_drawing import given_tree
 from foon_asp.text import write_units
@@ -39,9 +40,11 @@ class Tree(TaskTree):
         met = {node for unit in self.units for side in (unit.inputs, unit.outputs) for node in side}
         kitchen = {node for node in met.union(self.problem.goal_nodes) if self.problem.at_hand(node)}
         goals = self.problem.goal_nodes
-        if self.claim:
-            return draw_tree(self.units, kitchen, goals, (f"Task tree for {self._goals()}", self.claim))
         rule, utensils = self.problem.containers, self.problem.utensils
+        if self.claim:
+            gives = [given_outputs(unit, rule, utensils, network) for unit in self.units]
+            caption = (f"Task tree for {self._goals()}", self.claim)
+            return draw_tree(self.units, kitchen, goals, caption, gives)
         return given_tree("", self, kitchen, goals, rule, utensils, network)
 
     def svg(self) -> str:

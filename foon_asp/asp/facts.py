@@ -16,6 +16,7 @@ FACT_PREDICATES = {
     "input": 2,
     "output": 2,
     "needs": 2,
+    "gives": 2,
     "object": 1,
     "label": 2,
     "state": 2,
@@ -146,6 +147,7 @@ def _unit_atoms(problem: Problem, unit: int, scale: RateScale | None, with_sourc
     atoms += [f"input({u},{name(o)})" for o in inputs]
     atoms += [f"needs({u},{name(o)})" for o in problem.needs[unit]]
     atoms += [f"output({u},{name(o)})" for o in network.outputs[unit]]
+    atoms += [f"gives({u},{name(o)})" for o in problem.gives[unit]]
     atoms += [f"inputs({u},{len(inputs)})", f"ingredients({u},{_check(ingredients)})"]
     if scale:
         rate = problem.rate(unit)

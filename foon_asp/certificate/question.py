@@ -26,7 +26,7 @@ class Question:
         known: dict[object, Vector] = {}
         self.costs = [self._cost(unit, known) for unit in range(len(network))]
         needs: list[Sequence[int]] = list(problem.needs)
-        gives: list[Sequence[int]] = list(network.outputs)
+        gives: list[Sequence[int]] = list(problem.gives)
         self.items: dict[int, int] = {}
         if Objective.KITCHEN in objectives:
             kitchen = sorted(problem.kitchen)

@@ -31,13 +31,13 @@ class Scope(NamedTuple):
 
 def backwards(problem: Problem, forbidden: frozenset[int]) -> Scope:
     """Go back from the goals to the kitchen through all units that are not forbidden, can they run or not."""
-    network, kitchen = problem.network, problem.kitchen
+    kitchen, makers = problem.kitchen, problem.makers
     goals = [goal for goal in problem.goals if goal not in kitchen]
     objects = dict.fromkeys(goals)
     units: set[int] = set()
     waiting = list(goals)
     while waiting:
-        for unit in network.producers[waiting.pop()]:
+        for unit in makers[waiting.pop()]:
             if unit not in units and unit not in forbidden:
                 units.add(unit)
                 new = [o for o in problem.needs[unit] if o not in kitchen and o not in objects]

@@ -93,9 +93,7 @@ def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> 
     operators: list[Iterator[str]] = []
     for unit in scope.units:
         needs = [o for o in problem.needs[unit] if o in places]
-        gives = [
-            o for o in problem.network.outputs[unit] if o in places and o not in items and o not in needs
-        ]
+        gives = [o for o in problem.gives[unit] if o in places and o not in items and o not in needs]
         if gives:  # an operator has to have an effect
             weight = round(scale * cost(problem, objective, unit))
             rows = [places[o] for o in needs], [places[o] for o in gives]

@@ -57,13 +57,13 @@ class _Program:
             ("mip_abs_gap", 1e-9),
         ):
             highs.setOptionValue(option, value)
-        needs, outputs, levels = problem.needs, problem.network.outputs, len(scope.objects) + 1
+        needs, gives, levels = problem.needs, problem.gives, len(scope.objects) + 1
         self._use = {unit: self._variable(1, whole=True) for unit in scope.units}
         self._take = {o: self._variable(1, whole=True) for o in taken(problem, scope.units)}
         height = {o: self._variable(levels, whole=False) for o in scope.objects}
         makers: dict[int, list[tuple[int, float]]] = {o: [] for o in scope.objects}
         for unit, used in self._use.items():
-            for o in set(outputs[unit]) & height.keys() - set(needs[unit]):
+            for o in set(gives[unit]) & height.keys() - set(needs[unit]):
                 maker = self._variable(1, whole=True)
                 makers[o].append((maker, 1.0))
                 self._at_least(0, [(used, 1.0), (maker, -1.0)])

@@ -6,13 +6,13 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Costs, needed_inputs
+from foon_asp.problem import ContainerRule, Costs, given_outputs, needed_inputs
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 
 
 class Side(NamedTuple):
-    """One of two trees: its units in the order listed, each once, with place and needs, and its costs.
+    """One of two trees: its units in the order listed, each once, with place, needs and products; its costs.
 
     ``goals`` may be empty where they are not known. ``costs.success`` is ``None`` where a rate is not known.
     """
@@ -21,6 +21,7 @@ class Side(NamedTuple):
     units: tuple[FunctionalUnit, ...]
     places: Mapping[FunctionalUnit, Source]
     needs: Mapping[FunctionalUnit, tuple[ObjectNode, ...]]
+    gives: Mapping[FunctionalUnit, tuple[ObjectNode, ...]]
     goals: tuple[ObjectNode, ...]
     kitchen: frozenset[ObjectNode]
     costs: Costs
@@ -29,7 +30,7 @@ class Side(NamedTuple):
         """Give the unit that makes a node first; ``None`` where the kitchen has it or no unit makes it."""
         if node in self.kitchen:
             return None
-        return next((u for u in self.units if node in u.outputs and node not in self.needs[u]), None)
+        return next((u for u in self.units if node in self.gives[u] and node not in self.needs[u]), None)
 
 
 class Parting(NamedTuple):
@@ -68,11 +69,12 @@ def side(
 ) -> Side:
     """Take a tree as one side of a difference; its units need not be those of any network.
 
-    Below level 3 the ``network`` says what its units stand for, and so what they need.
+    Below level 3 the ``network`` says what its units stand for, and so what they need and make.
     """
     places = dict(reversed(listed))
     units = tuple(dict.fromkeys(unit for unit, _ in listed))
     needs = {unit: needed_inputs(unit, rule, utensils, network) for unit in units}
+    gives = {unit: given_outputs(unit, rule, utensils, network) for unit in units}
     known = rates is not None and all(unit.motion in rates for unit in units)
     costs = Costs(
         units=len(units),
@@ -83,7 +85,7 @@ def side(
         if rates is not None and known
         else None,
     )
-    return Side(name, units, places, needs, tuple(goals), kitchen, costs)
+    return Side(name, units, places, needs, gives, tuple(goals), kitchen, costs)
 
 
 def difference(left: Side, right: Side) -> Difference:
@@ -125,4 +127,4 @@ def _way(tree: Side, goals: Sequence[ObjectNode]) -> dict[ObjectNode, None]:
 
 def _ends(tree: Side) -> list[ObjectNode]:
     needed = {node for needs in tree.needs.values() for node in needs}
-    return [node for unit in tree.units for node in unit.outputs if node not in needed]
+    return [node for unit in tree.units for node in tree.gives[unit] if node not in needed]

@@ -58,7 +58,7 @@ def _serves(problem: Problem, units: Sequence[int]) -> dict[int, tuple[int, ...]
     """Say which goals each unit of a tree, given in an order that executes, is needed for."""
     makers: dict[int, int] = {}
     for unit in units:
-        for o in problem.network.outputs[unit]:
+        for o in problem.gives[unit]:
             if o not in problem.kitchen:
                 makers.setdefault(o, unit)
     served: dict[int, list[int]] = {unit: [] for unit in units}

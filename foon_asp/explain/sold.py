@@ -9,10 +9,11 @@ from foon_asp.problem import Problem
 class Shop:
     """Tells what of a problem's object nodes can be bought.
 
-    For sale is a node that no unit makes (one that needs it only hands it on), and a node without any state
-    that holds at most one ingredient, where what it is or holds is nobody's product. A *product* is a name
-    that some unit makes out of things that neither bear nor hold it: whipped cream, dough, lemon juice.
-    States are how a FOON says that something was done, so what has none is taken to be unprocessed.
+    For sale is a node that no unit makes (one that needs it only hands it on, and so does one that the
+    container rule lets skip it), and a node without any state that holds at most one ingredient, where what
+    it is or holds is nobody's product. A *product* is a name that some unit makes out of things that neither
+    bear nor hold it: whipped cream, dough, lemon juice. States are how a FOON says that something was done,
+    so what has none is taken to be unprocessed.
 
     A goal is not for sale, nor is any node that bears or holds the name of the *dish*: the label of a goal
     (or, where that is a utensil, the one ingredient in it), if that is a product.
@@ -37,8 +38,8 @@ class Shop:
 
     def is_raw(self, o: int) -> bool:
         """Whether no unit makes a node out of others."""
-        network, needs = self._problem.network, self._problem.needs
-        return all(o in needs[unit] for unit in network.producers[o])
+        needs = self._problem.needs
+        return all(o in needs[unit] for unit in self._problem.makers[o])
 
     def is_dish(self, o: int) -> bool:
         """Whether a node is a goal, or bears or holds the name of the dish."""

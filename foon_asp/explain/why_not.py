@@ -119,7 +119,7 @@ def _dead_ends(
     problem: Problem, goals: Sequence[int], available: bytearray
 ) -> dict[int, tuple[Blocked, ...]]:
     """Go backwards from the goals through all that cannot be had."""
-    network, needs = problem.network, problem.needs
+    needs = problem.needs
     makers: dict[int, tuple[Blocked, ...]] = {}
     stack = list(reversed(goals))
     while stack:
@@ -128,7 +128,7 @@ def _dead_ends(
             continue
         makers[o] = tuple(
             Blocked(unit, tuple(need for need in needs[unit] if not available[need]))
-            for unit in network.producers[o]
+            for unit in problem.makers[o]
             if o not in needs[unit]
         )
         stack += [lack for blocked in reversed(makers[o]) for lack in reversed(blocked.lacks)]
@@ -145,7 +145,7 @@ def _in_order(found: tuple[Blocked, ...], things: dict[int, int], easiest: int |
 def _cycles(problem: Problem, waiting: Collection[int]) -> list[DeadCycle]:
     """Find sets of nodes that can only be made from each other, among those given; all else is at hand."""
     others = [o for o in range(len(problem.network.objects)) if o not in waiting]
-    return dead_cycles(replace(problem.network, inputs=problem.needs), others)
+    return dead_cycles(replace(problem.network, inputs=problem.needs, outputs=problem.gives), others)
 
 
 def _things_more(

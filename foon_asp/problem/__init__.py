@@ -1,6 +1,6 @@
 """One question over a network, and its cut down to what can matter."""
 
-from foon_asp.problem.containers import ContainerRule, conditions, needed_inputs
+from foon_asp.problem.containers import ContainerRule, conditions, given_outputs, needed_inputs
 from foon_asp.problem.costs import Costs
 from foon_asp.problem.objective import Objective, levels, parse_objectives
 from foon_asp.problem.order import executable_order
@@ -16,6 +16,7 @@ __all__ = [
     "conditions",
     "executable_order",
     "first_tree",
+    "given_outputs",
     "levels",
     "needed_inputs",
     "parse_objectives",

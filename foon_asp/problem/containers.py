@@ -1,5 +1,6 @@
-"""The two container rules: which inputs a unit asks for."""
+"""The two container rules: which inputs a unit asks for, and which outputs it makes."""
 
+from collections.abc import Iterable
 from enum import StrEnum
 from functools import lru_cache
 
@@ -10,7 +11,8 @@ class ContainerRule(StrEnum):
     """``strict``: a unit needs every input. ``implied``: the rule of the published searches.
 
     Under ``implied`` a utensil node that holds exactly one ingredient is taken as given when that
-    ingredient, located in that utensil (by any relation), is also an input of the same unit.
+    ingredient, located in that utensil (by any relation), is also an input of the same unit. A unit does not
+    make an input that it was let skip: nothing comes from nothing.
     """
 
     STRICT = "strict"
@@ -42,6 +44,30 @@ def needed_inputs(
     return tuple(node for node in unit.inputs if not _is_implied(node, unit.inputs, utensils))
 
 
+def given_outputs(
+    unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None = None
+) -> tuple[ObjectNode, ...]:
+    """Give the outputs that a unit makes under the rule, in its order: all but the inputs that it skips.
+
+    A unit of a ``network`` below level 3 makes what any of the level-3 units makes that it stands for.
+    """
+    if rule is ContainerRule.STRICT:
+        return unit.outputs
+    if network is not None and network.detailed is not None:
+        unit_id = network.unit_id(unit)
+        if unit_id is None:  # it needs all its inputs
+            return unit.outputs
+        details = map(network.detailed.unit, network.stands_for[unit_id])
+        given = {
+            node_at_level(node, network.level)
+            for detail in details
+            for node in given_outputs(detail, rule, utensils)
+        }
+        return tuple(node for node in unit.outputs if node in given)
+    skipped = set(unit.inputs).difference(needed_inputs(unit, rule, utensils))
+    return tuple(node for node in unit.outputs if node not in skipped)
+
+
 @lru_cache(maxsize=4)  # question after question is about the same network
 def network_needs(
     network: Network, rule: ContainerRule, utensils: frozenset[str]
@@ -62,6 +88,42 @@ def network_needs(
         needed = set(needed_inputs(network.unit(unit), rule, utensils, network))
         needs.append(tuple(o for o in inputs if network.objects[o] in needed))
     return tuple(needs)
+
+
+@lru_cache(maxsize=4)
+def network_gives(
+    network: Network, rule: ContainerRule, utensils: frozenset[str]
+) -> tuple[tuple[int, ...], ...]:
+    """Give for each unit of a network, at its level, the ids of the outputs that it makes under the rule."""
+    if rule is ContainerRule.STRICT:
+        return network.outputs
+    detailed = network.detailed or network
+    pairs = zip(network_needs(detailed, rule, utensils), detailed.inputs, strict=True)
+    skipping = {detail for detail, (needs, inputs) in enumerate(pairs) if len(needs) < len(inputs)}
+    units: Iterable[int] = skipping
+    if network.detailed is not None:
+        units = (u for u, details in enumerate(network.stands_for) if not skipping.isdisjoint(details))
+    gives = list(network.outputs)
+    for unit in units:
+        given = set(given_outputs(network.unit(unit), rule, utensils, network))
+        gives[unit] = tuple(o for o in gives[unit] if network.objects[o] in given)
+    return tuple(gives)
+
+
+@lru_cache(maxsize=4)
+def network_makers(
+    network: Network, rule: ContainerRule, utensils: frozenset[str]
+) -> tuple[tuple[int, ...], ...]:
+    """Give for each object node the ids of the units that make it under the rule, in order."""
+    makers: dict[int, tuple[int, ...]] = {}
+    gives = network_gives(network, rule, utensils)
+    for unit, (outputs, given) in enumerate(zip(network.outputs, gives, strict=True)):
+        if len(given) < len(outputs):
+            for o in set(outputs).difference(given):
+                makers[o] = tuple(other for other in makers.get(o, network.producers[o]) if other != unit)
+    if not makers:
+        return network.producers
+    return tuple(makers.get(o, producers) for o, producers in enumerate(network.producers))
 
 
 def _is_implied(node: ObjectNode, inputs: tuple[ObjectNode, ...], utensils: frozenset[str]) -> bool:

@@ -11,7 +11,7 @@ def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] 
     What a step needs is made just before it (depth first from the goals), as a cook would read it.
     Linear in the size of the units.
     """
-    network, needs, kitchen = problem.network, problem.needs, problem.kitchen
+    needs, gives, kitchen = problem.needs, problem.gives, problem.kitchen
     chosen = sorted(set(units))
     missing = {unit: sum(o not in kitchen for o in needs[unit]) for unit in chosen}
     waiting: dict[int, list[int]] = {}
@@ -22,7 +22,7 @@ def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] 
     makers: dict[int, int] = {}  # first maker in one order that executes: following them never circles
     ready = [unit for unit in chosen if not missing[unit]]
     for unit in ready:
-        for o in network.outputs[unit]:
+        for o in gives[unit]:
             if o not in kitchen and o not in makers:
                 makers[o] = unit
                 for consumer in waiting.get(o, ()):

@@ -8,7 +8,13 @@ from functools import cached_property
 
 from foon_asp.errors import UserError
 from foon_asp.network import Network, Source, TaskTree
-from foon_asp.problem.containers import ContainerRule, conditions, network_needs
+from foon_asp.problem.containers import (
+    ContainerRule,
+    conditions,
+    network_gives,
+    network_makers,
+    network_needs,
+)
 from foon_asp.problem.costs import Costs
 
 
@@ -47,6 +53,16 @@ class Problem:
     def needs(self) -> tuple[tuple[int, ...], ...]:
         """For each unit, the ids of the inputs that the container rule asks for."""
         return network_needs(self.network, self.containers, self.utensils)
+
+    @cached_property
+    def gives(self) -> tuple[tuple[int, ...], ...]:
+        """For each unit, the ids of the outputs that it makes: all but the inputs it may skip."""
+        return network_gives(self.network, self.containers, self.utensils)
+
+    @cached_property
+    def makers(self) -> tuple[tuple[int, ...], ...]:
+        """For each object node, the units that make it under the container rule, in order."""
+        return network_makers(self.network, self.containers, self.utensils)
 
     def rate(self, unit: int) -> Fraction:
         """Give the success rate of a unit: its own where it has one, else that of its motion.

@@ -21,7 +21,7 @@ class Reached(NamedTuple):
 
 def reach(problem: Problem) -> Reached:
     """Close the kitchen under the units: the counting algorithm, linear in the size of the network."""
-    network, needs = problem.network, problem.needs
+    network, needs, gives = problem.network, problem.needs, problem.gives
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
     waiting: list[list[int]] = [[] for _ in network.objects]
@@ -36,7 +36,7 @@ def reach(problem: Problem) -> Reached:
 
     def execute(unit: int) -> None:
         order.append(unit)
-        for o in network.outputs[unit]:
+        for o in gives[unit]:
             if not available[o]:
                 available[o] = 1
                 makers[o] = unit
@@ -56,9 +56,9 @@ def reach(problem: Problem) -> Reached:
 def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
     """Give the reached units that some tree without spare units can contain, in order of id.
 
-    Goes backwards from the goals through all reached producers and stops at the kitchen.
+    Goes backwards from the goals through all reached makers and stops at the kitchen.
     """
-    network, needs, kitchen = problem.network, problem.needs, problem.kitchen
+    network, needs, makers, kitchen = problem.network, problem.needs, problem.makers, problem.kitchen
     can_run = bytearray(len(network))
     for unit in reached.units:
         can_run[unit] = 1
@@ -66,7 +66,7 @@ def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
     wanted = {o for o in problem.goals if o not in kitchen}
     stack = list(wanted)
     while stack:
-        for unit in network.producers[stack.pop()]:
+        for unit in makers[stack.pop()]:
             if can_run[unit] and not chosen[unit]:
                 chosen[unit] = 1
                 for o in needs[unit]:

@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from foon_asp.network import Network, ObjectNode, TaskTree
-from foon_asp.problem import ContainerRule, Problem, needed_inputs
+from foon_asp.problem import ContainerRule, Problem, given_outputs, needed_inputs
 
 
 class Verdict(StrEnum):
@@ -20,8 +20,8 @@ class Obstacle(NamedTuple):
     """Why a tree does not execute: the position of a unit in the tree (from 0) and an input it lacks.
 
     ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
-    ``cycle`` lists positions of units each of which waits for an output of the next, and the last for one of
-    the first, where such a circle is what ``unit`` waits for; otherwise it is empty, and somewhere behind
+    ``cycle`` lists positions of units each of which waits for what the next makes, and the last for what the
+    first makes, where such a circle is what ``unit`` waits for; otherwise it is empty, and somewhere behind
     ``unit`` an input is missing that no unit of the tree makes.
     """
 
@@ -64,17 +64,18 @@ def simulate(
     """Execute the units of a tree from the kitchen, first as listed, then in any order that works.
 
     Items do not run out. The tree executes when all of its units do and all goals are then at hand. Below
-    level 3 the ``network`` of the units says what they stand for, and so what they need.
+    level 3 the ``network`` of the units says what they stand for, and so what they need and make.
     """
     needs = [needed_inputs(unit, containers, utensils, network) for unit in tree]
+    gives = [given_outputs(unit, containers, utensils, network) for unit in tree]
     at_hand = set(kitchen)
     as_listed: Obstacle | None = None
-    for position, unit in enumerate(tree):
-        lacking = next((node for node in needs[position] if node not in at_hand), None)
+    for position, needed in enumerate(needs):
+        lacking = next((node for node in needed if node not in at_hand), None)
         if lacking is not None:
             as_listed = Obstacle(position, lacking)
             break
-        at_hand.update(unit.outputs)
+        at_hand.update(gives[position])
     if as_listed is None:
         as_listed = _missing_goal(goals, at_hand)
         if as_listed is None:
@@ -88,7 +89,7 @@ def simulate(
         held_back: list[int] = []
         for position in waiting:
             if at_hand.issuperset(needs[position]):
-                at_hand.update(tree.units[position].outputs)
+                at_hand.update(gives[position])
                 order.append(position)
             else:
                 held_back.append(position)
@@ -96,7 +97,7 @@ def simulate(
         waiting = held_back
     if waiting:
         lacking = next(node for node in needs[waiting[0]] if node not in at_hand)
-        blocked = Obstacle(waiting[0], lacking, _cycle(tree, needs, waiting, at_hand))
+        blocked = Obstacle(waiting[0], lacking, _cycle(needs, gives, waiting, at_hand))
         return Simulation(Verdict.NEVER, tuple(order), as_listed, blocked)
     obstacle = _missing_goal(goals, at_hand)
     verdict = Verdict.REORDERED if obstacle is None else Verdict.NEVER
@@ -109,12 +110,15 @@ def _missing_goal(goals: tuple[ObjectNode, ...], at_hand: set[ObjectNode]) -> Ob
 
 
 def _cycle(
-    tree: TaskTree, needs: Sequence[tuple[ObjectNode, ...]], waiting: Sequence[int], at_hand: set[ObjectNode]
+    needs: Sequence[tuple[ObjectNode, ...]],
+    gives: Sequence[tuple[ObjectNode, ...]],
+    waiting: Sequence[int],
+    at_hand: set[ObjectNode],
 ) -> tuple[int, ...]:
     """Find a circle of waiting units behind the first of them, depth first; empty where there is none."""
     makers: dict[ObjectNode, list[int]] = {}
     for position in waiting:
-        for node in tree.units[position].outputs:
+        for node in gives[position]:
             makers.setdefault(node, []).append(position)
 
     def waits_for(position: int) -> Iterator[int]:

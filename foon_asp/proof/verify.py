@@ -2,7 +2,7 @@
 
 docs/proofs.md describes certificates and proves that what passes here is true. In short: take a set T of
 object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node of
-T, so every tree uses one of the units with an output and no needed input in T: the *members* of T. Positive
+T, so every tree uses one of the units that make a node of T and need none: the *members* of T. Positive
 weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a
 lower bound on every tree's cost. A cut without members shows that there is no tree.
 
@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 from foon_asp.network import Network, ObjectNode, node_at_level
 
 FORMAT = "foon-asp certificate"
-VERSION = 1
+VERSION = 2
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen")
 
 _KEYS = {
@@ -39,6 +39,12 @@ _DIGITS = Context(prec=50)
 
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
 Amount = dict[tuple[int, Fraction | None], Fraction]
+
+# Why version 1 is refused under implied containers; under strict ones it says what version 2 does.
+_VERSION_1 = (
+    "version 1 took a unit to make a container that the implied rule had let it skip, so that a container "
+    "could come from nothing; certify again, which writes version 2"
+)
 
 
 class RefusedError(Exception):
@@ -120,8 +126,11 @@ def verify(
         _require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
         _require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
         version = certificate.get("version")
-        _require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
+        _require(
+            type(version) is int and version in (1, VERSION), f"expected version {VERSION} of the format"
+        )
         _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
+        _require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
         _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
         level = certificate["level"]
         _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
@@ -168,6 +177,7 @@ class _Check:
         self.ruled_out = frozenset(self._ruled_out())
         self.not_covered = _names(certificate["not_covered"])
         self.needs: dict[int, frozenset[int]] = {}
+        self.gives: dict[int, frozenset[int]] = {}
         self.cuts = [frozenset(_numbers(cut, len(network.objects))) for cut in _list(certificate["cuts"])]
         self.members = [frozenset(self._members(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
@@ -225,7 +235,7 @@ class _Check:
         for unit in _numbers(units, len(self.network), ascending=False):
             _require(unit not in self.ruled_out, f"unit {unit} of the tree is forbidden")
             _require(self._needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input in its turn")
-            at_hand.update(self.network.outputs[unit])
+            at_hand.update(self._gives(unit))
         _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
         items = {o for unit in units for o in self._needs(unit) if o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
@@ -305,7 +315,7 @@ class _Check:
                 yield len(network) + o
                 continue
             for unit in network.producers[o]:
-                if cut.isdisjoint(self._needs(unit)):
+                if o in self._gives(unit) and cut.isdisjoint(self._needs(unit)):
                     yield unit
 
     def _needs(self, unit: int) -> frozenset[int]:
@@ -325,6 +335,28 @@ class _Check:
                     needed = self._needed(map(whole.objects.__getitem__, whole.inputs[detail]))
                     found &= {network.object_id(node_at_level(node, network.level)) for node in needed}
             self.needs[unit] = found
+        return found
+
+    def _gives(self, unit: int) -> frozenset[int]:
+        """Give the outputs that a unit makes: all but the inputs that the container rule lets it skip.
+
+        Below level 3 a unit makes what any of the units makes that it stands for.
+        """
+        found = self.gives.get(unit)
+        if found is None:
+            network = self.network
+            found = frozenset(network.outputs[unit])
+            if self.containers == "implied":
+                whole = network.detailed or network
+                made: set[int | None] = set()
+                for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
+                    inputs = [whole.objects[o] for o in whole.inputs[detail]]
+                    skipped = set(inputs).difference(self._needed(inputs))
+                    for node in map(whole.objects.__getitem__, whole.outputs[detail]):
+                        if node not in skipped:
+                            made.add(network.object_id(node_at_level(node, network.level)))
+                found &= made
+            self.gives[unit] = found
         return found
 
     def _needed(self, inputs: Iterable[ObjectNode]) -> list[ObjectNode]:

@@ -50,16 +50,16 @@ def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
         return Graph(
             size,
             problem.needs,
-            network.outputs,
+            problem.gives,
             start=kitchen,
-            known_makers=network.producers,
+            known_makers=problem.makers,
             units=units,
             goals=goals,
         )
-    makers = list(network.producers)
+    makers = list(problem.makers)
     for o in kitchen:
         makers[o] = (units + o,)
-    gives: list[Sequence[int]] = [[o for o in given if o not in kitchen] for given in network.outputs]
+    gives: list[Sequence[int]] = [[o for o in given if o not in kitchen] for given in problem.gives]
     gives += [(o,) for o in range(size)]
     needs = [*problem.needs, *([()] * size)]
     return Graph(size, needs, gives, start=frozenset(), known_makers=makers, units=units, goals=goals)

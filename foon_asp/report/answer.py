@@ -209,12 +209,15 @@ def steps(
             elif o not in problem.needs[unit]:
                 origin = "implied"
             else:
-                later = (n for n, u in enumerate(units[number:], number + 1) if o in network.outputs[u])
+                later = (n for n, u in enumerate(units[number:], number + 1) if o in problem.gives[u])
                 origin = f"step {step}, which is later" if (step := next(later, 0)) else "missing"
             yield f"       {network.objects[o]}  ({origin})"
         for o in network.outputs[unit]:
-            yield f"     → {network.objects[o]}"
-            maker.setdefault(o, number)
+            if o in problem.gives[unit]:
+                yield f"     → {network.objects[o]}"
+                maker.setdefault(o, number)
+            else:
+                yield f"     → {network.objects[o]}  (implied, not made here)"
         yield from _details(network, unit)
 
 
@@ -245,14 +248,17 @@ def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> It
     for goal in problem.goals:
         if available[goal]:
             continue
-        producers = network.producers[goal]
-        if not producers:
-            yield f"no unit makes {network.objects[goal]}, and it is not in the kitchen"
-        else:
+        makers = problem.makers[goal]
+        skipping = len(network.producers[goal]) - len(makers)
+        if makers:
             yield f"no unit that makes {network.objects[goal]} can run:"
-        for unit in producers[:shown]:
+        else:
+            yield f"no unit makes {network.objects[goal]}, and it is not in the kitchen"
+        if skipping:
+            yield f"  {counted(skipping, 'unit')} took it as given, and so did not make it"
+        for unit in makers[:shown]:
             yield f"  {network.motions[unit]}    [{network.sources[unit][0]}] lacks"
             yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
-        if len(producers) > shown:
-            yield f"  ... and {len(producers) - shown} more units"
+        if len(makers) > shown:
+            yield f"  ... and {len(makers) - shown} more units"
     yield "foon-asp why-not says what is behind it, and foon-asp shopping-list what would help"

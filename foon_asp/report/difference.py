@@ -79,7 +79,7 @@ def _unit_json(tree: Side, unit: FunctionalUnit) -> dict[str, object]:
 
 
 def _unit_text(tree: Side, unit: FunctionalUnit) -> str:
-    made = [str(node) for node in unit.outputs if node not in tree.needs[unit]]
+    made = [str(node) for node in tree.gives[unit] if node not in tree.needs[unit]]
     return f"{unit.motion}    [{tree.places[unit]}] makes {' and '.join(_few(made)) or 'nothing new'}"
 
 

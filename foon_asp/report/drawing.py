@@ -52,25 +52,32 @@ def draw_tree(
     kitchen: Collection[ObjectNode],
     goals: Collection[ObjectNode],
     caption: Iterable[str],
+    gives: Sequence[Collection[ObjectNode]] | None = None,
 ) -> Drawing:
     """Draw the units of a task tree, numbered in the order given, so that arrows lead from step to step.
 
+    ``gives`` are the outputs that each of them makes under the container rule: all, if ``None``.
+
     What comes from the kitchen is a box of its own at every use, and so is every by-product: an output
-    that is no goal, that no unit takes, that the kitchen has or that an earlier step has made. One shared
+    that is no goal, that no unit takes, that the kitchen has, that an earlier step has made, or that the step
+    took as given and did not make. One shared
     box for the knife, or for the tap that runs all the time, would tie everything to everything.
     """
     canvas = _Canvas(kitchen, goals)
     taken = {node for unit in units for node in unit.inputs if node not in kitchen}
     made: set[ObjectNode] = set()
-    for step, unit in enumerate(units, 1):
+    if gives is None:
+        gives = [unit.outputs for unit in units]
+    for step, (unit, given) in enumerate(zip(units, gives, strict=True), 1):
         motion = canvas.motion(f"{step}. {unit.motion}")
         for node in unit.inputs:
             at_hand = node in kitchen
             canvas.arrow(canvas.copy(node, Role.KITCHEN) if at_hand else canvas.shared(node), motion)
         for node in unit.outputs:
-            first = node not in made and node not in kitchen and (node in taken or node in goals)
+            first = node in given and node not in made and node not in kitchen
+            first = first and (node in taken or node in goals)
             canvas.arrow(motion, canvas.shared(node) if first else canvas.copy(node, Role.BY_PRODUCT))
-        made.update(unit.outputs)
+        made.update(given)
     for goal in goals:
         canvas.shared(goal)  # one that the kitchen holds needs no unit, and is part of the picture
     return canvas.drawing(caption)

@@ -181,11 +181,14 @@ def _root_lines(explanation: Explanation, root: Root, number: int) -> Iterator[s
         if len(root.cycle.steps) > _STEPS:
             yield f"        and {counted(len(root.cycle.steps) - _STEPS, 'more step')}"
         return
-    handing = problem.network.producers[root.object]
+    handing = problem.makers[root.object]
+    skipping = [unit for unit in problem.network.producers[root.object] if unit not in handing]
     if handing:
         yield f"      not in the kitchen, and what gives it needs it too: {_units(problem, handing)}"
     else:
         yield "      not in the kitchen, and no unit makes it"
+    if skipping:
+        yield f"      taken as given, and so not made, by {_units(problem, skipping)}"
     others = [unit for unit in root.stops if unit not in handing]
     if others:
         yield f"      stops {_units(problem, others)}"

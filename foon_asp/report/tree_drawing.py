@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Sequence
 
 from foon_asp.asp import Outcome
 from foon_asp.network import Network, ObjectNode, TaskTree
-from foon_asp.problem import ContainerRule, Problem, conditions
+from foon_asp.problem import ContainerRule, Problem, conditions, given_outputs
 from foon_asp.proof import Verdict, simulate
 from foon_asp.report.answer import counted, headline
 from foon_asp.report.drawing import Drawing, draw_tree
@@ -22,7 +22,8 @@ def listed_tree(problem: Problem, units: Sequence[int], caption: str) -> Drawing
     met = {o for unit in units for o in (*problem.network.inputs[unit], *problem.network.outputs[unit])}
     kitchen = {objects[o] for o in met.union(problem.goals) if o in problem.kitchen}
     tree = problem.tree(units)
-    return draw_tree(tree.units, kitchen, goals, (f"Task tree for {_joined(goals)}", caption))
+    gives = [[objects[o] for o in problem.gives[unit]] for unit in units]
+    return draw_tree(tree.units, kitchen, goals, (f"Task tree for {_joined(goals)}", caption), gives)
 
 
 def given_tree(
@@ -46,7 +47,8 @@ def given_tree(
         Verdict.NEVER: "does not execute; numbered as listed",
     }[simulation.verdict]
     caption = f"{verdict} ({conditions(containers, network.level)}), {counted(len(units), 'unit')}"
-    return draw_tree(units, kitchen, goals, (title, caption))
+    gives = [given_outputs(unit, containers, utensils, network) for unit in units]
+    return draw_tree(units, kitchen, goals, (title, caption), gives)
 
 
 def _joined(nodes: Iterable[object]) -> str:

@@ -43,7 +43,9 @@ def _deepen(problem: Problem, settings: SearchSettings) -> Retrieval:
     return iterative_deepening(problem, settings.depth_limit, settings.time_limit)
 
 
-_NOTHING = "nothing of the tree but that each input it needs is in the kitchen or made by one of its units"
+_NOTHING = (
+    "nothing of the tree but that each input it needs is in the kitchen or an output of one of its units"
+)
 
 SEARCHES = {
     search.name: search

@@ -54,7 +54,7 @@ class _DepthLimited:
         answer = self._known(goal, limit)
         if answer is not None:
             return answer
-        producers, needs = self.problem.network.producers, self.problem.needs
+        makers, needs = self.problem.makers, self.problem.needs
         # a frame: object, limit, number of the unit being tried, number of the input being looked at
         stack = [[goal, limit, 0, 0]]
         while stack:
@@ -65,11 +65,11 @@ class _DepthLimited:
             if o in self.found and self.found[o][0] <= bound:  # meanwhile, within a smaller limit
                 stack.pop()
                 continue
-            if tried == len(producers[o]):
+            if tried == len(makers[o]):
                 self.failed[o] = max(bound, self.failed.get(o, -1))
                 stack.pop()
                 continue
-            unit = producers[o][tried]
+            unit = makers[o][tried]
             if looked == len(needs[unit]):
                 self.found[o] = (bound, unit)
                 stack.pop()
@@ -117,7 +117,7 @@ class _DepthLimited:
         seen = {goal for goal in self.problem.goals if goal not in kitchen}
         waiting = list(seen)
         while waiting:
-            for unit in self.problem.network.producers[waiting.pop()]:
+            for unit in self.problem.makers[waiting.pop()]:
                 for o in needs[unit]:
                     if o not in seen and o not in kitchen:
                         seen.add(o)

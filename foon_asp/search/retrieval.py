@@ -45,8 +45,9 @@ def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval
     It starts with the goals. An object that was taken before or is in the kitchen is skipped; for any
     other, one unit that makes it is chosen, appended (unless it is there already) and its needed inputs
     are queued. At the end the list is reversed. Nothing is ever taken back, so the tree may be larger
-    than need be and may not execute: it promises only that every needed input is in the kitchen or made
-    by some unit of the tree.
+    than need be and may not execute: it promises only that every needed input is in the kitchen or an
+    output of some unit of the tree. Outputs are taken as annotated, as published: a container that the rule
+    ``implied`` let a unit skip counts as made here, and not when the tree is executed.
 
     Source: D. Paulius et al., "Functional Object-Oriented Network for Manipulation Learning", IROS 2016
     (retrieval of task trees), and the published programs that followed.

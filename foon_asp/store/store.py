@@ -138,7 +138,8 @@ class Store:
 
         ``utensils`` are what the container rule looks at, ``in_kitchen`` says of a node whether it is at
         hand (in the store's kitchen if ``None``). Whatever tree for these goals is best in the whole
-        network, without a unit to spare, is one of this part.
+        network, without a unit to spare, is one of this part. Producers are units with a node among their
+        outputs, whether or not the rule has them make it: the part may be larger than need be.
         """
         at_hand = in_kitchen or self.in_kitchen
         goals = list(goals)
