@@ -15,7 +15,7 @@ KNOWN = {
     ("greek salad", "strict"): (30, 87, Fraction(407953774917, 7450580596923828125000)),
     ("greek salad", "implied"): (25, 76, Fraction(3486784401, 19073486328125000000)),
     ("macaroni", "strict"): (6, 16, Fraction(2187, 100000)),
-    ("macaroni", "implied"): (5, 13, Fraction(2187, 100000)),
+    ("macaroni", "implied"): (6, 16, Fraction(2187, 100000)),
     ("sweet potato", "strict"): (3, 7, Fraction(3, 250)),
     ("sweet potato", "implied"): (3, 7, Fraction(3, 250)),
     ("ice", "strict"): (1, 3, Fraction(4, 5)),
