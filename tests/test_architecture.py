@@ -17,10 +17,10 @@ MODULES = {path.relative_to(ROOT).as_posix(): path for path in sorted(PACKAGE.rg
 # foon_asp/__init__.py. Rooms that are planned and not built yet are named too.
 FACE = "the face"
 FLOORS = (
-    {"errors", "resources"},
+    {"errors", "resources", "deadline"},
     {"network"},
     {"text", "problem", "bounds"},
-    {"reduce"},
+    {"reduce", "grounding"},
     {"asp", "search", "proof", "store"},
     {"explain", "compare", "lint", "certificate", "engines", "question"},
     {"report"},
@@ -34,6 +34,7 @@ FLOORS = (
 # The only imports within a floor, each one way.
 SIDEWAYS = {
     ("resources", "errors"): "a broken installation is reported as such",
+    ("deadline", "errors"): "a limit that cannot be held is refused",
     ("asp", "proof"): "every tree found is simulated before it is given out",
 }
 
@@ -49,7 +50,7 @@ FORBIDDEN = {
 
 # The only rooms that may know a third-party library.
 LIBRARIES = {
-    "clingo": {"asp"},
+    "clingo": {"asp", "grounding"},
     "lark": {"text"},
     "click": {"cli"},
     "prompt_toolkit": {"cli"},

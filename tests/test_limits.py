@@ -125,3 +125,15 @@ def test_progress_is_shown_on_a_terminal_only(hard_folder: Path) -> None:
     assert b"best tree" in seen
     assert b"at least" in seen
     assert json.loads(output)["status"] == "feasible"
+
+
+ENDLESS = "p(0). p(f(X)) :- p(X).\n"
+
+
+def test_grounding_without_an_end_is_stopped(tmp_path: Path) -> None:
+    rules = tmp_path / "endless.lp"
+    rules.write_text(ENDLESS)
+    began = time.monotonic()
+    outcome = solve(hard_problem(3, 3, 2, 2), settings=Settings(constraints=(rules,), time_limit=1))
+    assert time.monotonic() - began < 2.5
+    assert outcome.status is Status.UNKNOWN

@@ -12,9 +12,9 @@ from foon_asp.api.foon import Foon
 from foon_asp.api.problem import taken
 from foon_asp.api.shown import Shown
 from foon_asp.api.warning import Warner
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.solver import solve as find
 from foon_asp.certificate import Certificate, certify_outcome
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import problem as plain

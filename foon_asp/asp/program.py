@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
@@ -67,10 +68,11 @@ class Settings(NamedTuple):
 
     ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
-    ``time_limit`` is in seconds, for everything from the cut to the last proof; grounding is not
-    interrupted. ``reductions`` come before the search, unless there are constraints, bounds or other
-    encodings. ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``session``
-    keeps ground programs for the next question.
+    ``time_limit`` is in seconds, for everything from the cut to the last proof. ``reductions`` come before
+    the search, unless there are constraints, bounds or other encodings. ``relaxed`` are constraints in other
+    words. Trees keep to what is ``bounded``. ``session`` keeps ground programs for the next question.
+    ``memory_limit`` is in bytes, for this process together with the one that grounds. ``deadline`` is that of
+    a question of which this one is a part, and has begun: then it counts and the limits do not.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -82,6 +84,19 @@ class Settings(NamedTuple):
     relaxed: Relaxed | None = None
     bounded: Bounded | None = None
     session: "Session | None" = None
+    memory_limit: int | None = None
+    deadline: Deadline | None = None
+
+    def limited(self) -> "Settings":
+        """Give the same settings with a deadline that has begun: now, if it had not."""
+        if self.deadline is not None:
+            return self
+        return self._replace(deadline=Deadline(self.time_limit, self.memory_limit))
+
+    @property
+    def begun(self) -> Deadline:
+        """The deadline that has begun, or one that begins now."""
+        return self.deadline or Deadline(self.time_limit, self.memory_limit)
 
 
 class Program(NamedTuple):
@@ -92,7 +107,7 @@ class Program(NamedTuple):
     matter. ``bounded`` says that a tree of the unbounded question need not be one. ``looked_at`` are the
     names of the predicates that rules of the user's look at. ``text`` is all that the files said when they
     were looked over. ``open`` says that the program means the same when facts are left open
-    (:mod:`foon_asp.asp.session`).
+    (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether its grounding comes to an end.
     """
 
     files: tuple[Path, ...]
@@ -104,6 +119,7 @@ class Program(NamedTuple):
     looked_at: frozenset[str] = frozenset()
     text: str = ""
     open: bool = False
+    endless: bool = False
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
@@ -131,9 +147,15 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     constants: list[str] = []
     looked_at: frozenset[str] = frozenset()
     text, is_open = "", False
+    endless = not all(file.is_relative_to(ours) for file in (*base, *added))
     if added or settings.encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
+
+        if endless:
+            from foon_asp.grounding.worker_process import prepare  # noqa: PLC0415
+
+            prepare()  # while files are parsed
 
         parsed = [encoding.read_encoding(file) for file in (*base, *questions)]
         extra = [encoding.read_encoding(file) for file in added]
@@ -161,6 +183,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         looked_at=looked_at,
         text=text,
         open=is_open,
+        endless=endless,
     )
 
 

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
 from foon_asp.asp.program import Settings, assemble
-from foon_asp.asp.run import Run
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter
+from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
+from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, reach, relevant
 from foon_asp.resources import encodings_folder
 

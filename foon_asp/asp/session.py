@@ -8,14 +8,12 @@ fact: searches with the whole kitchen left open were up to a hundred times as lo
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
-from clingo.symbol import Function, Number, Symbol
-
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import OBJECTIVE_TERMS, described, write_exponents, write_open_facts, write_product
 from foon_asp.asp.program import Program
-from foon_asp.asp.run import Run
-from foon_asp.asp.search import ground, search
+from foon_asp.asp.search import ground, refused
+from foon_asp.deadline import Deadline
+from foon_asp.grounding.run import ProgramError, Run
 from foon_asp.network import Network
 from foon_asp.problem import Objective, Problem
 
@@ -37,7 +35,12 @@ class Session:
         self._programs: list[OpenProgram] = []  # the one used last at the end
 
     def program(
-        self, program: Program, problem: Problem, units: Sequence[int], levels: Sequence[Objective]
+        self,
+        program: Program,
+        problem: Problem,
+        units: Sequence[int],
+        levels: Sequence[Objective],
+        deadline: Deadline,
     ) -> "OpenProgram":
         """Give a ground program for a question: one at hand, or a new one where none fits.
 
@@ -47,11 +50,14 @@ class Session:
         cases = frozenset(_cases(problem, units))
         like = next((kept for kept in self._programs if kept.is_like(program, problem)), None)
         if like is None:
-            like = OpenProgram(program, problem, cases, frozenset(), _pairs(levels))
+            like = OpenProgram(program, problem, cases, frozenset(), _pairs(levels), deadline)
         else:
             self._programs.remove(like)
             if not like.fits(problem, cases, levels):
-                like = like.extended(problem, cases, levels)
+                before, like = like, like.extended(problem, cases, levels, deadline)
+                before.close()
+        for old in self._programs[: 1 - _KEPT]:
+            old.close()
         self._programs = [*self._programs[1 - _KEPT :], like]
         return like
 
@@ -59,6 +65,7 @@ class Session:
         """Drop a program that was left halfway."""
         if program in self._programs:
             self._programs.remove(program)
+        program.close()
 
 
 class OpenProgram:
@@ -75,6 +82,7 @@ class OpenProgram:
         closed: frozenset[Case],
         left_open: frozenset[Case],
         pairs: Iterable[tuple[Objective, int]],
+        deadline: Deadline,
     ) -> None:
         self._program = program
         self._problem = problem
@@ -90,8 +98,14 @@ class OpenProgram:
             f"#external optimize({OBJECTIVE_TERMS[objective]},{priority}).\n"
             for objective, priority in sorted(self._pairs)
         )
-        self._control = ground((*program.files, program.exact_success), facts, program.arguments)
-        self._true: set[Symbol] = set()
+        self._ground = ground(
+            (*program.files, program.exact_success),
+            facts,
+            program.arguments,
+            deadline,
+            endless=program.endless,
+        )
+        self._true: set[str] = set()
         self._products: dict[tuple[tuple[int, int], ...], int] = {}
 
     def is_like(self, program: Program, problem: Problem) -> bool:
@@ -116,16 +130,17 @@ class OpenProgram:
         )
 
     def extended(
-        self, problem: Problem, cases: frozenset[Case], levels: Sequence[Objective]
+        self, problem: Problem, cases: frozenset[Case], levels: Sequence[Objective], deadline: Deadline
     ) -> "OpenProgram":
         """Give a program for this question and, as far as can be, for those before it."""
         pairs = self._pairs.union(_pairs(levels))
         left_open = self._open | (self._closed ^ cases)
         if sum(kind == "kitchen" for kind, _ in left_open) <= _MOST_OPEN:
-            more = OpenProgram(self._program, problem, cases - left_open, left_open, pairs)
+            more = OpenProgram(self._program, problem, cases - left_open, left_open, pairs, deadline)
             if more._measures_like(problem, cases):
                 return more
-        return OpenProgram(self._program, problem, cases, frozenset(), pairs)
+            more.close()
+        return OpenProgram(self._program, problem, cases, frozenset(), pairs, deadline)
 
     def _measures_like(self, problem: Problem, cases: Iterable[Case]) -> bool:
         """Whether the rates of all units have the weights that those of the question have by themselves."""
@@ -150,12 +165,12 @@ class OpenProgram:
         asked for instead. ``opt_mode`` is as for :func:`foon_asp.asp.search.run`, its bounds those of the
         ``objectives``.
         """
-        numbers = [self._product(product) for product in products]
+        numbers = [self._product(product, deadline) for product in products]
         network = problem.network
         true = {_case(case, network) for case in self._open.intersection(_cases(problem, units))}
         true |= {_atom("goal", network.object_number(o)) for o in problem.goals}
         true |= {
-            Function("optimize", [Function(OBJECTIVE_TERMS[objective]), Number(priority)])
+            f"optimize({OBJECTIVE_TERMS[objective]},{priority})"
             for objective, priority in _pairs(levels)
             if objective in objectives
         }
@@ -163,18 +178,14 @@ class OpenProgram:
             true |= {_atom("_seen", number) for number in numbers}
         else:
             true.add(_atom("_wanted", numbers[wanted]))
-        for atom in self._true - true:
-            self._control.assign_external(atom, False)
-        for atom in true - self._true:
-            self._control.assign_external(atom, True)
+        self._ground.assign({atom: atom in true for atom in sorted(self._true ^ true)}, deadline)
         self._true = true
         above = self._priorities - len(levels)  # that nothing is measured under here
         mode, *bounds = opt_mode.split(",")
         bound_of = dict(zip(objectives, bounds, strict=False))
         if bounds:  # what is not measured costs nothing
             bounds = ["0"] * above + [bound_of.get(level, "0") for level in levels]
-        ended = search(
-            self._control,
+        ended = self._ground.search(
             deadline,
             ",".join([mode, *bounds]),
             on_tree,
@@ -183,7 +194,11 @@ class OpenProgram:
         ended.cost, ended.lower = ended.cost[above:], ended.lower[above:]
         return ended
 
-    def _product(self, exponents: Mapping[int, int]) -> int:
+    def close(self) -> None:
+        """Say that it is not needed any more."""
+        self._ground.close()
+
+    def _product(self, exponents: Mapping[int, int], deadline: Deadline) -> int:
         """Give the number of a product of rates, grounding what is said of it when it is new."""
         key = tuple(sorted(exponents.items()))
         if key in self._products:
@@ -195,8 +210,10 @@ class OpenProgram:
         if not number and self.scale is not None:
             facts += write_exponents(self._problem, self._units, self.scale)
         part = f"facts of product {number}"
-        self._control.add(part, [], facts)
-        self._control.ground([(part, []), ("_product", [Number(number)])])
+        try:
+            self._ground.add(part, facts, number, deadline)
+        except ProgramError as error:
+            raise refused(error) from None
         self._products[key] = number
         return number
 
@@ -219,10 +236,10 @@ def _units(cases: Iterable[Case]) -> list[int]:
     return sorted(unit for kind, unit in cases if kind == "unit")
 
 
-def _case(case: Case, network: Network) -> Symbol:
+def _case(case: Case, network: Network) -> str:
     kind, id_ = case
     return _atom(kind, network.unit_number(id_) if kind == "unit" else network.object_number(id_))
 
 
-def _atom(name: str, number: int) -> Symbol:
-    return Function(name, [Number(number)])
+def _atom(name: str, number: int) -> str:
+    return f"{name}({number})"

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_facts, write_greatest_penalty, write_soft, write_tree
 from foon_asp.asp.integrity import IntegrityConstraint, relax
@@ -13,6 +12,7 @@ from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.program import Settings, assemble, find_constraint
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter, solve
+from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Objective, Problem, reach
 

@@ -7,7 +7,6 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import (
     write_exponents,
@@ -19,14 +18,15 @@ from foon_asp.asp.facts import (
 )
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.program import Program, Settings, assemble
-from foon_asp.asp.run import Run
 from foon_asp.errors import BugError, UserError
+from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
 
 if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import OpenProgram
+    from foon_asp.grounding.grounded import Grounded
 
 Units = frozenset[int]
 
@@ -83,13 +83,14 @@ class _Solver:
         self.levels = levels(objectives)
         self.settings = settings
         self.reporter = reporter
-        self.deadline = Deadline(settings.time_limit)
+        self.deadline = settings.begun
         self.units: tuple[int, ...] = ()
         self.reduced: Reduced | None = None
         self.scale: RateScale | None = None
         self.seconds: dict[str, float] = {}
         self._facts: str | None = None
         self._open: OpenProgram | None = None
+        self._ground: tuple[Sequence[Objective], Grounded] | None = None  # without products of rates
         self._best: Costs | None = None  # the best tree reported
         self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
         if Objective.SUCCESS in self.levels and problem.rates is None:
@@ -103,7 +104,18 @@ class _Solver:
             check(self.program.arguments)
 
     def solve(self) -> Outcome:
-        first = self.cut()
+        try:
+            return self._solve()
+        finally:
+            if self._ground:
+                self._ground[1].close()
+
+    def _solve(self) -> Outcome:
+        try:
+            first = self.cut()
+        except KeyboardInterrupt:
+            self.deadline.interrupt()  # unless it was a limit
+            return self._outcome(Status.UNKNOWN, None, {})
         if first is None:
             return self._outcome(Status.INFEASIBLE, None, {})
         if self.program.own and not self.program.bounded:
@@ -147,6 +159,7 @@ class _Solver:
         within bounds: then there are none.
         """
         began = time.perf_counter()
+        self.deadline.doing = "cutting the network"
         first: Units | None
         if self.program.own:
             self.reduced = reduce(
@@ -156,11 +169,13 @@ class _Solver:
                 lambda: self.deadline.passed,
                 _Heard(self),
             )
-            self.deadline.interrupted |= self.reduced.interrupted
+            if self.reduced.interrupted:
+                self.deadline.interrupt()
             self.units, first = self.reduced.units, self.reduced.tree
         else:
-            reached = reach(self.problem)
-            some = first_tree(self.problem, reached)
+            with self.deadline.watched("cutting the network"):
+                reached = reach(self.problem)
+                some = first_tree(self.problem, reached)
             first = None if some is None else Units(some)
             if first is not None:
                 self.units = tuple(sorted(reached.units))
@@ -194,9 +209,11 @@ class _Solver:
     def facts(self) -> str:
         if self._facts is None:
             began = time.perf_counter()
-            if self.problem.rates is not None:
-                self.scale = problem_scale(self.problem, self.units)
-            self._facts = write_facts(self.problem, self.units, self.scale, with_sources=not self.program.own)
+            with self.deadline.watched("writing facts"):
+                if self.problem.rates is not None:
+                    self.scale = problem_scale(self.problem, self.units)
+                with_sources = not self.program.own
+                self._facts = write_facts(self.problem, self.units, self.scale, with_sources)
             self._spent("facts", began)
         return self._facts
 
@@ -215,27 +232,50 @@ class _Solver:
         """
         on_tree = (lambda units: self._report_tree(self._ids(units))) if report else None
         on_bound = self._report_bound if report else None
-        if self.settings.session is not None and self.program.open:
-            ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
-        else:
-            from foon_asp.asp.search import run  # noqa: PLC0415 (slow to import, often there is nothing left)
-
-            facts = self.facts() + self.program.rules + write_objectives(objectives)
-            files = self.program.files
-            if products:
-                files = (*files, self.program.exact_success)
-                facts += self._exponents
-                facts += "".join(itertools.starmap(write_product, enumerate(products)))
-                facts += write_seen(range(len(products))) if wanted is None else write_wanted(wanted)
-            arguments, deadline = self.program.arguments, self.deadline
-            ended = run(
-                files, facts, arguments, deadline, opt_mode, on_tree, on_bound, products=len(products)
-            )
-        self.seconds["ground"] = self.seconds.get("ground", 0.0) + ended.ground_seconds
+        try:
+            if self.settings.session is not None and self.program.open:
+                ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
+            else:
+                ended = self._grounded(objectives, products, wanted).search(
+                    self.deadline, opt_mode, on_tree, on_bound
+                )
+        except KeyboardInterrupt:  # before it came to a search
+            self.deadline.interrupt()  # unless it was a limit
+            ended = Run()
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
         if ended.units is not None:
             ended.units = self._ids(ended.units)
         return ended
+
+    def _grounded(
+        self, objectives: Sequence[Objective], products: Sequence[Mapping[int, int]], wanted: int | None
+    ) -> "Grounded":
+        """Ground what is asked, unless it was the last thing asked."""
+        if self._ground:
+            asked, program = self._ground
+            if asked == objectives and not products:
+                return program
+            program.close()
+            self._ground = None
+        from foon_asp.asp.search import ground  # noqa: PLC0415 (slow to import, often there is nothing left)
+
+        facts = self.facts() + self.program.rules + write_objectives(objectives)
+        files = self.program.files
+        if products:
+            files = (*files, self.program.exact_success)
+            facts += self._exponents
+            facts += "".join(itertools.starmap(write_product, enumerate(products)))
+            facts += write_seen(range(len(products))) if wanted is None else write_wanted(wanted)
+        began = time.perf_counter()
+        try:
+            program = ground(
+                files, facts, self.program.arguments, self.deadline, len(products), self.program.endless
+            )
+        finally:
+            self._spent("ground", began)
+        if not products:
+            self._ground = objectives, program
+        return program
 
     @cached_property
     def _exponents(self) -> str:
@@ -256,7 +296,7 @@ class _Solver:
         assert session is not None
         began = time.perf_counter()
         if self._open is None:
-            self._open = session.program(self.program, self.problem, self.units, self.levels)
+            self._open = session.program(self.program, self.problem, self.units, self.levels, self.deadline)
             self.scale = self._open.scale
         self._spent("ground", began)
         try:

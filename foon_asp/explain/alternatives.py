@@ -5,11 +5,11 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Reporter, Settings
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.facts import write_distances
 from foon_asp.asp.program import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.search import run
+from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.resources import encodings_folder

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.program import CLINGO_OPTIONS, assemble, find_constraint
 from foon_asp.asp.search import run
+from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem, reach
 from foon_asp.resources import encodings_folder

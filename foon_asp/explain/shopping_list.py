@@ -9,11 +9,11 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-from foon_asp.asp.deadline import Deadline
 from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_facts, write_for_sale, write_list
 from foon_asp.asp.program import Program, assemble
 from foon_asp.asp.search import run
+from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.explain.sold import Shop
 from foon_asp.explain.why_not import Cause, why_not

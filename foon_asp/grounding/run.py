@@ -1,7 +1,32 @@
-"""What a run of clingo ended with."""
+"""What a run of clingo gives, on the way and in the end."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
+
+
+class ProgramError(Exception):
+    """clingo refused a program or an option; ``messages`` are what it said of it."""
+
+    def __init__(self, messages: Sequence[str], otherwise: str) -> None:
+        super().__init__(otherwise)
+        self.messages, self.otherwise = list(messages), otherwise
+
+
+class Heard(NamedTuple):
+    """An answer: the units in use, the cost vector, and counts of the atoms that were asked for."""
+
+    units: frozenset[int]
+    cost: tuple[int, ...]
+    atoms: dict[str, Counter[int]]
+
+
+class Ended(NamedTuple):
+    """How a search ended: whether the search space was exhausted, whether there was an answer, if known."""
+
+    exhausted: bool
+    satisfiable: bool | None
 
 
 @dataclass

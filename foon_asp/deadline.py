@@ -1,0 +1,232 @@
+"""When to stop: at a time limit, at a memory limit, or at ctrl-C."""
+
+import math
+import os
+import re
+import signal
+import threading
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from foon_asp.errors import UserError
+
+_STATM = Path("/proc/self/statm")
+_PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+_LATE = 0.5  # seconds
+_LOOKS = 0.02  # seconds between two looks at the memory
+_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+
+
+class LimitError(KeyboardInterrupt):
+    """A limit was reached, or ctrl-C pressed, where there is nothing to give yet.
+
+    What holds at ctrl-C holds at a limit: so it is one, and no handler of other errors takes it for a fault.
+    """
+
+
+class Deadline:
+    """When to stop, shared by all that is done for one question, and at what it was when it stopped.
+
+    ``seconds`` count from the beginning, ``memory`` is in bytes; ``None`` is never. The memory is that of
+    this process together with those that work for it. ``doing`` says what is being done, as it follows on
+    "while". Raises :class:`UserError` for a memory limit where the system does not tell how much is in use.
+    """
+
+    def __init__(
+        self, seconds: float | None = None, memory: int | None = None, began: float | None = None
+    ) -> None:
+        if memory is not None and not _STATM.exists():
+            raise UserError(
+                "a memory limit can only be held on Linux, where /proc tells how much memory is in use; "
+                "leave it out, and set the limit by means of the system"
+            )
+        self.seconds, self.memory = seconds, memory
+        self.doing = "reading"
+        self._time_words = "" if seconds is None else f"the time limit of {seconds:g} s"
+        self._end = None if seconds is None else (time.monotonic() if began is None else began) + seconds
+        self._workers: set[int] = set()
+        self._looked = 0.0
+        self._by: str | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether to stop."""
+        if self._by is not None:
+            return True
+        if self._end is None and self.memory is None:
+            return False
+        now = time.monotonic()
+        if self._end is not None and now >= self._end:
+            self._by = self._time_words
+        elif self.memory is not None and now >= self._looked + _LOOKS:
+            self._looked = now
+            if self.memory_in_use() > self.memory:
+                self.out_of_memory()
+        return self._by is not None
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether ctrl-C was pressed."""
+        return self._by == "ctrl-C"
+
+    @property
+    def overdue(self) -> bool:
+        """Whether to stop even where nothing is known yet, which may still come half a second late."""
+        if not self.passed:
+            return False
+        return self._end is None or time.monotonic() >= self._end + _LATE or self._by != self._time_words
+
+    def interrupt(self) -> None:
+        """Note that ctrl-C was pressed."""
+        self._by = self._by or "ctrl-C"
+
+    def out_of_memory(self) -> None:
+        """Note that there is no more memory."""
+        limit = "" if self.memory is None else f"the memory limit of {size_text(self.memory)}"
+        self._by = self._by or limit or "the end of the memory"
+
+    @property
+    def stopped(self) -> str | None:
+        """At what it was stopped, and while doing what, in words; ``None`` before."""
+        return None if self._by is None else f"{self._by} while {self.doing}"
+
+    def check(self) -> None:
+        """Raise :class:`LimitError` where it is time to stop."""
+        if self.passed:
+            raise LimitError(self.stopped)
+
+    def slice(self, longest: float = 0.2) -> float:
+        """Give how long to wait before looking again."""
+        if self.memory is not None:
+            longest = min(longest, 2 * _LOOKS)
+        return longest if self._end is None else max(0.0, min(longest, self._end - time.monotonic()))
+
+    def memory_in_use(self) -> int:
+        """Give how many bytes this process and those that work for it have in memory."""
+        return sum(_resident(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
+
+    def count(self, process: int) -> None:
+        """Count the memory of another process, too."""
+        self._workers.add(process)
+
+    def uncount(self, process: int) -> None:
+        """Leave a process out again."""
+        self._workers.discard(process)
+
+    def watched(self, doing: str) -> "Watch":
+        """Stop what is in a ``with`` block at the limits: for work that does not look at them itself.
+
+        Raises :class:`LimitError` in the middle of it. So there may be nothing to lose in the block, and
+        nothing that goes on after ctrl-C.
+        """
+        return Watch(self, doing)
+
+
+class Watch:
+    """A thread that looks at a deadline while another one works, and interrupts it as ctrl-C does."""
+
+    def __init__(self, deadline: Deadline, doing: str) -> None:
+        self._deadline, self._doing = deadline, doing
+        self._of = threading.get_ident()
+        self._over = threading.Event()
+        self._lock = threading.Lock()
+        self._fired = False
+        self._thread: threading.Thread | None = None
+
+    def __enter__(self) -> Self:
+        deadline = self._deadline
+        deadline.doing = self._doing
+        deadline.check()
+        if deadline.seconds is not None or deadline.memory is not None:
+            self._thread = threading.Thread(target=self._watch, daemon=True, name="foon-asp limits")
+            self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        came = kind is not None and issubclass(kind, KeyboardInterrupt)
+        if self._thread is None:
+            if came:
+                self._deadline.interrupt()
+            return
+        try:
+            self._over.set()
+            with self._lock:  # whoever interrupts has done so
+                fired = self._fired
+            if fired and not came:
+                time.sleep(1)  # it is on its way, and must not strike later
+        except KeyboardInterrupt:
+            came = True
+        if self._fired:
+            raise LimitError(self._deadline.stopped) from None
+        if came:
+            self._deadline.interrupt()
+            if kind is None:
+                raise KeyboardInterrupt
+
+    def _watch(self) -> None:
+        while not self._over.wait(self._deadline.slice()):
+            if self._deadline.passed:
+                break
+        while True:  # again and again: an interrupt in a destructor is lost
+            with self._lock:
+                if self._over.is_set():
+                    return
+                self._fired = True
+                self._interrupt()
+            if self._over.wait(0.5):
+                return
+
+    def _interrupt(self) -> None:
+        if (
+            self._of == threading.main_thread().ident
+            and hasattr(signal, "pthread_kill")
+            and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        ):
+            signal.pthread_kill(self._of, signal.SIGINT)  # wakes it from waiting for a file, too
+            return
+        import ctypes  # noqa: PLC0415 (seldom needed)
+
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(
+            ctypes.c_ulong(self._of), ctypes.py_object(KeyboardInterrupt)
+        )
+
+
+def _resident(statm: Path) -> int:
+    try:
+        return int(statm.read_bytes().split()[1]) * _PAGE
+    except (OSError, IndexError):  # the process has ended
+        return 0
+
+
+def seconds(given: float | str, what: str = "the time limit") -> float:
+    """Read a number of seconds from 0 on; raises :class:`UserError` for others."""
+    try:
+        value = float(given)
+    except (TypeError, ValueError, OverflowError):
+        value = math.nan
+    if isinstance(given, bool) or not 0 <= value < math.inf:
+        raise UserError(f"found {given!r} for {what}, expected a number of seconds from 0")
+    return value
+
+
+def memory_size(given: int | str, what: str = "the memory limit") -> int:
+    """Read a size in bytes, a whole number or one with K, M, G or T; raises :class:`UserError` for others."""
+    if isinstance(given, int) and not isinstance(given, bool) and given > 0:
+        return given
+    found = re.fullmatch(r"(\d{1,15}(?:\.\d{1,6})?)\s*([KMGT]?)(?:i?B)?", str(given).strip(), re.I | re.ASCII)
+    size = int(float(found[1]) * _UNITS[found[2].upper()]) if found and isinstance(given, str) else 0
+    if size <= 0:
+        raise UserError(f"found {given!r} for {what}, expected a size such as 500M or 2G, or bytes")
+    return size
+
+
+def size_text(size: int) -> str:
+    """Say a size, in the greatest unit in which it is a whole number."""
+    for letter in "TGMK":
+        if size % _UNITS[letter] == 0:
+            return f"{size // _UNITS[letter]}{letter}"
+    return f"{size} bytes"

@@ -1,0 +1,1 @@
+"""Programs that clingo grounds and searches, here or in a process that can be ended."""

@@ -1,0 +1,110 @@
+"""A program that clingo grounds and searches, with nothing in it that knows of the question.
+
+What comes in and goes out are plain values, so that it may be in another process.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+
+from clingo import Control, Model, SolveHandle, parse_term
+from clingo.symbol import Number, SymbolType
+
+from foon_asp.errors import UserError
+from foon_asp.grounding.run import Ended, Heard, ProgramError
+
+
+class GroundProgram:
+    """Files and text, grounded; raises :class:`ProgramError` for what clingo refuses.
+
+    ``products`` says how many products of rates the text describes. ``messages`` are clingo's so far.
+    """
+
+    def __init__(self, files: Sequence[str], text: str, arguments: Sequence[str], products: int = 0) -> None:
+        self.messages: list[str] = []
+        try:
+            self._control = Control(
+                list(arguments), logger=lambda _, text: self.messages.append(text), message_limit=1000
+            )
+            for file in files:
+                self._control.load(file)
+            self._control.add("base", [], text)
+            parts = [("_product", [Number(number)]) for number in range(products)]
+            self._control.ground([("base", []), *parts])
+        except RuntimeError as error:
+            raise ProgramError(self.messages, str(error)) from None
+
+    def add(self, part: str, text: str, product: int) -> None:
+        """Ground more text, and what there is to say about a product of rates."""
+        try:
+            self._control.add(part, [], text)
+            self._control.ground([(part, []), ("_product", [Number(product)])])
+        except RuntimeError as error:
+            raise ProgramError(self.messages, str(error)) from None
+
+    def assign(self, atoms: Mapping[str, bool]) -> None:
+        """Say of external atoms whether they hold from now on."""
+        for atom, holds in atoms.items():
+            self._control.assign_external(parse_term(atom), holds)
+
+    def search(
+        self,
+        opt_mode: str,
+        predicates: Sequence[str],
+        on_tree: Callable[[Heard], None],
+        on_bound: Callable[[list[int]], None],
+        wait: Callable[[SolveHandle], None] | None = None,
+    ) -> Ended:
+        """Search for the best answer; what is heard of on the way is heard in any thread.
+
+        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
+        ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. ``wait``
+        waits for the end, or cancels the search. Raises :class:`UserError` for an option that clasp does not
+        take, for answers that are none, and what ``on_tree`` raises.
+        """
+        models = 1 if opt_mode == "ignore" else 0
+        try:
+            self._set(opt_mode=opt_mode, models=models, enum_mode="auto", project="no", opt_stop="no")
+        except RuntimeError as error:
+            raise UserError(str(error)) from None
+        faults: list[Exception] = []  # raised in clingo's thread, to be raised in ours
+
+        def model(model: Model) -> bool:
+            try:
+                atoms = {name: _numbers(model, name) for name in predicates}
+                on_tree(Heard(_used(model), tuple(model.cost), atoms))
+            except Exception as error:
+                faults.append(error)
+            return not faults
+
+        def unsat(lower: Sequence[int]) -> None:
+            on_bound(list(lower))
+
+        with self._control.solve(async_=True, on_model=model, on_unsat=unsat) as handle:
+            if wait:
+                wait(handle)
+            ended = handle.get()
+        if faults:
+            raise faults[0]
+        exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
+        return Ended(exhausted, ended.satisfiable)
+
+    def _set(self, **values: str | int) -> None:
+        """Set how to search, whatever the options say: a proof needs the whole search space."""
+        for name, value in values.items():
+            setattr(self._control.configuration.solve, name, value)
+
+
+def _used(model: Model) -> frozenset[int]:
+    units = set()
+    for symbol in model.symbols(shown=True):
+        if symbol.type is SymbolType.Function and symbol.match("use", 1):
+            argument = symbol.arguments[0]
+            if argument.type is not SymbolType.Number:
+                raise UserError(f"the encodings made {symbol}, expected use(U) with the number of a unit")
+            units.add(argument.number)
+    return frozenset(units)
+
+
+def _numbers(model: Model, name: str) -> Counter[int]:
+    atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.name == name and symbol.positive)
+    return Counter(symbol.arguments[0].number for symbol in atoms)

@@ -1,0 +1,134 @@
+"""A ground program that keeps to limits, wherever it is."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from clingo import SolveHandle
+
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.grounding.ground_program import GroundProgram
+from foon_asp.grounding.run import Heard, Run
+
+if TYPE_CHECKING:
+    from foon_asp.grounding.worker_process import WorkerProgram
+
+_SMALL = 1_500_000  # letters that encodings of ours ground in a fraction of a second
+
+
+class Grounded:
+    """Files and text, grounded.
+
+    With ``endless``, for rules whose grounding may have no end, it is in a process of its own, which ends at
+    the limits and at ctrl-C; so it is where there is much text, and where the memory is limited. Raises
+    :class:`foon_asp.grounding.run.ProgramError` for what clingo refuses, and :class:`LimitError`.
+    """
+
+    def __init__(
+        self,
+        files: Sequence[Path],
+        text: str,
+        arguments: Sequence[str],
+        products: int,
+        deadline: Deadline,
+        endless: bool,
+    ) -> None:
+        deadline.doing = "grounding"
+        deadline.check()
+        names = [str(file) for file in files]
+        self._here: GroundProgram | None = None
+        self._there: WorkerProgram | None = None
+        if endless or len(text) > _SMALL or deadline.memory is not None:
+            from foon_asp.grounding import worker_process  # noqa: PLC0415 (often not needed)
+
+            self._there = worker_process.WorkerProgram(names, text, arguments, products, deadline)
+        else:
+            self._here = GroundProgram(names, text, arguments, products)
+
+    @property
+    def messages(self) -> list[str]:
+        """What clingo said while grounding."""
+        program = self._there or self._here
+        return [] if program is None else program.messages
+
+    def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
+        """Ground more text, and what there is to say about a product of rates; raises as the class does."""
+        deadline.doing = "grounding"
+        deadline.check()
+        if self._there:
+            self._there.add(part, text, product, deadline)
+        elif self._here:
+            self._here.add(part, text, product)
+
+    def assign(self, atoms: Mapping[str, bool], deadline: Deadline) -> None:
+        """Say of external atoms whether they hold from now on."""
+        if self._there:
+            self._there.assign(atoms, deadline)
+        elif self._here:
+            self._here.assign(atoms)
+
+    def search(
+        self,
+        deadline: Deadline,
+        opt_mode: str,
+        on_tree: Callable[[frozenset[int]], None] | None = None,
+        on_bound: Callable[[list[int]], None] | None = None,
+        predicates: Sequence[str] = (),
+    ) -> Run:
+        """Search for the best answer; at a limit, or at ctrl-C, what was found before.
+
+        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
+        ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. Raises
+        what ``on_tree`` raises, and :class:`UserError` for answers that are none.
+        """
+        result = Run()
+        began = time.perf_counter()
+        deadline.doing = "searching"
+
+        def tree(heard: Heard) -> None:
+            result.units, result.cost, result.atoms = heard
+            if on_tree:
+                on_tree(heard.units)
+
+        def bound(lower: list[int]) -> None:
+            result.lower = lower
+            if on_bound:
+                on_bound(lower)
+
+        try:
+            deadline.check()
+            if self._there:
+                ended = self._there.search(opt_mode, predicates, tree, bound, deadline)
+                result.exhausted = ended.exhausted
+            elif self._here:
+                ended = self._here.search(opt_mode, predicates, tree, bound, _waiting(deadline))
+                result.exhausted = ended.exhausted
+        except LimitError:  # what was heard stands
+            pass
+        result.solve_seconds = time.perf_counter() - began
+        return result
+
+    def close(self) -> None:
+        """Say that it is not needed any more; so is one that is dropped."""
+        if self._there:
+            self._there.close()
+
+
+def _waiting(deadline: Deadline) -> Callable[[SolveHandle], None]:
+    """Wait for the end of a search, and cancel it when it is time to stop."""
+
+    def wait(handle: SolveHandle) -> None:
+        while True:
+            try:
+                if handle.wait(deadline.slice()):
+                    break
+                if deadline.passed:
+                    handle.cancel()
+                    break
+            except KeyboardInterrupt:
+                deadline.interrupt()
+                handle.cancel()
+                break
+
+    return wait

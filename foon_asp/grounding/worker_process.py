@@ -1,0 +1,273 @@
+"""A program in a process of its own, which can be ended: clingo cannot be interrupted while it grounds.
+
+A process that did its work waits for the next program, so that starting one is paid for once.
+"""
+
+import atexit
+import contextlib
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import weakref
+from collections.abc import Callable, Mapping, Sequence
+from io import RawIOBase
+from pathlib import Path
+from typing import Any, cast
+
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.errors import BugError, UserError
+from foon_asp.grounding.pipe import OUT_OF_MEMORY, receive, send
+from foon_asp.grounding.run import Ended, Heard, ProgramError
+
+_PACKAGES = str(Path(__file__).resolve().parents[2])
+_SERVE = "import sys; sys.path[:] = {paths!r}; from foon_asp.grounding.worker import serve; serve()"
+
+
+class WorkerProgram:
+    """Like :class:`foon_asp.grounding.ground_program.GroundProgram`, in another process.
+
+    Where a limit is reached, or ctrl-C pressed, the process is ended, :class:`LimitError` is raised, and the
+    program is of no more use.
+    """
+
+    def __init__(
+        self,
+        files: Sequence[str],
+        text: str,
+        arguments: Sequence[str],
+        products: int,
+        deadline: Deadline,
+    ) -> None:
+        self._worker = _take()
+        self._give_back = weakref.finalize(self, _give_back, self._worker)
+        memory = None
+        if deadline.memory is not None:
+            memory = max(1, deadline.memory - deadline.memory_in_use())
+        command = "ground", list(files), text, list(arguments), products, memory
+        self.messages: list[str] = self._worker.ask(deadline, *command)
+
+    def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
+        """Ground more text, and what there is to say about a product of rates."""
+        self.messages = self._worker.ask(deadline, "add", part, text, product)
+
+    def assign(self, atoms: Mapping[str, bool], deadline: Deadline) -> None:
+        """Say of external atoms whether they hold from now on."""
+        if atoms:
+            self._worker.ask(deadline, "assign", dict(atoms))
+
+    def search(
+        self,
+        opt_mode: str,
+        predicates: Sequence[str],
+        on_tree: Callable[[Heard], None],
+        on_bound: Callable[[list[int]], None],
+        deadline: Deadline,
+    ) -> Ended:
+        """Search for the best answer; what is heard of on the way is heard in this thread."""
+        hear: dict[str, Callable[[Any], None]] = {"tree": on_tree, "bound": on_bound}
+        ended: Ended = self._worker.ask(deadline, "search", opt_mode, list(predicates), hear=hear)
+        return ended
+
+    def close(self) -> None:
+        """Let the process have another program."""
+        self._give_back()
+
+
+class _Worker:
+    def __init__(self) -> None:
+        if not sys.executable:
+            raise UserError(
+                "rules of yours are grounded by a Python of their own, and this program does not know where "
+                "Python is: sys.executable is not set"
+            )
+        paths = [_PACKAGES, *(str(Path(path).resolve()) for path in sys.path)]
+        self._process = subprocess.Popen(
+            [sys.executable, "-SP", "-c", _SERVE.format(paths=paths)],
+            bufsize=0,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            **_APART,
+        )
+        self.lost = False  # ended, or in the middle of something
+        self._answers: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
+        self._out = cast("RawIOBase", self._process.stdin)
+        self._unheard = 0  # answers that nobody waits for
+        self._answered = False
+        self._reader = threading.Thread(
+            target=_hear, args=(cast("RawIOBase", self._process.stdout), self._answers), daemon=True
+        )
+        self._reader.start()
+
+    @property
+    def ready(self) -> bool:
+        return not self.lost and self._process.poll() is None
+
+    def ask(
+        self, deadline: Deadline, *command: object, hear: Mapping[str, Callable[[Any], None]] | None = None
+    ) -> Any:
+        """Give a command, pass on what is heard on the way, and give the answer.
+
+        Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
+        """
+        if self.lost:
+            raise BugError("a process was asked that had been ended")
+        self.lost = True
+        deadline.count(self._process.pid)
+        try:
+            with contextlib.suppress(OSError):  # that it died is seen when the answer is waited for
+                send(self._out, command)
+            while True:
+                kind, value = self._answer(deadline)
+                if hear is None or kind not in hear:
+                    break
+                hear[kind](value)
+        except BaseException as error:
+            self.end()
+            if isinstance(error, KeyboardInterrupt) and not isinstance(error, LimitError):
+                deadline.interrupt()
+                raise LimitError(deadline.stopped) from None
+            raise
+        finally:
+            deadline.uncount(self._process.pid)
+        self.lost = False
+        if kind == "refused":
+            raise ProgramError(*value)
+        if kind == "fault":
+            raise UserError(value)
+        if kind == "bug":
+            raise BugError(f"in the process of clingo: {value}")
+        return value
+
+    def _answer(self, deadline: Deadline) -> tuple[str, Any]:
+        while True:
+            try:
+                answer = self._answers.get(timeout=max(0.001, deadline.slice()))
+            except queue.Empty:
+                deadline.check()
+                continue
+            if answer[0] == "ended":
+                self._died(deadline)
+            self._answered = True
+            if not self._unheard:
+                return answer
+            self._unheard -= 1
+
+    def _died(self, deadline: Deadline) -> None:
+        """Say why the process ended by itself: memory in most cases, or else clingo cannot take the rules."""
+        code = self._process.wait()
+        if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
+            deadline.out_of_memory()
+            raise LimitError(deadline.stopped)
+        if not self._answered:
+            raise UserError(
+                f"{sys.executable} does not start as another process (it ended with {code}), "
+                "where rules that were added are grounded"
+            )
+        raise UserError(
+            f"clingo broke down while {deadline.doing} (its process ended with {code}); look at the rules "
+            "that were added: terms within terms without end, for one, are more than it can take"
+        )
+
+    def end(self) -> None:
+        """End the process, whatever it is at."""
+        self.lost = True
+        self._process.kill()
+        self._process.wait()
+        self._reader.join(5)  # before another file gets the number that it reads from
+        self._close()
+
+    def forget(self) -> None:
+        """Let the process drop its program, and do not wait for that."""
+        try:
+            send(self._out, ("forget",))
+            self._unheard += 1
+        except OSError:
+            self.lost = True
+
+    def abandon(self) -> None:
+        """Let go of a process that belongs to another: this one is a copy of that one."""
+        self.lost = True
+        self._process.returncode = 0
+        self._close()
+
+    def _close(self) -> None:
+        for pipe in (self._process.stdin, self._process.stdout):
+            with contextlib.suppress(OSError):
+                if pipe:
+                    pipe.close()
+
+
+def _hear(pipe: RawIOBase, answers: "queue.SimpleQueue[tuple[str, Any]]") -> None:
+    with contextlib.suppress(EOFError):
+        while True:
+            answers.put(receive(pipe))
+    answers.put(("ended", None))
+
+
+# A process group of its own: ctrl-C at a terminal is for this process, which ends the other.
+_APART: dict[str, Any] = {"start_new_session": True}
+if sys.platform == "win32":
+    _APART = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
+
+_OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
+_MOST_IDLE = 1
+_idle: list[_Worker] = []
+_all: "weakref.WeakSet[_Worker]" = weakref.WeakSet()
+_lock = threading.Lock()
+
+
+def prepare() -> None:
+    """Start a process, if none waits: it gets ready while other things are done."""
+    with _lock:
+        if not any(worker.ready for worker in _idle):
+            _idle.append(_started())
+
+
+def _take() -> _Worker:
+    with _lock:
+        while _idle:
+            worker = _idle.pop()
+            if worker.ready:
+                return worker
+            worker.end()
+        return _started()
+
+
+def _started() -> _Worker:
+    worker = _Worker()
+    _all.add(worker)
+    return worker
+
+
+def _give_back(worker: _Worker) -> None:
+    """Keep a process for the next program, or end it."""
+    with _lock:
+        keep = worker.ready and len(_idle) < _MOST_IDLE
+        if keep:
+            worker.forget()
+            _idle.append(worker)
+    if not keep:
+        worker.end()
+
+
+def _end_all() -> None:
+    for worker in list(_all):
+        worker.end()
+
+
+def _forget_all() -> None:
+    """Know of no process after a fork: those there are belong to the other."""
+    global _lock  # noqa: PLW0603 (another thread may have held it)
+    _lock = threading.Lock()
+    for worker in list(_all):
+        worker.abandon()
+    _idle.clear()
+
+
+atexit.register(_end_all)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_all)
