@@ -295,12 +295,11 @@ def test_nothing_is_left_half_written(tmp_path: Path, monkeypatch: pytest.Monkey
     file = tmp_path / "a.dot"
     write_whole(file, b"old")
 
-    def full(self: Path, content: bytes) -> int:
-        with self.open("wb") as stream:
-            stream.write(content[:1])
+    def full(written: int) -> None:
+        os.ftruncate(written, 1)
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr("foon_asp.report.whole_file.os.fsync", full)
     with pytest.raises(UserError, match="No space left"):
         write_whole(file, b"new")
     assert [path.name for path in tmp_path.iterdir()] == ["a.dot"]

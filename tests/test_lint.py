@@ -1,6 +1,7 @@
 """``foon-asp lint``: what is found, where, and what mending changes."""
 
 import json
+import time
 from itertools import product
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from foon_asp.lint import CATALOG, lint, mended
 from foon_asp.lint.near_names import near_names
+from foon_asp.lint.sheet import Sheet
 from foon_asp.network import Network, NetworkBuilder, ObjectNode
 from foon_asp.network.dead_cycles import dead_cycles
 from foon_asp.report.lint_text import lint_text
@@ -550,3 +552,11 @@ def test_near_names_of_the_universal_foon_are_slips(universal: Path) -> None:
 
 def test_severities() -> None:
     assert {rule.severity for rule in CATALOG.values()} == set(Severity)
+
+
+def test_quotes_that_are_not_closed_are_looked_through_once() -> None:
+    lines = ['{"label": "on\\"ion"} "open', '"' + '\\"' * 300_000]
+    began = time.process_time()
+    sheet = Sheet("a.json", [], FoonReader(), source_lines=lines)
+    assert sheet._quoted == {"label": [(1, 3)], 'on"ion': [(1, 12)]}
+    assert time.process_time() - began < 1

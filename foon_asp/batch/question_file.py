@@ -11,7 +11,9 @@ from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import ContainerRule, parse_objectives
 from foon_asp.text import Diagnostic, InputError, Severity, json_fault, read_plain_text
+from foon_asp.text.json_value import read_json
 
+_LONGEST = 1e9  # seconds, some thirty years
 _KEYS = ("goal", "objective", "containers", "kitchen", "time_limit")
 
 
@@ -36,11 +38,11 @@ def read_questions(file: Path, time_limit: float | None) -> list[QuestionLine]:
     """
     lines: list[QuestionLine] = []
     errors: list[Diagnostic] = []
-    for number, text in enumerate(read_plain_text(file).splitlines(), 1):
+    for number, text in enumerate(read_plain_text(file).replace("\r\n", "\n").split("\n"), 1):
         if not text.strip():
             continue
         try:
-            lines.append(_line(json.loads(text), file.parent, time_limit))
+            lines.append(_line(read_json(text), file.parent, time_limit))
         except json.JSONDecodeError as problem:
             fault = json_fault(problem)
             place = Source(str(file), number, fault.column)
@@ -90,8 +92,9 @@ def _line(value: object, folder: Path, time_limit: float | None) -> QuestionLine
         for kitchen in _several(value.get("kitchen"))
     )
     limit = value.get("time_limit", time_limit)
-    if not (limit is None or (isinstance(limit, int | float) and not isinstance(limit, bool) and limit >= 0)):
-        raise ValueError(f"found the time_limit {limit!r}, expected seconds")
+    is_number = isinstance(limit, int | float) and not isinstance(limit, bool)
+    if not (limit is None or (is_number and 0 <= limit <= _LONGEST)):
+        raise ValueError(f"found the time_limit {str(limit)[:40]}, expected seconds, at most {_LONGEST:g}")
     return QuestionLine(goals, objectives, rules, kitchens, None if limit is None else float(limit))
 
 
@@ -113,5 +116,5 @@ def _goal(value: object) -> tuple[str, ...]:
 
 def _name(value: object, key: str) -> str:
     if not isinstance(value, str) or not value:
-        raise ValueError(f"found {json.dumps(value)} as {key!r}, expected a name")
+        raise ValueError(f"found {json.dumps(value)[:40]} as {key!r}, expected a name")
     return value

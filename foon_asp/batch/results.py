@@ -1,10 +1,12 @@
 """Rows of results on disk, as they come, so that a run that was killed goes on where it was."""
 
+import contextlib
 import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
+from foon_asp.asp import Status
 from foon_asp.batch.answer_row import Row
 from foon_asp.batch.asked import Asked
 from foon_asp.compare import RowsFile
@@ -15,6 +17,9 @@ if TYPE_CHECKING:
 
 _ROWS_IN_PART = 1000
 _ASKED = ("goal", "objective", "containers", "kitchen", "time_limit")
+_ANSWERED = ("status", "error", "proof", "costs", "lower_bound", "units", "seconds")
+_QUESTION, _WAITING = "_question.jsonl", "_waiting.jsonl"
+_PART = re.compile(r"part-(\d{6,18})\.parquet", re.ASCII)
 
 
 class Results(Protocol):
@@ -39,25 +44,36 @@ def open_results(path: Path, question: dict[str, object]) -> Results:
     return ParquetFolder(path, question) if path.suffix == ".parquet" else JsonLines(path, question)
 
 
-def _key(row: dict[str, Any]) -> str:
-    """Give the key of the question that a row answers."""
-    goal = row["goal"]
-    kitchen = row["kitchen"]
-    return Asked(
-        (goal,) if isinstance(goal, str) else tuple(goal),
-        row["objective"],
-        row["containers"],
-        None if kitchen is None else Path(kitchen),
-        row["time_limit"],
-    ).key
+class _Kept(NamedTuple):
+    """A row that was there: the key of the question that it answers, its status, and all of it."""
+
+    key: str
+    status: str
+    row: dict[str, Any]
+
+
+def _kept(row: dict[str, Any]) -> _Kept:
+    """Look at a row that was there; raises an error that :class:`RowsFile` knows for what is none of ours."""
+    goal, kitchen, limit, status = row["goal"], row["kitchen"], row["time_limit"], row["status"]
+    goals = (goal,) if isinstance(goal, str) else tuple(goal)
+    asked = Asked(
+        goals, row["objective"], row["containers"], None if kitchen is None else Path(kitchen), limit
+    )
+    names = (*goals, asked.objective, asked.containers)
+    is_limit = limit is None or (type(limit) in {int, float} and limit >= 0)
+    known = status == "failed" or status in set(Status)
+    is_ours = goals and row.keys() == {*_ASKED, *_ANSWERED} and all(isinstance(name, str) for name in names)
+    if not (is_ours and is_limit and known) or asked.shown() != {key: row[key] for key in _ASKED}:
+        raise ValueError("not a row of results")
+    return _Kept(asked.key, status, row)
 
 
 class JsonLines:
     """A file with a row on each line, under one that says what is asked."""
 
     def __init__(self, path: Path, question: dict[str, object]) -> None:
-        self._rows = RowsFile(path, question)
-        self.done = {_key(row): row["status"] for row in self._rows.found}
+        self._rows = RowsFile(path, question, _kept)
+        self.done = {kept.key: kept.status for kept in self._rows.found}
 
     def add(self, asked: Asked, row: Row) -> None:
         """Keep a row."""
@@ -87,21 +103,21 @@ class ParquetFolder:
             ) from None
         self._folder = path
         self._question = question
+        self.done: dict[str, str] = {}
+        self._parts = 0
+        for number, part in _parts(path):
+            self._parts = number + 1
+            self.done |= _statuses(part)
         try:
             path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise UserError(f"{path}: cannot be written: {error.strerror or error}") from None
-        self._begun = RowsFile(path / "_question.jsonl", question)  # refuses parts of another question
-        self.done: dict[str, str] = {}
-        self._parts = 0
-        for part in sorted(path.glob("part-*.parquet")):
-            self._parts = 1 + int(re.sub(r"\D", "", part.stem))
-            self.done |= _statuses(part)
-        self._waiting_file = path / "_waiting.jsonl"
+        self._begun = RowsFile(path / _QUESTION, question, _kept)  # refuses parts of another question
+        self._waiting_file = path / _WAITING
         self._open()
         # a part was written, and the rows waiting for it were not yet taken away
-        self._waiting = [row for row in self._rows.found if _key(row) not in self.done]
-        self.done |= {_key(row): row["status"] for row in self._waiting}
+        self._waiting = [kept.row for kept in self._rows.found if kept.key not in self.done]
+        self.done |= {kept.key: kept.status for kept in self._rows.found}
 
     def add(self, asked: Asked, row: Row) -> None:
         """Keep a row."""
@@ -121,24 +137,47 @@ class ParquetFolder:
         self._begun.__exit__()
 
     def _open(self) -> None:
-        self._rows = RowsFile(self._waiting_file, self._question)
+        self._rows = RowsFile(self._waiting_file, self._question, _kept)
 
     def _write_part(self) -> None:
-        from pyarrow import parquet  # noqa: PLC0415 (an extra)
+        from pyarrow import ArrowException, parquet  # noqa: PLC0415 (an extra)
 
         final = self._folder / f"part-{self._parts:06d}.parquet"
         partial = self._folder / f"_part.{os.getpid()}"
         try:
             parquet.write_table(_table(self._waiting), partial)
             partial.replace(final)
-        except OSError as error:
-            partial.unlink(missing_ok=True)
-            raise UserError(f"{final}: cannot be written: {error.strerror or error}") from None
+            self._rows.__exit__()
+            self._waiting_file.unlink()
+        except (OSError, ArrowException) as error:
+            with contextlib.suppress(OSError):
+                partial.unlink(missing_ok=True)
+            why = getattr(error, "strerror", None) or error
+            raise UserError(f"{final}: cannot be written: {why}") from None
         self._parts += 1
         self._waiting = []
-        self._rows.__exit__()
-        self._waiting_file.unlink()
         self._open()
+
+
+def _parts(folder: Path) -> list[tuple[int, Path]]:
+    """List the parts of a folder of results by number; raises :class:`UserError` for any other folder."""
+    try:
+        if not folder.exists():
+            return []
+        if not folder.is_dir():
+            raise UserError(f"{folder}: is a file, expected a folder of results of foon-asp; name another")
+        names = sorted(file.name for file in folder.iterdir())
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be read: {error.strerror or error}") from None
+    parts = sorted((int(match[1]), folder / match[0]) for match in map(_PART.fullmatch, names) if match)
+    ours = {_QUESTION, _WAITING, *(part.name for _, part in parts)}
+    other = next((name for name in names if name not in ours and not name.startswith("_part.")), None)
+    if other is not None or (names and _QUESTION not in names):
+        raise UserError(
+            f"{folder}: holds something else than results of foon-asp ({other or names[0]}), and is left as "
+            "it is; name another folder"
+        )
+    return parts
 
 
 def _statuses(part: Path) -> dict[str, str]:
@@ -146,13 +185,21 @@ def _statuses(part: Path) -> dict[str, str]:
     from pyarrow import ArrowException, parquet  # noqa: PLC0415 (an extra)
 
     try:
-        rows = parquet.read_table(part, columns=[*_ASKED, "status"]).to_pylist()
+        # a part by itself: the name of its folder says nothing of what is in it
+        rows = parquet.read_table(part, columns=[*_ASKED, "status"], partitioning=None).to_pylist()
     except (OSError, ArrowException) as error:
         raise UserError(f"{part}: cannot be read: {error}") from None
-    for row in rows:
-        if len(row["goal"]) == 1:
-            row["goal"] = row["goal"][0]
-    return {_key(row): row["status"] for row in rows}
+    try:
+        found = [_kept(_of_part(row)) for row in rows]
+    except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
+        raise UserError(f"{part}: error: no part of results of foon-asp; name another folder") from None
+    return {kept.key: kept.status for kept in found}
+
+
+def _of_part(row: dict[str, Any]) -> dict[str, Any]:
+    """Give the row of a part, of which what was asked is read, as it is on a line."""
+    goal = row["goal"][0] if len(row["goal"]) == 1 else row["goal"]
+    return dict.fromkeys(_ANSWERED) | row | {"goal": goal}
 
 
 def _table(rows: list[dict[str, Any]]) -> "pyarrow.Table":

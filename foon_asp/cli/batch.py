@@ -21,6 +21,7 @@ from foon_asp.batch import (
 from foon_asp.cli import options
 from foon_asp.cli.batch_data import Opening, digest
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
 
 
@@ -68,6 +69,7 @@ def command(
     that says why. Exits with 0 when every answer is proved, 1 when some failed, and with 3 when a limit
     stopped some, or ctrl-C the run.
     """
+    check_outputs()
     lines = read_questions(questions, time_limit)
     kitchens = [kitchen for line in lines for kitchen in line.kitchens if kitchen]
     opening = Opening(tuple(data.items()), digest(data, kitchens))

@@ -10,6 +10,7 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.certificate import Certificate, Coverage, NotBestError, certify, certify_outcome, coverage
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
@@ -68,6 +69,7 @@ def command(
     (a bound, or the first objectives alone) or when none was found.
     """
     chosen = parse_objectives(objectives)
+    check_outputs()
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
     # a certificate speaks about the whole network, by its digest
     problem = question.problem(question.goals(goals_named), containers, everything=True)

@@ -11,6 +11,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
 from foon_asp.cli.search_options import search_options
 from foon_asp.compare import (
@@ -97,6 +98,7 @@ def command(
     Each goal is a question of its own. Exits with 0 when every optimum is proved, and with 3 when one was
     stopped at the time limit.
     """
+    check_outputs()
     question = options.read_question(**data)  # type: ignore[arg-type]
     table = read_published(published_table()) if published else None
     if table is not None:

@@ -8,6 +8,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text import (
@@ -96,6 +97,13 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
     for warning in summarize(converter.diagnostics):
         click.echo(warning, err=True)
     for task, result in zip(tasks, results, strict=True):
+        lost = list(result.lost) + ["lines that are in no unit"] * bool(converter.left_out)
+        if task.to is not None and lost and same_file(task.to, task.file):
+            raise UserError(
+                f"{task.to}: would be written over by a file without its {', '.join(lost)}; "
+                "write to another file"
+            )
+    for task, result in zip(tasks, results, strict=True):
         content = result.text.encode()
         if task.to is None:
             click.echo(content, nl=False)
@@ -125,14 +133,14 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
     if output.exists() and not output.is_dir():
         raise UserError(f"{output}: expected a folder for {len(files)} files, found a file")
     tasks = [_Task(file, output / within.with_suffix(target.suffix)) for file, within in files]
-    sources = {task.file.resolve() for task in tasks}
     seen: dict[Path | None, Path] = {}
     for file, to in tasks:
-        if to in seen:
-            raise UserError(f"{seen[to]} and {file} would both be written to {to}")
-        if to is not None and to.resolve() in sources:
+        place = None if to is None else to.resolve()
+        if place in seen:
+            raise UserError(f"{seen[place]} and {file} would both be written to {to}")
+        if to is not None and to.exists() and any(same_file(to, task.file) for task in tasks):
             raise UserError(f"{to} would be overwritten: name another folder with -o")
-        seen[to] = file
+        seen[place] = file
     return tasks
 
 

@@ -10,6 +10,7 @@ from click.core import ParameterSource
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.network import TaskTree, unit_at_level
@@ -96,6 +97,7 @@ def command(
     if not to_solve and source not in {ParameterSource.DEFAULT, ParameterSource.DEFAULT_MAP}:
         raise UserError("--objective chooses among the task trees for a --goal: here is nothing to choose")
     chosen = parse_objectives(objectives)
+    check_outputs()
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
     goals = question.goals(goals_named) if goals_named else ()
     code = ExitCode.DONE

@@ -7,6 +7,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder
 from foon_asp.report.whole_file import write_whole
@@ -50,7 +51,7 @@ def command(paths: tuple[Path, ...], output: Path | None, lenient: bool) -> Exit
             raise UserError(f"{path}: no such file or folder")
     files = list(dict.fromkeys(file for path in paths for file in network_files(path)))
     to_stdout = output is None or str(output) == "-"
-    if output is not None and not to_stdout and output.resolve() in {file.resolve() for file in files}:
+    if output is not None and not to_stdout and any(same_file(output, file) for file in files):
         raise UserError(f"{output} is one of the files to merge: write to another")
     reader = FoonReader(lenient)
     builder = NetworkBuilder()

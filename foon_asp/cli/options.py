@@ -122,13 +122,14 @@ def constraint_options(command: Command) -> Command:
 class Held(NamedTuple):
     """What a session has read, for the verbs that are asked within it, and how it was read.
 
-    ``session`` keeps what was grounded.
+    ``session`` keeps what was grounded; ``files`` are those that were read.
     """
 
     question: Question
     lenient: bool
     level: int
     session: "Session"
+    files: tuple[Path, ...] = ()
 
 
 def held() -> Held | None:

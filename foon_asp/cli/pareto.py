@@ -7,6 +7,7 @@ import click
 
 from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.explain.pareto import Front, pareto_front
 from foon_asp.problem import Objective
@@ -51,6 +52,7 @@ def command(asked: Asked, trees: bool, charts: tuple[Path, ...]) -> ExitCode:
     """
     for chart in charts:
         check_suffix(chart)
+    check_outputs()
     problem = asked.problem()
     with Progress() as progress:
         front = pareto_front(problem, asked.objectives, asked.settings, progress)

@@ -8,6 +8,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output_file import read_files
 from foon_asp.cli.shell_session import Leave, ShellSession
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule
@@ -59,6 +60,7 @@ def command(
     from_terminal = script is None and sys.stdin.isatty() and sys.stdout.isatty()
     question = options.read_question(lenient=lenient, level=level, **data)  # type: ignore[arg-type]
     session = ShellSession(question, lenient, level, encodings)
+    session.files += read_files()
     session.containers = ContainerRule(containers)
     session.time_limit = time_limit
     session.choose(objectives)

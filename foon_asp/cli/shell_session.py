@@ -95,6 +95,7 @@ class ShellSession:
         self.constants: dict[str, str] = {}
         self.time_limit: float | None = None
         self.kitchen = ShellKitchen(question)
+        self.files: list[Path] = []  # what was read, which no question writes over
         self._encodings = encodings
         self._lenient, self._level = lenient, level
         self._session = Session()
@@ -151,7 +152,7 @@ class ShellSession:
             prog_name=verb,
             standalone_mode=False,
             default_map={name: value for name, value in given.items() if value not in {None, ()}},
-            obj=Held(question, self._lenient, self._level, self._session),
+            obj=Held(question, self._lenient, self._level, self._session, (*self.files, *self.constraints)),
             help_option_names=["-h", "--help"],
         )
         self.code = ExitCode(ended or 0)
@@ -177,7 +178,9 @@ class ShellSession:
 
     def _kitchen(self, files: list[str]) -> None:
         if files:
-            self.kitchen.take(Path(_only(files, "kitchen")))
+            file = Path(_only(files, "kitchen"))
+            self.kitchen.take(file)
+            self.files.append(file)
         else:
             for node in self.kitchen.nodes():
                 click.echo(node)

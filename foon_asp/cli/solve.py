@@ -10,6 +10,7 @@ from foon_asp.cli import options
 from foon_asp.cli.certify import expiry, find_certificate, write_certificate
 from foon_asp.cli.cross_check import check_across, checkable
 from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.cli.weighted_files import weighted_files
 from foon_asp.errors import UserError
@@ -88,6 +89,7 @@ def command(
     if clingo_options and not clingo_options[0].startswith("-"):
         raise UserError(f"found {clingo_options[0]!r}, expected an option; a goal is named by --goal NAME")
     chosen = parse_objectives(objectives)
+    check_outputs()
     question = options.read_question(**data)  # type: ignore[arg-type]
     # What is asked by rules of the user's, and what a certificate speaks about, is the whole network.
     everything = bool(constraints or encodings or soft) or certificate_file is not None

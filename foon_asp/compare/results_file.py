@@ -2,11 +2,16 @@
 
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
+from foon_asp.asp import Status
 from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.compare.rows_file import RowsFile
-from foon_asp.problem import Objective
+from foon_asp.problem import ContainerRule, Objective
+from foon_asp.proof import Verdict
+from foon_asp.search import Ending
+
+Plain = TypeVar("Plain")
 
 
 def comparison_json(comparison: Comparison) -> dict[str, object]:
@@ -48,40 +53,65 @@ def _text(value: Fraction | None) -> str | None:
 
 
 def read_comparison(row: dict[str, Any]) -> Comparison:
-    """Turn what :func:`comparison_json` gave into a comparison again."""
-    return Comparison(
-        row["goal"],
-        row["containers"],
+    """Turn what :func:`comparison_json` gave into a comparison again.
+
+    Raises one of the errors that :class:`RowsFile` knows for anything else.
+    """
+    comparison = Comparison(
+        _of(row["goal"], str),
+        ContainerRule(row["containers"]),
         {
-            Objective(name): Optimum(o["status"], None if o["value"] is None else Fraction(o["value"]))
+            Objective(name): Optimum(
+                Status(o["status"]), None if o["value"] is None else _fraction(o["value"])
+            )
             for name, o in row["optimum"].items()
         },
-        tuple(
-            Judgement(
-                s["search"],
-                s["ending"],
-                None if s["units"] is None else tuple(s["units"]),
-                {Objective(name): Fraction(value) for name, value in s["measures"].items()},
-                s["executes"],
-                tuple(s["order"]),
-                None
-                if s["obstacle"] is None
-                else (s["obstacle"]["motion"] or "", s["obstacle"]["missing"], s["obstacle"]["cycle"]),
-                s["stuck_at"],
-            )
-            for s in row["searches"]
-        ),
-        row["level"],
+        tuple(map(_judgement, row["searches"])),
+        _of(row["level"], int),
     )
+    if comparison.level not in {1, 2, 3} or comparison_json(comparison) != row:
+        raise ValueError("something more or else than what is written")
+    return comparison
+
+
+def _judgement(row: dict[str, Any]) -> Judgement:
+    obstacle, stuck_at, units = row["obstacle"], row["stuck_at"], row["units"]
+    return Judgement(
+        _of(row["search"], str),
+        Ending(row["ending"]),
+        None if units is None else tuple(_of(unit, int) for unit in units),
+        {Objective(name): _fraction(value) for name, value in row["measures"].items()},
+        None if row["executes"] is None else Verdict(row["executes"]),
+        tuple(_of(position, int) for position in row["order"]),
+        None
+        if obstacle is None
+        else (
+            _of(obstacle["motion"] or "", str),
+            _of(obstacle["missing"], str),
+            _of(obstacle["cycle"], bool),
+        ),
+        None if stuck_at is None else _of(stuck_at, str),
+    )
+
+
+def _of(value: Any, kind: type[Plain]) -> Plain:
+    if type(value) is not kind:
+        raise TypeError(f"found {value!r}, expected {kind.__name__}")
+    return value
+
+
+def _fraction(text: str) -> Fraction:
+    if not set(_of(text, str)) <= set("0123456789/-"):  # an exponent could stand for any number of digits
+        raise ValueError(f"found {text!r}, expected a fraction")
+    return Fraction(text)
 
 
 class ResultsFile:
     """A file of comparisons under construction, begun for a question as :class:`RowsFile` says."""
 
     def __init__(self, path: Path, question: dict[str, object]) -> None:
-        self._rows = RowsFile(path, question)
-        found = map(read_comparison, self._rows.found)
-        self.done: dict[str, Comparison] = {comparison.goal: comparison for comparison in found}
+        self._rows = RowsFile(path, question, read_comparison)
+        self.done = {comparison.goal: comparison for comparison in self._rows.found}
 
     def add(self, comparison: Comparison) -> None:
         """Write one comparison; it is on the disk when this returns."""

@@ -1,76 +1,133 @@
 """Results as JSON Lines: written as they come, read back to go on after an interruption."""
 
+import contextlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import IO, Any, Generic, Self, TypeVar
 
 from foon_asp.errors import UserError
+from foon_asp.text.json_value import read_json
+
+Row = TypeVar("Row")
 
 
-class RowsFile:
+class RowsFile(Generic[Row]):
     """A file of rows under construction.
 
-    Its first line is the question (data and settings): a file that was begun for another question is
-    refused. Lines are written whole and at once; a last line that an interruption cut short is dropped.
-    ``found`` are the rows that were there.
+    Its first line is the question (data and settings). Rows are written whole and at once; a last one that
+    an interruption cut short is dropped. ``found`` are the rows that were there, as ``read`` makes them of
+    plain values.
+
+    Raises :class:`UserError`, and leaves the file as it is, where it was begun for another question, and
+    where anything in it is nothing that this class wrote: nobody's file is taken for one of ours. ``read``
+    refuses a row by raising a :class:`ValueError`, :class:`KeyError`, :class:`TypeError`,
+    :class:`AttributeError` or :class:`ArithmeticError`.
     """
 
-    def __init__(self, path: Path, question: dict[str, object]) -> None:
+    def __init__(self, path: Path, question: dict[str, object], read: Callable[[Any], Row]) -> None:
         self.path = path
         self.question = json.loads(json.dumps(question))
-        self.found: list[dict[str, Any]] = []
-        kept = 0
-        if path.exists():
-            for row, end in _rows(path):
-                if not kept:
-                    self._check(row)
-                else:
-                    self.found.append(row)
-                kept = end
+        self._read = read
+        self.found: list[Row] = []
+        kept, missing = self._look_at(self._content())
         try:
-            self._file: IO[bytes] = path.open("r+b" if path.exists() else "w+b")
+            self._file: IO[bytes] = path.open("r+b" if path.exists() else "xb")
+            self._file.truncate(kept)
+            self._file.seek(kept)
         except OSError as error:
-            raise UserError(f"{path}: cannot be written: {error.strerror or error}") from None
-        self._file.truncate(kept)
-        self._file.seek(kept)
-        if not kept:
-            self.write({"question": self.question})
-
-    def _check(self, row: dict[str, Any]) -> None:
-        begun = row.get("question") if isinstance(row, dict) else None
-        if begun != self.question:
-            raise UserError(
-                f"{self.path}: was begun for another question; name another file, or remove this one\n"
-                f"  there: {begun}\n  now:   {self.question}"
-            )
+            raise self._fault("written", error) from None
+        try:
+            self._put(missing)
+        except UserError:
+            with contextlib.suppress(OSError):  # half a first line would not be known as ours
+                os.ftruncate(self._file.fileno(), kept)
+            self.__exit__()
+            raise
 
     def write(self, row: dict[str, object]) -> None:
         """Write one row; it is on the disk when this returns."""
-        self._file.write(json.dumps(row, ensure_ascii=False).encode() + b"\n")
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        self._put(_line(row))
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._file.close()
+        with contextlib.suppress(OSError):  # all rows are on the disk already, or their fault was said
+            self._file.close()
 
-
-def _rows(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
-    """Give the whole lines of a file, decoded, each with the offset of its end."""
-    end = 0
-    try:
-        lines = path.read_bytes().splitlines(keepends=True)
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from None
-    for number, line in enumerate(lines, 1):
-        if not line.endswith(b"\n"):
-            return
-        end += len(line)
+    def _content(self) -> bytes:
         try:
-            yield json.loads(line), end
+            if not self.path.exists():
+                return b""
+            if not self.path.is_file():
+                raise UserError(f"{self.path}: is no file that results could be kept in")
+            return self.path.read_bytes()
+        except OSError as error:
+            raise self._fault("read", error) from None
+
+    def _look_at(self, content: bytes) -> tuple[int, bytes]:
+        """Read what was there; say how many bytes of it are kept, and which are missing behind them."""
+        if not content:
+            return 0, _line({"question": self.question})
+        first, newline, rows = content.partition(b"\n")
+        begun = self._value(first, 1) if newline else None
+        if not isinstance(begun, dict) or begun.keys() != {"question"}:
+            raise UserError(
+                f"{self.path}: holds something else than results of foon-asp, and is left as it is; "
+                "name another file"
+            )
+        if begun["question"] != self.question:
+            raise UserError(
+                f"{self.path}: was begun for another question; name another file, or remove this one\n"
+                f"  there: {json.dumps(begun['question'])}\n  now:   {json.dumps(self.question)}"
+            )
+        *whole, last = rows.split(b"\n")
+        for number, line in enumerate(whole, 2):
+            self.found.append(self._row(line, number))
+        if not last:
+            return len(content), b""
+        try:
+            read_json(last)
+        except ValueError:  # cut short
+            return len(content) - len(last), b""
+        self.found.append(self._row(last, len(whole) + 2))  # whole, but for its end
+        return len(content), b"\n"
+
+    def _row(self, line: bytes, number: int) -> Row:
+        value = self._value(line, number)
+        try:
+            return self._read(value)
+        except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
+            raise self._foreign(number) from None
+
+    def _value(self, line: bytes, number: int) -> Any:
+        try:
+            return read_json(line)
         except ValueError:
-            raise UserError(f"{path}:{number}: error: not a line of results; name another file") from None
+            raise self._foreign(number) from None
+
+    def _foreign(self, number: int) -> UserError:
+        return UserError(
+            f"{self.path}:{number}: error: not a line of results of foon-asp; the file is left as it is: "
+            "name another"
+        )
+
+    def _put(self, content: bytes) -> None:
+        try:
+            self._file.write(content)
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise self._fault("written", error) from None
+
+    def _fault(self, done: str, error: OSError) -> UserError:
+        return UserError(f"{self.path}: cannot be {done}: {error.strerror or error}")
+
+
+def _line(row: dict[str, object]) -> bytes:
+    try:
+        return json.dumps(row, ensure_ascii=False).encode() + b"\n"
+    except UnicodeEncodeError:  # half a character, as in the name of a file that is no UTF-8
+        return json.dumps(row).encode() + b"\n"

@@ -16,7 +16,8 @@ from foon_asp.text.listed_unit import node_of
 
 _LETTERS = {"O", "S", "M"}
 _NAME = re.compile(r"[^\t\[\]{},]+")
-_QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)"')
+# What opens and is not closed is matched too, so that it is not looked through again from each quote in it.
+_QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 
 
 class Entry(NamedTuple):
@@ -147,7 +148,9 @@ class Sheet:
         found: dict[str, list[tuple[int, int]]] = {}
         for number, line in enumerate(self.source_lines, 1):
             for match in _QUOTED.finditer(line):
-                text = match[1]
+                text, closed = match.groups()
+                if not closed:
+                    continue
                 if "\\" in text:
                     text = json.loads(match[0], strict=False)
                 found.setdefault(text, []).append((number, match.start() + 2))

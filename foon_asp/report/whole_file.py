@@ -3,6 +3,7 @@
 import os
 import stat
 from pathlib import Path
+from secrets import token_hex
 
 from foon_asp.errors import UserError
 
@@ -10,21 +11,36 @@ from foon_asp.errors import UserError
 def write_whole(file: Path, content: bytes) -> None:
     """Write beside the file and rename; what was there before stays until then, and after a failure.
 
-    A file that is replaced passes on its permissions; a link stays, and the file that it names is written.
-    A pipe or device is written to as it is. Raises :class:`UserError` when it cannot be written.
+    A file that is replaced passes on its permissions, and one that is write-protected is not replaced; a link
+    stays, and the file that it names is written. A pipe or device is written to as it is. Raises
+    :class:`UserError` when it cannot be written.
     """
     try:
-        target = Path(os.path.realpath(file))
-        if target.exists() and not target.is_file():
-            target.write_bytes(content)
+        if file.exists() and not file.is_file():
+            file.write_bytes(content)
             return
-        partial = target.with_name(f".{target.name}.{os.getpid()}")
-        try:
-            partial.write_bytes(content)
-            if target.exists():
-                partial.chmod(stat.S_IMODE(target.stat().st_mode))
-            partial.replace(target)
-        finally:
-            partial.unlink(missing_ok=True)
+        target = Path(os.path.realpath(file))
+        if target.is_symlink():  # a ring of links
+            target.stat()
+        _replace(target, content)
     except OSError as error:
         raise UserError(f"{file}: cannot be written: {error.strerror or error}") from None
+
+
+def _replace(target: Path, content: bytes) -> None:
+    # A name that nobody has: no other file of the user's is written over on the way.
+    partial = target.with_name(f".foon-asp.{token_hex(8)}")
+    mode = None
+    if target.exists():
+        with target.open("ab"):  # may it be written? Renaming asks the folder alone
+            mode = stat.S_IMODE(target.stat().st_mode)
+    try:
+        with partial.open("xb") as written:
+            written.write(content)
+            written.flush()
+            os.fsync(written.fileno())
+        if mode is not None:
+            partial.chmod(mode)
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)

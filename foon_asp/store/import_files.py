@@ -3,6 +3,7 @@
 import contextlib
 import os
 import sqlite3
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -12,6 +13,7 @@ from foon_asp.problem import require_rates
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.store_file import is_database_of_ours
 from foon_asp.text import (
+    STORE_MAGIC,
     STORE_SUFFIX,
     DataFiles,
     Diagnostic,
@@ -79,6 +81,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
 
     One file beside the store, which a later import takes over when this process is killed.
     """
+    store = Path(os.path.realpath(store))  # a link stays one
     partial = store.with_name(f".{store.name}.partial")
     if partial.exists():
         _remove_leftover(partial, store)
@@ -100,6 +103,9 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         database.close()
         with partial.open("rb+") as file:
             os.fsync(file.fileno())
+        if store.exists():
+            with store.open("rb+"):  # may it be written? Renaming asks the folder alone
+                partial.chmod(stat.S_IMODE(store.stat().st_mode))
         partial.replace(store)
     finally:
         database.close()
@@ -109,6 +115,10 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
 
 def _remove_leftover(partial: Path, store: Path) -> None:
     """Remove what a killed import left, but not what another one is at."""
+    with partial.open("rb") as file:
+        begins = file.read(len(STORE_MAGIC))
+    if begins.strip(b"\0") and begins != STORE_MAGIC:
+        raise UserError(f"{partial}: is in the way, and is no leftover of an import; move it or remove it")
     database = sqlite3.connect(partial, timeout=0, isolation_level=None)
     # Cut off in the middle, it may be no database any more.
     with contextlib.closing(database), contextlib.suppress(sqlite3.DatabaseError):

@@ -4,21 +4,20 @@
 above a unit of a merged file names one copy that the unit was merged from, and the videos of that copy.
 """
 
-import re
 from collections.abc import Iterable
 
 from foon_asp.network import Source
 
 _VIDEO = "# Source:"
 _COPY = "# From:"
-_COPY_LINE = re.compile(r"# From:[\t ]*([^\t]+?):(\d{1,9})((?:\t[^\t]*)*)", re.ASCII)
+_LINE_DIGITS = 9  # of a line number, at most
 
 
 def read_video(comment: str) -> str | None:
     """Give the video that a comment line names; ``None`` for another comment, or one that names none."""
     if not comment.startswith(_VIDEO):
         return None
-    return re.sub(r"\s*\t\s*", " ", comment[len(_VIDEO) :].strip()) or None  # a tab ends it in a # From: line
+    return " ".join(_fields(comment[len(_VIDEO) :])) or None  # a tab ends it in a # From: line
 
 
 def is_video(comment: str) -> bool:
@@ -28,14 +27,21 @@ def is_video(comment: str) -> bool:
 
 def read_copy(comment: str) -> Source | None:
     """Give the place that a comment line above a merged unit names; ``None`` for another comment."""
-    match = comment.startswith(_COPY) and _COPY_LINE.fullmatch(comment.rstrip())
-    if not match:
+    if not comment.startswith(_COPY):
         return None
-    videos = tuple(video.strip() for video in match[3].split("\t") if video.strip())
-    return Source(match[1], int(match[2]), 1, videos)
+    place, *videos = comment[len(_COPY) :].lstrip("\t ").split("\t")
+    file, colon, line = (place if videos else place.rstrip()).rpartition(":")
+    if not (file and colon and line.isascii() and line.isdigit() and len(line) <= _LINE_DIGITS):
+        return None
+    return Source(file, int(line), 1, tuple(_fields("\t".join(videos))))
 
 
 def write_copies(sources: Iterable[Source]) -> str:
     """Give the comment lines, each with its line end, that :func:`read_copy` reads."""
     lines = ("\t".join((f"{_COPY}\t{s.file}:{s.line}", *s.videos)) for s in sources)
     return "".join(f"{line}\n" for line in lines)
+
+
+def _fields(text: str) -> list[str]:
+    """Give what stands between tabs, without blanks around it: in linear time, whatever it is."""
+    return [field.strip() for field in text.split("\t") if field.strip()]

@@ -1,5 +1,6 @@
 """Where units come from: the comment lines that say so, read and written."""
 
+import time
 from pathlib import Path
 
 import pytest
@@ -151,3 +152,14 @@ def test_a_network_keeps_the_copies_of_files_that_were_merged_before(tmp_path: P
     assert network.sources == (
         (Source("a.txt", 3, 1, ("v",)), Source("b.txt", 9), Source(str(tmp_path / "new.txt"), 1)),
     )
+
+
+@pytest.mark.parametrize("start", ["# From:", "# From:\ta.txt:3", "# Source:\tx"])
+@pytest.mark.parametrize("many", [":", " ", "\t", ": ", ":1", " \t", "\t:1", "1"])
+@pytest.mark.parametrize("end", ["x:", ":1"])
+def test_a_million_letters_take_no_time(start: str, many: str, end: str) -> None:
+    comment = start + many * (1_000_000 // len(many)) + end
+    began = time.process_time()
+    read_copy(comment)
+    read_video(comment)
+    assert time.process_time() - began < 1

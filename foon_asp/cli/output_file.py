@@ -1,0 +1,58 @@
+"""Files that a command writes: never one that it reads."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from foon_asp.cli.options import held
+from foon_asp.errors import UserError
+from foon_asp.question import question_files
+
+# The parameters of verbs that name what is written, and those that name data.
+_WRITTEN = {"output", "file", "charts", "results", "results_file", "certificate_file"}
+_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals")
+
+
+def check_outputs() -> None:
+    """Raise :class:`UserError` where a file that the command at hand would write is one that it reads.
+
+    To be asked before anything is solved: nobody waits an hour to be told.
+    """
+    parameters = click.get_current_context().params
+    for name in _WRITTEN & parameters.keys():
+        for file in _paths(parameters[name]):
+            if any(same_file(file, other) for other in read_files()):
+                raise UserError(
+                    f"{file}: is read by this command, and is not written over; name another file"
+                )
+
+
+def read_files() -> Iterator[Path]:
+    """Give the files that the command at hand reads: those that are named, and those in a folder of data."""
+    parameters = click.get_current_context().params
+    here = held()
+    if here is not None:
+        yield from here.files
+    for name, value in parameters.items():
+        if name not in _WRITTEN:
+            yield from _paths(value)
+    for setting in parameters.get("soft", ()):
+        yield Path(setting.rpartition("=")[0])
+    data = {name: parameters.get(name) or None for name in _DATA}
+    if "network" in parameters and any(data.values()):
+        files = question_files(**(data | {"network": data["network"] or ()}))
+        yield from files.network
+        yield from filter(None, files[1:])
+
+
+def same_file(file: Path, other: Path) -> bool:
+    """Whether two names are those of one file, be it by links; a pipe or a terminal is not meant."""
+    return file.is_file() and other.is_file() and file.samefile(other)
+
+
+def _paths(value: object) -> Iterator[Path]:
+    if isinstance(value, Path):
+        yield value
+    elif isinstance(value, tuple):
+        yield from (each for each in value if isinstance(each, Path))
