@@ -17,6 +17,8 @@ Signature = tuple[str, int]
 
 # A message of clingo: file, line and column of what it is about, its kind, and its first line.
 _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)")
+_STRING = re.compile(r'"([^"\\]|\\["\\n])*"')  # as clingo reads one
+_ESCAPED = re.compile(r"\\(.)")
 
 
 @dataclass
@@ -227,11 +229,25 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
             listed = ", ".join(sorted(defaults)) or "none: add a constraint file with #const"
             raise UserError(f"no encoding in use has the constant {name!r}; known are {listed}")
         if defaults[name].startswith('"'):
-            value = value if value.startswith('"') and value.endswith('"') else quote(value)
+            value = quote(string_constant(value))
         elif _is_number(defaults[name]) and not _fits(value):
             raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
         arguments += ["-c", f"{name}={value}"]
     return arguments
+
+
+def string_constant(value: str) -> str:
+    """Give the text that a setting of a constant means where the constant is a string, in quotes or not.
+
+    Raises :class:`UserError` for a quote at the beginning with no string of clingo's after it.
+    """
+    if not value.startswith('"'):
+        return value
+    if not _STRING.fullmatch(value):
+        raise UserError(
+            f'found {value} for a constant, expected a text in quotes, with \\" for a quote in it'
+        )
+    return _ESCAPED.sub(lambda found: "\n" if found[1] == "n" else found[1], value[1:-1])
 
 
 def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:

@@ -12,7 +12,7 @@ _Row = dict[int, Fraction]
 
 
 class ExactOptimum(NamedTuple):
-    """The optimum of a covering problem: the share of each column and the weight of each row, where not 0.
+    """The optimum of a covering problem: the share of each column and the weight of each row, where above 0.
 
     ``value`` is the sum of the weights, and what the columns cost.
     """
@@ -42,7 +42,7 @@ def exact_optimum(
             return None
         entering = basis.entering(order)
         if entering is None:
-            kept = {row: weight for row, weight in basis.weights.items() if any(weight)}
+            kept = {row: weight for row, weight in basis.weights.items() if order.sign(weight)}
             shares = {column: share for column, share in basis.x.items() if share}
             return ExactOptimum(shares, kept, order.total(kept.values()))
         basis = basis.exchanged(*entering)

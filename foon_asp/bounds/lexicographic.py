@@ -10,15 +10,16 @@ import math
 from collections.abc import Iterable, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
+
+from foon_asp.bounds.coprime_base import coprime_base, powers
 
 Vector = tuple[Fraction, ...]
 
 _MARGIN = 1e-9  # of a sum of logarithms, beyond which its float cannot have the wrong sign
-_TINY = 1e-45  # and where logarithms themselves are so small that sixty digits do not tell them
-_DIGITS = Context(prec=60)
-_FINE = Fraction(1, 10**58)  # how much of a logarithm of so many digits is not known
-_LARGEST = 2_000_000  # bits of powers; what is closer than fifty digits and larger than this counts as equal
+_TINY = 1e-290  # below this, floats lose their last digits
+_DIGITS = 60  # of a logarithm, at first
+_SMALL = 200_000  # bits of powers that are sooner multiplied out than compared by more digits
 
 
 class Lexicographic:
@@ -31,7 +32,7 @@ class Lexicographic:
         self.levels = tuple(None if rates is None else tuple(rates) for rates in levels)
         self.width = sum(1 if rates is None else len(rates) for rates in self.levels)
         self._logarithms = [
-            [float(below - above) for below, above in map(_logarithms, rates or ())] for rates in self.levels
+            [float(_minus_log(rate, _DIGITS)[0]) for rate in rates or ()] for rates in self.levels
         ]
 
     @property
@@ -44,9 +45,12 @@ class Lexicographic:
         return tuple(sum(parts, Fraction(0)) for parts in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction | int]) -> int:
-        """Give -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly."""
+        """Give -1, 0 or 1 for a cost below, equal to or above that of nothing, exactly.
+
+        It can be 0 for a vector that is not: 7/10 * 7/10 is 49/100.
+        """
         place = 0
-        for rates, logarithms in zip(self.levels, self._logarithms, strict=True):
+        for level, (rates, logarithms) in enumerate(zip(self.levels, self._logarithms, strict=True)):
             if rates is None:
                 value = vector[place]
                 place += 1
@@ -60,9 +64,9 @@ class Lexicographic:
                 total, size = sum(terms), sum(map(abs, terms))
                 if abs(total) > _MARGIN * size + _TINY:
                     return 1 if total > 0 else -1
-                found = _product_sign(rates, exponents)
-                if found:
-                    return found
+                if self._is_one(level, exponents):
+                    continue
+                return _product_sign(rates, exponents)
         return 0
 
     def approximate(self, vector: Sequence[Fraction]) -> list[float]:
@@ -79,30 +83,62 @@ class Lexicographic:
                 place += len(rates)
         return values
 
+    @cached_property
+    def _factors(self) -> list[list[dict[int, int]]]:
+        """For each rate of each level its power of every number of a base without common divisors."""
+        found: list[list[dict[int, int]]] = []
+        for rates in self.levels:
+            base = coprime_base([n for rate in rates or () for n in rate.as_integer_ratio()])
+            parts = []
+            for rate in rates or ():
+                under = powers(rate.denominator, base)
+                over = powers(rate.numerator, base)
+                parts.append({b: over.get(b, 0) - under.get(b, 0) for b in over.keys() | under.keys()})
+            found.append(parts)
+        return found
+
+    def _is_one(self, level: int, exponents: Sequence[Fraction | int]) -> bool:
+        """Whether a product of powers of a level's rates is 1, however large the powers are."""
+        total: dict[int, Fraction] = {}
+        for factors, exponent in zip(self._factors[level], exponents, strict=True):
+            for b, power in factors.items():
+                total[b] = total.get(b, Fraction(0)) + power * exponent
+        return not any(total.values())
+
 
 @lru_cache(maxsize=4096)
-def _logarithms(rate: Fraction) -> tuple[Fraction, Fraction]:
-    """Give the logarithms of denominator and numerator, each to sixty digits."""
-    denominator, numerator = (_DIGITS.ln(Decimal(n)) for n in (rate.denominator, rate.numerator))
-    return Fraction(denominator), Fraction(numerator)
+def _minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
+    """Give ``-log(rate)`` to so many digits, and by how much it may be off; the rate is below 1."""
+    # close to 1, the logarithms of denominator and numerator share their first digits
+    shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
+    precise = Context(prec=digits + shared + 10)
+    below, above = (Fraction(precise.ln(Decimal(n))) for n in (rate.denominator, rate.numerator))
+    return below - above, (below + above + 1) / Fraction(10 ** (precise.prec - 1))
 
 
 def _product_sign(rates: Sequence[Fraction], exponents: Sequence[Fraction | int]) -> int:
-    """Compare 1 with a product of rational powers: -1 where the product is above 1."""
-    total = error = Fraction(0)
-    for rate, exponent in zip(rates, exponents, strict=True):
-        if exponent:
-            below, above = _logarithms(rate)
-            total += (below - above) * exponent
-            error += (below + above) * _FINE * (exponent if exponent > 0 else -exponent)
-    if abs(total) > error:
-        return 1 if total > 0 else -1
-    common = math.lcm(*(e.denominator for e in exponents))
-    powers = [int(e * common) for e in exponents]
-    if sum(abs(p) * r.denominator.bit_length() for r, p in zip(rates, powers, strict=True)) > _LARGEST:
-        return 0
+    """Compare 1 with a product of rational powers that is not 1: -1 where the product is above 1."""
+    digits = _DIGITS
+    while True:
+        total = error = Fraction(0)
+        for rate, exponent in zip(rates, exponents, strict=True):
+            if exponent:
+                logarithm, off = _minus_log(rate, digits)
+                total += logarithm * exponent
+                error += off * (exponent if exponent > 0 else -exponent)
+        if abs(total) > error:
+            return 1 if total > 0 else -1
+        common = math.lcm(*(e.denominator for e in exponents))
+        whole = [int(e * common) for e in exponents]
+        if sum(abs(p) * r.denominator.bit_length() for r, p in zip(rates, whole, strict=True)) <= _SMALL:
+            return _compared(rates, whole)
+        digits *= 2
+
+
+def _compared(rates: Sequence[Fraction], whole: Sequence[int]) -> int:
+    """Compare a product of powers with 1 by multiplying it out."""
     over, under = 1, 1
-    for rate, power in zip(rates, powers, strict=True):
+    for rate, power in zip(rates, whole, strict=True):
         one, other = rate.numerator ** abs(power), rate.denominator ** abs(power)
         over *= one if power > 0 else other
         under *= other if power > 0 else one

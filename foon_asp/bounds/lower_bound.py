@@ -80,9 +80,14 @@ class Prover:
         self._random = random.Random(1)
         floats = {cost: order.approximate(cost) for cost in set(costs)}
         scale, scales = 1.0, []
-        for level in range(len(order.levels)):
-            scales.append(scale)
-            scale *= _FINER / (1 + max((f[level] for f in floats.values()), default=0))
+        for level, rates in enumerate(order.levels):
+            largest = max((f[level] for f in floats.values()), default=0.0)
+            if rates and largest > 0:  # rates may all be next to 1, where a solver would see nothing
+                scales.append(scale / largest)
+                scale *= _FINER / 2
+            else:
+                scales.append(scale)
+                scale *= _FINER / (1 + largest)
         self._scales = scales
 
     def scaled(self, vector: Vector) -> float:

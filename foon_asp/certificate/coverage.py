@@ -50,10 +50,10 @@ def coverage(settings: Settings) -> Coverage:
     for file in dict.fromkeys(map(find_constraint, settings.constraints)):
         constant = _FORBIDDING.get(file.name)
         if constant is not None and file.resolve() == (library / file.name).resolve():
-            value = constants.pop(constant, '""')
-            if len(value) > 1 and value[0] == value[-1] == '"':
-                value = value[1:-1]
-            forbidden[constant] |= {value} - {""}
+            if constant in constants:
+                from foon_asp.asp.encoding import string_constant  # noqa: PLC0415 - it loads clingo
+
+                forbidden[constant] |= {string_constant(constants.pop(constant))} - {""}
         else:
             others.append(f"{file.name} {hashlib.sha256(file.read_bytes()).hexdigest()}")
     if settings.encodings is not None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp.program import assemble
 from foon_asp.certificate import Certificate, Coverage, NotBestError, certify, certify_outcome, coverage
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
@@ -133,6 +134,8 @@ def _certify_tree(
         raise UserError(
             "the objective success needs the success rates of the motions; name them with --rates"
         )
+    # no solver looks at the rules and constants here, so a fault in them would go by without a word
+    assemble(settings, lambda message: click.echo(message, err=True))
     covered = coverage(settings)
     ordered = _given_tree(problem, tree_file, covered, lenient)
     if ordered is None:

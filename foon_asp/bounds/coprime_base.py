@@ -1,0 +1,38 @@
+"""Numbers taken apart far enough to see which products of their powers are equal.
+
+Numbers without common divisors, each above 1, are *independent*: a product of rational powers of them is 1
+only if all exponents are 0. So when every rate is written in powers of such numbers, equal products have
+equal exponents. Finding them takes greatest common divisors alone, and no prime factors.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+
+
+def coprime_base(numbers: Iterable[int]) -> list[int]:
+    """Give numbers above 1, no two with a common divisor, whose powers multiply to each of these numbers."""
+    base: list[int] = []
+    waiting = sorted({n for n in numbers if n > 1})
+    while waiting:
+        number = waiting.pop()
+        for place, other in enumerate(base):
+            common = math.gcd(number, other)
+            if common == number == other:
+                break
+            if common > 1:
+                del base[place]
+                waiting += [n for n in (common, number // common, other // common) if n > 1]
+                break
+        else:
+            base.append(number)
+    return base
+
+
+def powers(number: int, base: Sequence[int]) -> dict[int, int]:
+    """Write a number in powers of a base that was made for it; powers of 0 are left out."""
+    found: dict[int, int] = {}
+    for factor in base:
+        while number % factor == 0:
+            number //= factor
+            found[factor] = found.get(factor, 0) + 1
+    return found
