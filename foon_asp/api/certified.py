@@ -100,13 +100,12 @@ def verify(data: Foon | plain.Problem, certificate: Certificate | str | PathLike
     wrong, with the first fault that is found.
     """
     if isinstance(certificate, Certificate):
-        text = certificate.text()
+        content = proof.read_certificate(certificate.text())
     else:
         try:
-            text = Path(certificate).read_text(encoding="utf-8")
+            content = proof.load_certificate(Path(certificate))
         except (OSError, UnicodeDecodeError) as error:
             raise UserError(f"{certificate}: cannot be read: {error}") from None
     read = (data if isinstance(data, Foon) else taken(data).foon).question.data
-    content = proof.read_certificate(text)
     verified = proof.verify(content, read.network, read.kitchen, read.rates, read.utensils)
     return VerifiedCertificate(verified, read.network, content)

@@ -68,7 +68,8 @@ def certify(
     trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
     each, that are tried first: :attr:`foon_asp.asp.Outcome.cuts`. ``None`` where nothing is found before
     ``expired`` says so, for ``success`` with rates of 0 or with rates that are not those of the motions, and
-    where products of rates are too close to be compared.
+    where nothing is found within the limits of ``verify``, as where products of rates are too close to be
+    compared, or too long to be written.
     """
     if Objective.SUCCESS in objectives and (
         problem.own_rates or not all(map(problem.rate, range(len(problem.network))))
@@ -86,7 +87,9 @@ def certify(
                 raise NotBestError(guide, problem.costs(guide)) from None
             break
         if proof is not None:
-            return _write(question, covered, "optimal", units, proof)
+            certificate = _write(question, covered, "optimal", units, proof)
+            if certificate is not None:
+                return certificate
         if expired():
             break
     question = Question(problem, objectives, covered)
@@ -141,7 +144,10 @@ def _write(
     if units is not None:
         measured = problem.costs(units)
         figures = [measured.measure(objective) for objective in question.objectives]
-        costs = [figure if isinstance(figure, int) else str(figure) for figure in figures]
+        try:
+            costs = [figure if isinstance(figure, int) else str(figure) for figure in figures]
+        except ValueError:  # Python writes no whole number of more than 4,300 digits
+            return None
     content: dict[str, Any] = {
         "format": verify.FORMAT,
         "version": verify.VERSION,
@@ -163,9 +169,13 @@ def _write(
     certificate = Certificate(content, claim, question.objectives)
     try:
         verify.verify(
-            json.loads(certificate.text()), problem.network, problem.kitchen, problem.rates, problem.utensils
+            verify.read_certificate(certificate.text()),
+            problem.network,
+            problem.kitchen,
+            problem.rates,
+            problem.utensils,
         )
-    except verify.TooFineError:
+    except verify.LimitError:
         return None
     except verify.RefusedError as refused:
         raise BugError(f"a certificate that was found is refused: {refused}") from None

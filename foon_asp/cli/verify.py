@@ -8,7 +8,7 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.errors import UserError
-from foon_asp.proof.verify import RefusedError, read_certificate, verify
+from foon_asp.proof.verify import RefusedError, load_certificate, verify
 from foon_asp.report.certified import verified_json, verified_text
 
 
@@ -27,22 +27,27 @@ def command(certificate: Path, format_: str, **data: object) -> ExitCode:
     the certificate is right and with 1 when it is refused.
     """
     try:
-        text = certificate.read_text(encoding="utf-8")
+        content = load_certificate(certificate)
     except (OSError, UnicodeDecodeError) as error:
         raise UserError(f"{certificate}: cannot be read: {error}") from None
+    except RefusedError as refused:
+        return _refused(refused, format_)
     question = options.read_question(**data)  # type: ignore[arg-type]
     read = question.data
     try:
-        content = read_certificate(text)
         verified = verify(content, read.network, read.kitchen, read.rates, read.utensils)
     except RefusedError as refused:
-        if format_ == "json":
-            click.echo(json.dumps({"verified": False, "reason": str(refused)}, indent=2, ensure_ascii=False))
-        else:
-            click.echo(f"refused: {refused}")
-        return ExitCode.NEGATIVE
+        return _refused(refused, format_)
     if format_ == "json":
         click.echo(json.dumps(verified_json(verified, read.network), indent=2, ensure_ascii=False))
     else:
         click.echo(verified_text(verified, read.network, content), nl=False)
     return ExitCode.DONE
+
+
+def _refused(refused: RefusedError, format_: str) -> ExitCode:
+    if format_ == "json":
+        click.echo(json.dumps({"verified": False, "reason": str(refused)}, indent=2, ensure_ascii=False))
+    else:
+        click.echo(f"refused: {refused}")
+    return ExitCode.NEGATIVE

@@ -20,7 +20,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
-from functools import lru_cache
+from itertools import accumulate
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from foon_asp.network import Network, ObjectNode, node_at_level
@@ -33,9 +34,20 @@ _KEYS = {
     *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "forbidden"),
     *("not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
 }
-_RATIONAL = re.compile(r"-?(0|[1-9]\d{0,999})(/[1-9]\d{0,999})?", re.ASCII)
-_LARGEST = 2_000_000  # bits of a product of rates; more is refused rather than computed for hours
-_DIGITS = Context(prec=50)
+_RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
+_SURROGATE = re.compile("[\ud800-\udfff]")
+_DIGITS = 50  # of a logarithm
+_NINES = 400  # the most digits more that a rate next to 1 gets
+
+# A certificate may come from a stranger: what goes beyond these limits is refused rather than computed.
+_LETTERS = 16_000_000  # of the file
+_BRACKETS = 1_000_000  # lists and objects in it
+_STEPS = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
+_STEPS_EACH = 200  # more of them for each unit and object node of the network
+_DIGITS_READ = 2_000  # of a fraction that is read
+_LONG = 40_000  # bits of a sum of fractions
+_LARGEST = 500_000  # bits of a product of rates
+_WRITTEN = 13_000  # bits of a success rate: Python writes numbers of up to 4,300 digits
 
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
 Amount = dict[tuple[int, Fraction | None], Fraction]
@@ -51,8 +63,8 @@ class RefusedError(Exception):
     """The certificate is wrong; the message says where."""
 
 
-class TooFineError(RefusedError):
-    """Two products of rates in the certificate differ by too little to be compared."""
+class LimitError(RefusedError):
+    """The certificate may be right, but to check it takes more than is reasonable."""
 
 
 class Verified(NamedTuple):
@@ -77,6 +89,19 @@ class Verified(NamedTuple):
     cuts: int
 
 
+def load_certificate(file: Path) -> Any:
+    """Read a certificate from a file, of which never more is read than a certificate may have.
+
+    Raises ``OSError`` and ``UnicodeDecodeError`` where it cannot be read, and else as
+    :func:`read_certificate`.
+    """
+    with file.open("rb") as stream:
+        raw = stream.read(_LETTERS + 1)
+    if len(raw) > _LETTERS:
+        raise LimitError(f"it has more than {_LETTERS:,} letters")
+    return read_certificate(raw.decode("utf-8"))
+
+
 def read_certificate(text: str) -> Any:
     """Parse the JSON of a certificate; raises :class:`RefusedError` where a key comes twice or it is none."""
 
@@ -85,8 +110,13 @@ def read_certificate(text: str) -> Any:
         _require(len(found) == len(pairs), "a key stands twice in one object")
         return found
 
+    def no_float(number: str) -> None:
+        raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
+
+    if len(text) > _LETTERS or text.count("[") + text.count("{") > _BRACKETS:
+        raise LimitError(f"it has more than {_LETTERS:,} letters or {_BRACKETS:,} brackets")
     try:
-        return json.loads(text, object_pairs_hook=once)
+        return json.loads(text, object_pairs_hook=once, parse_float=no_float, parse_constant=no_float)
     except (ValueError, RecursionError) as error:
         raise RefusedError(f"not JSON: {error}") from None
 
@@ -120,7 +150,9 @@ def verify(
 ) -> Verified:
     """Check a certificate against the data it speaks about; ``kitchen`` are object node ids.
 
-    Takes time linear in cuts times network. Raises :class:`RefusedError` with the first fault that is found.
+    Takes time linear in cuts times network, and where that is a few seconds more than the digest of the
+    network takes, raises :class:`LimitError`. Raises :class:`RefusedError` with the first fault that is
+    found.
     """
     try:
         _require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
@@ -157,6 +189,9 @@ class _Check:
         rates: Mapping[str, Fraction] | None,
         utensils: frozenset[str],
     ) -> None:
+        self.allowed = _STEPS + _STEPS_EACH * (len(network) + len(network.objects))
+        self.steps = self.allowed  # that are left
+        self.logarithms: dict[Fraction, tuple[Fraction, Fraction]] = {}
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
         self.rates, self.utensils = rates, utensils
         self.containers = certificate["containers"]
@@ -164,12 +199,14 @@ class _Check:
         self.objectives = tuple(_list(certificate["objective"]))
         _require(all(objective in OBJECTIVES for objective in self.objectives), "an objective is unknown")
         _require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
+        self.costly: frozenset[Fraction] = frozenset()  # the rates that cost something
         if "success" in self.objectives:
             _require(rates is not None, "success is claimed, but no rates are given")
             known = rates or {}
             motions = set(network.motions)
             _require(motions <= known.keys(), "a motion has no success rate")
             _require(all(0 <= known[motion] <= 1 for motion in motions), "a rate is not between 0 and 1")
+            self.costly = frozenset(known[motion] for motion in motions) - {0, 1}
         self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
         _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         forbidden = _object(certificate["forbidden"], ("motions", "objects"))
@@ -194,7 +231,7 @@ class _Check:
                 c if objective == "success" else _count(c) for objective, c in self._by_objective("costs")
             ]
             computed = [str(c) if isinstance(c, Fraction) else c for c in costs]
-            _require(stated == computed, f"the tree costs {computed}, not {stated}")
+            _require(stated == computed, f"the tree costs {computed}, not what is stated")
         else:
             _require(self.certificate["costs"] is None, "costs are given, but no tree")
         if claim == "infeasible":
@@ -208,7 +245,7 @@ class _Check:
             _require(bool(self.objectives), "expected objectives")
             bound = self._amount("bound")
             _require(
-                listed is None or self._sign(_sum([amount, _scaled(bound, -1)])) >= 0, "the bound is false"
+                listed is None or self._sign(self._sum([amount, _negative(bound)])) >= 0, "the bound is false"
             )
             amount = bound
         else:
@@ -239,13 +276,15 @@ class _Check:
         _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
         items = {o for unit in units for o in self._needs(unit) if o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
-        total = _sum(map(self._cost, members))
+        total = self._sum(map(self._cost, members))
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
-                rates = self.rates or {}
-                costs.append(math.prod((rates[self.network.motions[u]] for u in units), start=Fraction(1)))
-                _require(costs[-1] > 0, "a tree that never succeeds is no better than another")
+                rates = [(self.rates or {})[self.network.motions[u]] for u in units]
+                _require(0 not in rates, "a tree that never succeeds is no better than another")
+                if sum(rate.denominator.bit_length() for rate in rates) > _WRITTEN:
+                    raise LimitError("the success rate of the tree is too long a number to be written")
+                costs.append(math.prod(rates, start=Fraction(1)))
             else:
                 costs.append(int(total.get((level, None), Fraction(0))))
         return total, costs
@@ -255,13 +294,13 @@ class _Check:
         waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, frozenset(), self.ruled_out)]
         while waiting:
             node, used, without = waiting.pop()
+            self._spend(1 + len(used) + len(without))
             keys = set(_object(node))
             if keys == {"weights"}:
                 _require(claim != "infeasible", "weights do not show that there is no tree")
-                bound = _sum([self._packed(node["weights"], used, without), *map(self._cost, used)])
-                _require(
-                    self._sign(_sum([bound, _scaled(least, -1)])) >= 0, "the weights do not add up to enough"
-                )
+                bound = self._sum([self._packed(node["weights"], used, without), *map(self._cost, used)])
+                enough = self._sign(self._sum([bound, _negative(least)])) >= 0
+                _require(enough, "the weights do not add up to enough")
             elif keys == {"hopeless"}:
                 _require(
                     not self._crossing(node["hopeless"], used, without),
@@ -283,14 +322,14 @@ class _Check:
         for number, stated in _pairs(weights):
             weight = self._read(stated)
             _require(self._sign(weight) > 0, "a weight is not above zero")
-            _add(total, weight)
+            self._add(total, weight)
             for member in self._crossing(number, used, without):
-                _add(loads.setdefault(member, {}), weight)
+                self._add(loads.setdefault(member, {}), weight)
         for member, load in loads.items():
             # a member that is used anyway was paid for, and can carry nothing more
             allowed = {} if member in used else self._cost(member)
             if allowed != load:
-                fits = self._sign(_sum([allowed, _scaled(load, -1)])) >= 0
+                fits = self._sign(self._sum([allowed, _negative(load)])) >= 0
                 _require(fits, f"unit or item {member} carries more than it costs")
         return total
 
@@ -298,6 +337,7 @@ class _Check:
         """Give the members of a cut that are left; the cut has to stand before a goal or a used unit."""
         _require(type(number) is int and 0 <= number < len(self.cuts), "expected the number of a cut")
         place = int(number)
+        self._spend(1 + len(self.goals) + len(used) + len(self.members[place]))
         self.met.add(place)
         cut = self.cuts[place]
         before = any(goal in cut and goal not in self.kitchen for goal in self.goals) or any(
@@ -309,6 +349,7 @@ class _Check:
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
         """Give the units that make a node of the cut and need none, and the kitchen items in it."""
         network = self.network
+        self._spend(sum(1 + len(network.producers[o]) for o in cut))
         for o in cut:
             if o in self.kitchen:
                 _require("kitchen" in self.objectives, "a cut holds a kitchen item")
@@ -408,7 +449,7 @@ class _Check:
         """Give -1, 0 or 1 for an amount below, equal to or above zero; the first objective not 0 decides."""
         for level, objective in enumerate(self.objectives):
             if objective == "success":
-                sign = _minus_log_sign(
+                sign = self._minus_log_sign(
                     {r: e for (at, r), e in amount.items() if at == level and r is not None}
                 )
             else:
@@ -445,70 +486,94 @@ class _Check:
         _require(len(parts) == len(self.objectives), "expected one part of a weight for each objective")
         for level, (objective, part) in enumerate(zip(self.objectives, parts, strict=True)):
             if objective == "success":
-                for rate, exponent in _object(part).items():
-                    _require(0 < _rational(rate) < 1, "expected rates above 0 and below 1 in a weight")
-                    amount[level, _rational(rate)] = _rational(exponent)
+                for name, exponent in _object(part).items():
+                    rate = _rational(name)
+                    _require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
+                    amount[level, rate] = _rational(exponent)
             else:
                 amount[level, None] = _rational(part)
         return amount
 
+    def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> int:
+        """Give the sign of the sum of ``e * -log(rate)``: is the product of ``rate ** e`` below 1, or above?
 
-def _minus_log_sign(exponents: Mapping[Fraction, Fraction]) -> int:
-    """Give the sign of the sum of ``e * -log(rate)``: is the product of ``rate ** e`` below, at or above 1?
+        Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator,
+        the product is below 1 exactly when its power by that denominator is, and that one is a quotient of
+        whole numbers. A rate of 0 costs more than any weight.
+        """
+        if exponents.get(Fraction(0)):
+            return 1 if exponents[Fraction(0)] > 0 else -1
+        exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
+        for size in accumulate(map(_bits, exponents.values())):
+            self._spend_on(4000 + size)  # bounds of logarithms have hundreds of bits themselves
+        bounds = [(e, *self._minus_log(rate)) for rate, e in exponents.items()]
+        if sum(e * (low if e > 0 else high) for e, low, high in bounds) > 0:
+            return 1
+        if sum(e * (high if e > 0 else low) for e, low, high in bounds) < 0:
+            return -1
+        common = math.lcm(*(e.denominator for e in exponents.values()))
+        powers = {rate: int(e * common) for rate, e in exponents.items()}
+        bits = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
+        if bits > _LARGEST:
+            raise LimitError("products of rates are too close to be told apart in reasonable time")
+        self._spend(bits * math.isqrt(bits) // 64)
+        above, below = 1, 1
+        for rate, power in powers.items():
+            over, under = rate.numerator ** abs(power), rate.denominator ** abs(power)
+            above *= over if power > 0 else under
+            below *= under if power > 0 else over
+        return (above < below) - (above > below)
 
-    Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator, the
-    product is below 1 exactly when its power by that denominator is, and that one is a quotient of whole
-    numbers. A rate of 0 costs more than any weight.
-    """
-    if exponents.get(Fraction(0)):
-        return 1 if exponents[Fraction(0)] > 0 else -1
-    exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
-    bounds = [(e, *_minus_log(rate)) for rate, e in exponents.items()]
-    if sum(e * (low if e > 0 else high) for e, low, high in bounds) > 0:
-        return 1
-    if sum(e * (high if e > 0 else low) for e, low, high in bounds) < 0:
-        return -1
-    common = math.lcm(*(e.denominator for e in exponents.values()))
-    powers = {rate: int(e * common) for rate, e in exponents.items()}
-    if sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items()) > _LARGEST:
-        raise TooFineError("products of rates are too close to be told apart in reasonable time")
-    above, below = 1, 1
-    for rate, power in powers.items():
-        over, under = rate.numerator ** abs(power), rate.denominator ** abs(power)
-        above *= over if power > 0 else under
-        below *= under if power > 0 else over
-    return (above < below) - (above > below)
+    def _minus_log(self, rate: Fraction) -> tuple[Fraction, Fraction]:
+        """Give bounds of ``-log(rate)`` from below and above.
+
+        Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
+        Those of the denominator and of the numerator of a rate next to 1 share their first digits, and more
+        are computed (one for three bits).
+        """
+        if rate in self.logarithms:
+            return self.logarithms[rate]
+        shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
+        precise = Context(prec=_DIGITS + min(shared, _NINES))
+        self._spend((precise.prec // 10) ** 3)
+        low = high = Fraction(0)
+        for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
+            logarithm = precise.ln(Decimal(number))
+            unit = Fraction(10) ** (logarithm.adjusted() + 1 - precise.prec) if logarithm else Fraction(0)
+            low += sign * Fraction(logarithm) - unit
+            high += sign * Fraction(logarithm) + unit
+        self.logarithms[rate] = low, high
+        return low, high
+
+    def _add(self, total: Amount, amount: Amount) -> None:
+        for key, value in amount.items():
+            total[key] = total[key] + value if key in total else value
+            self._spend_on(_bits(total[key]))
+
+    def _sum(self, amounts: Iterable[Amount]) -> Amount:
+        total: Amount = {}
+        for amount in amounts:
+            self._add(total, amount)
+        return total
+
+    def _spend_on(self, bits: int) -> None:
+        """Count the steps of an operation on fractions of so many bits, whose time grows with the square."""
+        if bits > _LONG:
+            raise LimitError("its fractions add up to numbers that are too long")
+        self._spend(5 + (bits // 512) ** 2)
+
+    def _spend(self, steps: int) -> None:
+        self.steps -= steps
+        if self.steps < 0:
+            raise LimitError(f"to check it takes more than {self.allowed:,} steps")
 
 
-@lru_cache(maxsize=4096)
-def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
-    """Give bounds of ``-log(rate)`` from below and above.
-
-    Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
-    """
-    low = high = Fraction(0)
-    for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
-        logarithm = _DIGITS.ln(Decimal(number))
-        unit = Fraction(10) ** (logarithm.adjusted() + 1 - _DIGITS.prec) if logarithm else Fraction(0)
-        low += sign * Fraction(logarithm) - unit
-        high += sign * Fraction(logarithm) + unit
-    return low, high
+def _bits(value: Fraction) -> int:
+    return value.numerator.bit_length() + value.denominator.bit_length()
 
 
-def _add(total: Amount, amount: Amount) -> None:
-    for key, value in amount.items():
-        total[key] = total.get(key, Fraction(0)) + value
-
-
-def _sum(amounts: Iterable[Amount]) -> Amount:
-    total: Amount = {}
-    for amount in amounts:
-        _add(total, amount)
-    return total
-
-
-def _scaled(amount: Amount, factor: int) -> Amount:
-    return {key: factor * value for key, value in amount.items()}
+def _negative(amount: Amount) -> Amount:
+    return {key: -value for key, value in amount.items()}
 
 
 def _described(network: Network) -> list[Any]:
@@ -552,6 +617,7 @@ def _names(value: Any) -> tuple[str, ...]:
     names = _list(value)
     _require(all(isinstance(name, str) for name in names), "expected names")
     _require(names == sorted(set(names)), "expected names in order, each of them once")
+    _require(not any(map(_SURROGATE.search, names)), "a name has half of a letter (a surrogate)")
     return tuple(names)
 
 
@@ -589,6 +655,8 @@ def _count(value: Any) -> int:
 
 def _rational(value: Any) -> Fraction:
     _require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
+    if len(value) > _DIGITS_READ:
+        raise LimitError(f"a fraction has more than {_DIGITS_READ:,} digits")
     found = Fraction(value)
     _require(str(found) == value, "expected a fraction in lowest terms")
     return found

@@ -1,6 +1,7 @@
 """Certificates in words: what one that was just written proves, and what one that was verified does."""
 
-import math
+from collections.abc import Mapping
+from decimal import Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -35,11 +36,7 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
 def bound_text(content: dict[str, Any]) -> str:
     """Say what the bound of a certificate is by its first objective, and how far the tree is from it."""
     objective, bound = content["objective"][0], content["bound"][0]
-    text = (
-        f"success at most {_success(bound):.4g}"
-        if objective == "success"
-        else f"{objective} at least {bound}"
-    )
+    text = f"success at most {_success(bound)}" if objective == "success" else f"{objective} at least {bound}"
     if content["costs"] is not None:
         cost = content["costs"][0]
         text += f"; the tree has {cost}"
@@ -48,8 +45,16 @@ def bound_text(content: dict[str, Any]) -> str:
     return text
 
 
-def _success(exponents: dict[str, str]) -> float:
-    return math.exp(sum(float(Fraction(e)) * math.log(Fraction(rate)) for rate, e in exponents.items()))
+def _success(exponents: Mapping[str, str]) -> str:
+    """Give a product of powers of rates in a few digits; a bound above 1 says no more than 1."""
+    precise = Context(prec=50, traps=[])
+    logarithm = Decimal(0)
+    for name, e in exponents.items():
+        rate, exponent = Fraction(name), Fraction(e)
+        log = precise.ln(Decimal(rate.numerator)) - precise.ln(Decimal(rate.denominator))
+        power = precise.divide(Decimal(exponent.numerator), Decimal(exponent.denominator))
+        logarithm = precise.add(logarithm, precise.multiply(power, log))
+    return f"{float(precise.exp(min(logarithm, Decimal(0)))):.4g}"
 
 
 def verified_text(verified: Verified, network: Network, content: dict[str, Any]) -> str:
