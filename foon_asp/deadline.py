@@ -14,6 +14,11 @@ from foon_asp.errors import UserError
 
 _STATM = Path("/proc/self/statm")
 _PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+_ADVICE = {
+    "reading": "give it more, or make a store of the network once: foon-asp import",
+    "grounding": "rules that were added may have no end, as in p(f(X)) :- p(X), or too many instances: "
+    "look at them, or give it more",
+}
 _LATE = 0.5  # seconds
 _LOOKS = 0.02  # seconds between two looks at the memory
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
@@ -23,7 +28,12 @@ class LimitError(KeyboardInterrupt):
     """A limit was reached, or ctrl-C pressed, where there is nothing to give yet.
 
     What holds at ctrl-C holds at a limit: so it is one, and no handler of other errors takes it for a fault.
+    ``stopped`` says at what and while doing what, ``advice`` what to do.
     """
+
+    def __init__(self, deadline: "Deadline") -> None:
+        super().__init__(deadline.stopped)
+        self.stopped, self.advice = deadline.stopped or "a limit", deadline.advice
 
 
 class Deadline:
@@ -92,10 +102,15 @@ class Deadline:
         """At what it was stopped, and while doing what, in words; ``None`` before."""
         return None if self._by is None else f"{self._by} while {self.doing}"
 
+    @property
+    def advice(self) -> str:
+        """What to do about it, in words."""
+        return _ADVICE.get(self.doing, "give it more")
+
     def check(self) -> None:
         """Raise :class:`LimitError` where it is time to stop."""
         if self.passed:
-            raise LimitError(self.stopped)
+            raise LimitError(self)
 
     def slice(self, longest: float = 0.2) -> float:
         """Give how long to wait before looking again."""
@@ -161,7 +176,7 @@ class Watch:
         except KeyboardInterrupt:
             came = True
         if self._fired:
-            raise LimitError(self._deadline.stopped) from None
+            raise LimitError(self._deadline) from None
         if came:
             self._deadline.interrupt()
             if kind is None:

@@ -45,7 +45,8 @@ class Outcome(NamedTuple):
     ``certified`` are the objectives, from the first on, for which a certificate proves the tree best.
     ``left`` counts the units that the search had to choose from, 0 where nothing was left to search.
     ``cuts`` are the sets of object nodes whose landmarks the reductions bounded costs with; see
-    :mod:`foon_asp.bounds`.
+    :mod:`foon_asp.bounds`. ``stopped`` says at which limit an answer that is not proved was stopped, and
+    while doing what, in words.
     """
 
     problem: Problem
@@ -60,3 +61,4 @@ class Outcome(NamedTuple):
     certified: tuple[Objective, ...] = ()
     left: int = 0
     cuts: tuple[tuple[int, ...], ...] = ()
+    stopped: str | None = None

@@ -7,7 +7,6 @@ from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
 from foon_asp.asp.program import Settings, assemble
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter
-from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, reach, relevant
@@ -21,7 +20,8 @@ class Ranked:
 
     A tree that holds all the units of one before it, and others to spare, is not among them. Iterate to get
     each tree as unit ids in an executable order, with its costs. ``complete`` says afterwards that there are
-    no others; it is false where the time limit came first. Raises :class:`UserError` like
+    no others; it is false where a limit came first, or ctrl-C. Then ``known`` has, in order, the trees that
+    were found beyond those given, and before which others may come. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
     """
 
@@ -35,15 +35,23 @@ class Ranked:
         self.problem = problem
         self.levels = levels(tuple(objectives))
         self.complete = False
-        self._deadline = Deadline(settings.time_limit)
+        self.known: list[tuple[tuple[int, ...], Costs]] = []
+        self._deadline = settings.begun
         self._program = assemble(settings, (reporter or Reporter()).warning)
         self._scale: RateScale | None = None
         if Objective.SUCCESS in self.levels and problem.rates is None:
             raise UserError(
                 "the objective success needs the success rates of the motions; give a rates file with --rates"
             )
-        reached = reach(problem)
         self._units: tuple[int, ...] = ()
+        try:
+            with self._deadline.watched("cutting the network"):
+                self._cut(problem)
+        except KeyboardInterrupt:
+            self._deadline.interrupt()  # unless it was a limit
+
+    def _cut(self, problem: Problem) -> None:
+        reached = reach(problem)
         if all(reached.available[goal] for goal in problem.goals):
             own = self._program.own
             self._units = relevant(problem, reached) if own else tuple(sorted(reached.units))
@@ -66,13 +74,17 @@ class Ranked:
         number = 0
         while True:
             ended = self._next(avoided)
-            if not ended.exhausted:
-                return
-            if ended.units is None:
+            if ended.units is None and ended.exhausted:
                 break
-            units = self._in_order(ended.units)
+            units = () if ended.units is None else self._in_order(ended.units)
             costs = self.problem.costs(units)
             rounded = self._rounded(units, costs)
+            if not ended.exhausted:
+                if ended.units is not None:
+                    found.append((costs, rounded, units))
+                found.sort(key=lambda each: (each[0].key(self.levels), sorted(each[2])))
+                self.known = [(tree, its) for its, _, tree in found]
+                return
             while found and self._is_settled(found[0], rounded):
                 yield found[0][2], found[0][0]
                 del found[0]
@@ -88,13 +100,21 @@ class Ranked:
     def _next(self, avoided: str) -> Run:
         if self._deadline.passed:
             return Run()
-        facts = write_facts(self.problem, self._units, self._scale, with_sources=not self._program.own)
+        try:
+            with self._deadline.watched("writing facts"):
+                facts = write_facts(
+                    self.problem, self._units, self._scale, with_sources=not self._program.own
+                )
+        except KeyboardInterrupt:
+            self._deadline.interrupt()  # unless it was a limit
+            return Run()
         files = (*self._program.files, encodings_folder() / "questions" / "other_trees.lp")
         return run(
             files,
             facts + self._program.rules + write_objectives(self.levels) + avoided,
             self._program.arguments,
             self._deadline,
+            endless=self._program.endless,
         )
 
     def _in_order(self, numbers: frozenset[int]) -> tuple[int, ...]:

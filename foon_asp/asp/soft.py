@@ -1,6 +1,5 @@
 """Soft constraints: the least penalty first, then the best tree among those that have it."""
 
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -11,9 +10,10 @@ from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.program import Settings, assemble, find_constraint
 from foon_asp.asp.search import run
-from foon_asp.asp.solver import Reporter, solve
+from foon_asp.asp.solver import Reporter, checked_order, solve
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
+from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective, Problem, reach
 
 GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
@@ -57,61 +57,69 @@ def solve_soft(
     both = set(map(find_constraint, settings.constraints)) & set(map(find_constraint, weights))
     if both:
         raise UserError(f"{min(both)} is named as a constraint and as a soft one; leave one of them out")
-    began = time.monotonic()
-    deadline = Deadline(settings.time_limit)
+    settings = settings.limited()
+    deadline = settings.begun
     constraints, relaxed = relax(tuple(weights), settings.constants, soft=True)
     of_file = {find_constraint(path): weight for path, weight in weights.items()}
     by_number = {c.number: of_file[c.file] for c in constraints}
     rules = write_soft(by_number)
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, reporter.warning)
-    reached = reach(problem)
-    units = tuple(sorted(reached.units))
-    scale = None if problem.rates is None else problem_scale(problem, units)
-    facts = write_facts(problem, units, scale, with_sources=True) + program.rules + rules
-
-    def tell(units: tuple[int, ...] | None, outcome: Outcome) -> SoftOutcome:
-        if units is None:
-            return SoftOutcome(outcome, None, ())
-        given = run(
-            program.files,
-            facts + write_tree(units),
-            program.arguments,
-            Deadline(None),
-            "ignore",
-            None,
-            None,
-            ("_broken",),
-        )
-        if given.units != frozenset(units):
-            raise BugError("the tree found is none when its soft constraints are looked at")
-        ways = given.atoms["_broken"]
-        found = tuple(Broken(c, by_number[c.number], ways[c.number]) for c in constraints)
-        return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
-
     spent: dict[str, float] = {}
     least: int | None = None
     proved = True
-    if all(reached.available[goal] for goal in problem.goals):
-        ended = run(
-            program.files,
-            facts + "optimize(_soft,1).\n",
-            program.arguments,
-            deadline,
-            predicates=("_broken",),
+    ended = Run()
+    try:
+        facts = _all_facts(problem, deadline)
+    except KeyboardInterrupt:
+        deadline.interrupt()  # unless it was a limit, which ends what follows before it begins
+        facts = ""
+
+    all_said = (facts or "") + program.rules + rules
+
+    def ask(more: str, opt_mode: str) -> Run:
+        files, arguments, broken = program.files, program.arguments, ("_broken",)
+        return run(
+            files, all_said + more, arguments, deadline, opt_mode, predicates=broken, endless=program.endless
         )
+
+    def told(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
+        found = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
+        return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
+
+    if facts is not None:
+        ended = ask("optimize(_soft,1).\n", "opt")
         proved = ended.exhausted
         spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
             least = sum(by_number[number] * ways for number, ways in ended.atoms["_broken"].items())
     bound = "" if least is None else write_greatest_penalty(least)
-    limit = settings.time_limit
-    left = None if limit is None else max(0.0, limit - (time.monotonic() - began))
-    hard = settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + rules + bound), time_limit=left)
+    hard = settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + rules + bound))
     outcome = solve(problem, objectives, hard, Reporter())
     if least is not None and outcome.status is Status.INFEASIBLE:
         raise BugError("the least penalty was lost")
     if not proved and outcome.status is Status.OPTIMAL:
         outcome = outcome._replace(status=Status.FEASIBLE, proof=None, bounds={})
     outcome.seconds.update(spent)
-    return tell(outcome.units, outcome)
+    if outcome.units is not None:
+        given = ask(write_tree(outcome.units), "ignore")
+        if given.units == frozenset(outcome.units):
+            return told(outcome, given.atoms["_broken"])
+        if given.units is not None or given.exhausted:
+            raise BugError("the tree found is none when its soft constraints are looked at")
+    if ended.units is not None:  # stopped: what is known of a tree by then
+        tree = checked_order(problem, ended.units, program.own)
+        known = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
+        return told(known, ended.atoms["_broken"])
+    return SoftOutcome(outcome, None, ())
+
+
+def _all_facts(problem: Problem, deadline: Deadline) -> str | None:
+    """Write the facts about all that can be made; ``None`` where the goals cannot."""
+    with deadline.watched("cutting the network"):
+        reached = reach(problem)
+        if not all(reached.available[goal] for goal in problem.goals):
+            return None
+        units = tuple(sorted(reached.units))
+        scale = None if problem.rates is None else problem_scale(problem, units)
+        return write_facts(problem, units, scale, with_sources=True)

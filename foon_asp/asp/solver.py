@@ -2,7 +2,7 @@
 
 import itertools
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -461,6 +461,7 @@ class _Solver:
         if status is Status.OPTIMAL and self.reduced and self.reduced.settled:
             proof = Proof.CUTS
         left = 0 if proof is Proof.CUTS else len(self.units)
+        stopped = self.deadline.stopped if proof is None else None
         if units is None:
             return Outcome(
                 self.problem,
@@ -472,22 +473,11 @@ class _Solver:
                 self.seconds,
                 self.settings.encodings,
                 proof,
+                stopped=stopped,
             )
         began = time.perf_counter()
         problem = self.problem
-        order = executable_order(problem, units)
-        listed = tuple(sorted(units)) if order is None else order
-        simulation = simulate_for(problem, problem.tree(listed))
-        if simulation.verdict is not Verdict.AS_LISTED:
-            message = f"the tree found {simulation.verdict}"
-            if simulation.obstacle and simulation.obstacle.unit is not None:
-                unit = problem.network.unit(listed[simulation.obstacle.unit])
-                message += f" (the unit {unit.motion!r} lacks {simulation.obstacle.missing})"
-            elif simulation.obstacle:
-                message += f" (nothing in it makes {simulation.obstacle.missing})"
-            if self.program.own:
-                raise BugError(message)
-            raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
+        listed = checked_order(problem, units, self.program.own)
         self._spent("check", began)
         costs = self._costs(units)
         cuts = self.reduced.cuts.cuts if self.reduced and self.reduced.cuts else ()
@@ -503,10 +493,32 @@ class _Solver:
             proof,
             left=left,
             cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
+            stopped=stopped,
         )
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
+
+
+def checked_order(problem: Problem, units: Collection[int], own: bool) -> tuple[int, ...]:
+    """Put the units of a tree in an order that executes, and hold it against the simulation.
+
+    Raises :class:`UserError` where it does not execute, and :class:`BugError` with rules of ours alone.
+    """
+    order = executable_order(problem, units)
+    listed = tuple(sorted(units)) if order is None else order
+    simulation = simulate_for(problem, problem.tree(listed))
+    if simulation.verdict is Verdict.AS_LISTED:
+        return listed
+    message = f"the tree found {simulation.verdict}"
+    if simulation.obstacle and simulation.obstacle.unit is not None:
+        unit = problem.network.unit(listed[simulation.obstacle.unit])
+        message += f" (the unit {unit.motion!r} lacks {simulation.obstacle.missing})"
+    elif simulation.obstacle:
+        message += f" (nothing in it makes {simulation.obstacle.missing})"
+    if own:
+        raise BugError(message)
+    raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
 
 
 class _Heard(Listener):

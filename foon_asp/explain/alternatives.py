@@ -9,7 +9,6 @@ from foon_asp.asp.facts import write_distances
 from foon_asp.asp.program import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.search import run
-from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.resources import encodings_folder
@@ -25,7 +24,8 @@ class Tree(NamedTuple):
 class Alternatives(NamedTuple):
     """Trees in order of their costs, the optimal ones first; none holds another.
 
-    ``complete`` says that no tree that was asked for is left out: where it is false, a limit came first.
+    ``complete`` says that no tree that was asked for is left out: where it is false, a limit came first, and
+    before each of the last ``unproved`` trees others may come that were not found.
     ``wanted`` is how many trees were asked for, ``None`` where it was all that are optimal.
     """
 
@@ -34,10 +34,13 @@ class Alternatives(NamedTuple):
     trees: tuple[Tree, ...]
     complete: bool
     wanted: int | None = None
+    unproved: int = 0
 
     @property
     def optimal(self) -> tuple[Tree, ...]:
-        """The trees that are as good as the first."""
+        """The trees that are proved optimal: those as good as the first, if that one is."""
+        if len(self.trees) == self.unproved:
+            return ()
         order = levels(self.objectives)
         return tuple(t for t in self.trees if t.costs.key(order) == self.trees[0].costs.key(order))
 
@@ -88,8 +91,10 @@ def most_different(
 
     ``worse`` is that part: 1/10 allows 11 units where 10 are best, and a success of 0.9 times the best. The
     two chosen trees that are most alike differ as much as can be (in how many units only one of them has).
-    At most ``most`` trees are looked at; ``complete`` says that these were all.
+    At most ``most`` trees are looked at; ``complete`` says that these were all, and that no choice among them
+    is better.
     """
+    settings = settings.limited()
     pool = _ranked(problem, objectives, settings, most, worse, reporter)._replace(wanted=count)
     if len(pool.trees) <= count:
         return pool
@@ -97,12 +102,27 @@ def most_different(
         (encodings_folder() / "questions" / "most_different.lp",),
         write_distances([tree.units for tree in pool.trees], count),
         CLINGO_OPTIONS,
-        Deadline(None),
+        settings.begun,
         predicates=("_chosen",),
     )
-    if not ended.exhausted or not ended.atoms:
+    if ended.exhausted and not ended.atoms:
         raise BugError("no trees could be chosen")
-    return pool._replace(trees=tuple(pool.trees[number] for number in sorted(ended.atoms["_chosen"])))
+    chosen = sorted(ended.atoms["_chosen"]) if ended.atoms else _far_apart(pool.trees, count)
+    return pool._replace(
+        trees=tuple(pool.trees[number] for number in chosen),
+        complete=pool.complete and ended.exhausted,
+        unproved=sum(number >= len(pool.trees) - pool.unproved for number in chosen),
+    )
+
+
+def _far_apart(trees: Sequence[Tree], count: int) -> list[int]:
+    """Choose so many trees, one after the other, each as far from those before it as can be."""
+    units = [frozenset(tree.units) for tree in trees]
+    chosen = [0]
+    while len(chosen) < count:
+        left = (number for number in range(len(trees)) if number not in chosen)
+        chosen.append(max(left, key=lambda n: min(len(units[n] ^ units[other]) for other in chosen)))
+    return sorted(chosen)
 
 
 def _ranked(
@@ -131,7 +151,15 @@ def _ranked(
         trees.append(Tree(units, costs))
     else:
         complete = ranked.complete
-    return Alternatives(problem, tuple(objectives), tuple(trees), complete)
+    settled = len(trees)
+    for units, costs in ranked.known:
+        dear = trees and worse is not None and _is_too_dear(costs, trees[0].costs, order, worse)
+        if not dear and len(trees) < most:
+            trees.append(Tree(units, costs))
+    unproved = len(trees) - settled
+    if settled and worse == 0:  # what is as good as an optimal tree is optimal
+        unproved = 0
+    return Alternatives(problem, tuple(objectives), tuple(trees), complete, unproved=unproved)
 
 
 def _is_too_dear(costs: Costs, best: Costs, order: tuple[Objective, ...], worse: Fraction) -> bool:

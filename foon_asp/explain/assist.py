@@ -1,6 +1,5 @@
 """With a person's help: the best success when a person does up to so many of the units."""
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -109,9 +108,8 @@ class _Assistant:
         reporter: Reporter,
     ) -> None:
         self._problem, self._person = problem, person
-        self._settings, self._reporter = settings, reporter
+        self._settings, self._reporter = settings.limited(), reporter
         self._first = True
-        self._end = None if settings.time_limit is None else time.monotonic() + settings.time_limit
         self._better: dict[str, Fraction] = {}
         for motion, robot in (problem.rates or {}).items():
             rate = Fraction(1) if person is None else person.get(motion, Fraction(0))
@@ -217,7 +215,7 @@ class _Assistant:
         others = self._settings.bounded
         if others is not None:
             bounded = Bounded(others.rules + bounded.rules, (*others.files, *bounded.files))
-        return solve(self._twins, _SUCCESS, self._left._replace(bounded=bounded), self._heard())
+        return solve(self._twins, _SUCCESS, self._settings._replace(bounded=bounded), self._heard())
 
     @cached_property
     def _originals(self) -> list[int]:
@@ -232,16 +230,10 @@ class _Assistant:
         return unit if unit < here else self._originals[unit - here]
 
     def _unbounded(self, problem: Problem) -> Outcome:
-        return solve(problem, _SUCCESS, self._left, self._heard())
+        return solve(problem, _SUCCESS, self._settings, self._heard())
 
     def _ranked(self, problem: Problem) -> Ranked:
-        return Ranked(problem, _SUCCESS, self._left, self._heard())
-
-    @property
-    def _left(self) -> Settings:
-        """The settings, with the time that is left."""
-        seconds = None if self._end is None else max(0.0, self._end - time.monotonic())
-        return self._settings._replace(time_limit=seconds)
+        return Ranked(problem, _SUCCESS, self._settings, self._heard())
 
     def _heard(self) -> Reporter:
         """Give the reporter to the first search: what it warns of all do, and others ask another thing."""

@@ -1,6 +1,5 @@
 """Which constraints cannot hold together, and which to drop."""
 
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -11,7 +10,6 @@ from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.program import CLINGO_OPTIONS, assemble, find_constraint
 from foon_asp.asp.search import run
-from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem, reach
 from foon_asp.resources import encodings_folder
@@ -25,7 +23,8 @@ class Clash(NamedTuple):
     constraints, that cannot hold together; ``proved`` that it is one. ``dropped`` is the cheapest set to drop
     so that the others leave a tree, by ``weights``, and ``outcome`` the best tree without them. Where the
     constraints do leave a tree both sets are empty, and ``outcome`` is the answer. ``complete`` is false when
-    a limit came before any of this was known.
+    a limit came before any of this was known; ``dropped`` is then a set that leaves a tree, if one was found,
+    but there may be a cheaper one, or no need of any.
     """
 
     problem: Problem
@@ -56,8 +55,8 @@ def find_clash(
     until it is a clash itself.
     """
     reporter = reporter or Reporter()
-    began = time.monotonic()
-    deadline = Deadline(settings.time_limit)
+    settings = settings.limited()
+    deadline = settings.begun
     constraints, relaxed = relax(settings.constraints, settings.constants, soft=False)
     by_number = {constraint.number: constraint for constraint in constraints}
     of_file = {find_constraint(path): weight for path, weight in (file_weights or {}).items()}
@@ -66,8 +65,7 @@ def find_clash(
     program = assemble(settings, reporter.warning)
     blame = (encodings_folder() / "questions" / "blame.lp",)
 
-    reached = reach(problem)
-    makeable = all(reached.available[goal] for goal in problem.goals)
+    makeable = True
 
     def answer(
         tree_exists: bool = True,
@@ -91,17 +89,31 @@ def find_clash(
             complete,
         )
 
+    try:
+        with deadline.watched("cutting the network"):
+            reached = reach(problem)
+            makeable = all(reached.available[goal] for goal in problem.goals)
+            units = tuple(sorted(reached.units))
+            scale = None if problem.rates is None else problem_scale(problem, units)
+            facts = write_facts(problem, units, scale, with_sources=True) + relaxed.rules
+    except KeyboardInterrupt:
+        deadline.interrupt()  # unless it was a limit
+        return answer(complete=False)
     if not makeable:
         return answer(tree_exists=False)
-    units = tuple(sorted(reached.units))
-    scale = None if problem.rates is None else problem_scale(problem, units)
-    facts = write_facts(problem, units, scale, with_sources=True) + relaxed.rules
     dropping = "optimize(_dropping,1).\n"
     corrections: list[tuple[int, ...]] = []
     blamed: tuple[int, ...] = ()
     while True:
         question = facts + dropping + write_constraints(weights, blamed)
-        ended = run(program.files, question, program.arguments, deadline, predicates=("_dropped",))
+        ended = run(
+            program.files,
+            question,
+            program.arguments,
+            deadline,
+            predicates=("_dropped",),
+            endless=program.endless,
+        )
         if ended.units is None or not ended.exhausted:
             break
         corrections.append(tuple(sorted(ended.atoms["_dropped"])))
@@ -110,18 +122,18 @@ def find_clash(
         hit = write_constraints(weights, ()) + write_corrections(corrections)
         hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=("_blamed",))
         if hitting.units is None or not hitting.exhausted:
-            return answer(complete=False)
+            break
         blamed = tuple(sorted(hitting.atoms["_blamed"]))
     clashes = ended.units is None and ended.exhausted
     if not corrections:
-        return answer(tree_exists=not clashes, complete=clashes)
+        some = ended.atoms["_dropped"] if ended.atoms else ()  # enough to drop, but perhaps not the cheapest
+        return answer(tree_exists=not clashes, dropped=sorted(some), complete=clashes)
     dropped = corrections[0]
     kept = write_constraints(weights, set(weights).difference(dropped))
-    left = None if settings.time_limit is None else max(0.0, settings.time_limit - (time.monotonic() - began))
     outcome = solve(
         problem,
         objectives,
-        settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + kept), time_limit=left),
+        settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + kept)),
         Reporter(),
     )
     if outcome.status is Status.INFEASIBLE:

@@ -44,9 +44,9 @@ def menu(
 ) -> Menu:
     """Solve a question with several goals at once, and goal by goal.
 
-    The time limit is for each answer. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    The time limit is for all of it. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
-    settings = settings or Settings()
+    settings = (settings or Settings()).limited()
     together = solve(problem, objectives, settings, reporter)
     separate = tuple(
         solve(replace(problem, goals=(goal,)), objectives, settings, Reporter()) for goal in problem.goals

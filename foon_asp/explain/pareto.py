@@ -61,7 +61,7 @@ def pareto_front(
             f"found {len(asked)} objective{'s' * (len(asked) != 1)}, "
             f"expected {_FEWEST} or {_MOST} to trade against each other"
         )
-    settings, reporter = settings or Settings(), reporter or Reporter()
+    settings, reporter = (settings or Settings()).limited(), reporter or Reporter()
     later = _Silent(reporter)
     leading = Objective.SUCCESS if Objective.SUCCESS in asked else asked[0]
     others = tuple(objective for objective in asked if objective is not leading)
@@ -70,12 +70,10 @@ def pareto_front(
     complete = False
     try:
         while not complete:
-            spent = time.monotonic() - began
-            limit = settings.time_limit
-            now = settings._replace(time_limit=None if limit is None else max(0.0, limit - spent))
+            now = settings
             if found:
                 known = _nearest([tree.costs for tree in found], others)
-                now = now._replace(bounded=better_than(known, others))
+                now = settings._replace(bounded=better_than(known, others))
             outcome = solve(problem, (leading, *others), now, later if found else reporter)
             if outcome.status is Status.OPTIMAL and outcome.units is not None and outcome.costs is not None:
                 if any(outcome.costs.key(asked) == tree.costs.key(asked) for tree in found):

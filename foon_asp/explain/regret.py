@@ -61,10 +61,10 @@ def regrets(
 ) -> Regrets:
     """Solve a question, and again without each unit of the tree, each of ``units``, and each item it takes.
 
-    ``units`` are ids. The time limit is for each answer. Raises :class:`UserError` like
+    ``units`` are ids. The time limit is for all of it. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
     """
-    settings, reporter = settings or Settings(), reporter or Reporter()
+    settings, reporter = (settings or Settings()).limited(), reporter or Reporter()
     outcome = solve(problem, objectives, settings, reporter)
     if outcome.units is None or outcome.status is not Status.OPTIMAL:
         return Regrets(outcome, ())

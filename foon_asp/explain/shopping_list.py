@@ -1,7 +1,6 @@
 """What it would take: the cheapest things to add to the kitchen so that there is a tree."""
 
 import math
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
@@ -80,23 +79,30 @@ def shopping_list(
     results is the best by ``objectives``. Constraints hold for it. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
     """
-    settings, reporter = settings or Settings(), reporter or Reporter()
-    began = time.monotonic()
-    shop = Shop(problem)
-    deadline = Deadline(settings.time_limit)
+    settings, reporter = (settings or Settings()).limited(), reporter or Reporter()
+    deadline = settings.begun
     program = assemble(settings, reporter.warning)
-    offers = _offers(problem, shop, prices)
     lists: list[ShoppingList] = []
     complete = True
-    while not lists and complete and (following := next(offers, None)) is not None:
-        offer, wares = following
-        lists, complete = _lists(problem, shop, wares, program, deadline, most)
+    offer = Offer.FOR_SALE if prices is None else Offer.PRICED
+    try:
+        with deadline.watched("looking for what is for sale"):
+            shop = Shop(problem)
+            offers = _offers(problem, shop, prices)
+        while not lists and complete:
+            with deadline.watched("looking for what is for sale"):
+                following = next(offers, None)
+            if following is None:
+                break
+            offer, wares = following
+            lists, complete = _lists(problem, shop, wares, program, deadline, most)
+    except KeyboardInterrupt:
+        deadline.interrupt()  # unless it was a limit
+        complete = False
     outcome = None
     if lists:
         stocked = replace(problem, kitchen=problem.kitchen.union(lists[0].items))
-        limit = settings.time_limit
-        left = None if limit is None else max(0.0, limit - (time.monotonic() - began))
-        outcome = solve(stocked, objectives, settings._replace(time_limit=left), reporter)
+        outcome = solve(stocked, objectives, settings, reporter)
         if outcome.status is Status.INFEASIBLE:
             raise BugError("the shopping list does not make a tree possible")
     return Shopping(problem, offer, tuple(lists), complete, outcome, prices)
@@ -150,25 +156,26 @@ def _lists(
     most: int,
 ) -> tuple[list[ShoppingList], bool]:
     """Find the cheapest lists from some wares, one run each; say whether there are no others."""
-    stocked = replace(problem, kitchen=problem.kitchen.union(wares))
-    reached = reach(stocked)
-    if not all(reached.available[goal] for goal in problem.goals):
-        return [], True
-    # backwards with the kitchen as it is: what is for sale may also be made
-    units = relevant(problem, reached) if program.own else tuple(sorted(reached.units))
-    met = {*problem.goals, *(o for unit in units for o in problem.needs[unit])}
-    scale = math.lcm(*(price.denominator for price in wares.values()))
-    rates = None if problem.rates is None or program.own else problem_scale(problem, units)
-    sold = {o: price for o, price in wares.items() if o in met}
-    if any(price * scale >= 2**31 for price in sold.values()):
-        raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
-    facts = write_facts(problem, units, rates, with_sources=not program.own) + write_for_sale(
-        {o: int(price * scale) for o, price in sold.items()}, filter(shop.is_second_choice, sold)
-    )
+    with deadline.watched("cutting the network"):
+        stocked = replace(problem, kitchen=problem.kitchen.union(wares))
+        reached = reach(stocked)
+        if not all(reached.available[goal] for goal in problem.goals):
+            return [], True
+        # backwards with the kitchen as it is: what is for sale may also be made
+        units = relevant(problem, reached) if program.own else tuple(sorted(reached.units))
+        met = {*problem.goals, *(o for unit in units for o in problem.needs[unit])}
+        scale = math.lcm(*(price.denominator for price in wares.values()))
+        rates = None if problem.rates is None or program.own else problem_scale(problem, units)
+        sold = {o: price for o, price in wares.items() if o in met}
+        if any(price * scale >= 2**31 for price in sold.values()):
+            raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
+        facts = write_facts(problem, units, rates, with_sources=not program.own) + write_for_sale(
+            {o: int(price * scale) for o, price in sold.items()}, filter(shop.is_second_choice, sold)
+        )
     files = (*program.files, encodings_folder() / "questions" / "shopping_list.lp")
     lists: list[ShoppingList] = []
     while len(lists) < most:
-        ended = run(files, facts, program.arguments, deadline, predicates=("_buy",))
+        ended = run(files, facts, program.arguments, deadline, predicates=("_buy",), endless=program.endless)
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((wares[o] for o in items), Fraction(0))

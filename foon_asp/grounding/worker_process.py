@@ -129,7 +129,7 @@ class _Worker:
             self.end()
             if isinstance(error, KeyboardInterrupt) and not isinstance(error, LimitError):
                 deadline.interrupt()
-                raise LimitError(deadline.stopped) from None
+                raise LimitError(deadline) from None
             raise
         finally:
             deadline.uncount(self._process.pid)
@@ -161,7 +161,7 @@ class _Worker:
         code = self._process.wait()
         if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
             deadline.out_of_memory()
-            raise LimitError(deadline.stopped)
+            raise LimitError(deadline)
         if not self._answered:
             raise UserError(
                 f"{sys.executable} does not start as another process (it ended with {code}), "

@@ -29,6 +29,8 @@ def _trees_text(found: Alternatives, wanted: int) -> str:
         lines.append(f"there are {counted(len(found.trees), 'tree')} and no more ({rule})")
     elif not found.complete:
         lines.append(f"{counted(len(found.trees), 'tree')} of those found before a limit ({rule})")
+        if found.unproved:
+            lines.append(f"before the last {found.unproved} of them others may come")
     else:
         lines.append(f"{counted(len(found.trees), 'tree')} ({rule})")
     lines += _trees(found)
@@ -46,6 +48,7 @@ def alternatives_json(found: Alternatives) -> str:
                 "level": network.level,
                 "objective": [str(objective) for objective in found.objectives],
                 "complete": found.complete,
+                "unproved": found.unproved,
                 "optimal": len(found.optimal),
                 "in_every_optimal": sorted(map(network.unit_number, found.in_every)),
                 "in_some_optimal": sorted(map(network.unit_number, found.in_some)),
@@ -71,13 +74,15 @@ def _optimal_lines(found: Alternatives) -> Iterator[str]:
         return
     costs = costs_text(found.trees[0].costs)
     number = len(found.trees)
-    if not found.complete:
+    if number == found.unproved:
+        yield f"feasible, not proved best by {best} ({rule}; stopped at a limit): {costs}"
+    elif not found.complete:
         yield f"at least {counted(number, 'optimal tree')} by {best} ({rule}; stopped at a limit): {costs}"
     elif number == 1:
         yield f"the optimal tree by {best} is the only one: proved ({rule}): {costs}"
     else:
         yield f"{number} optimal trees by {best}, and no others: proved ({rule}): {costs}"
-    if number > 1:
+    if number > 1 and found.optimal:
         yield f"in every one{' found' * (not found.complete)}: {counted(len(found.in_every), 'unit')}"
         yield from unit_lines(found.problem.network, found.in_every)
     yield from _trees(found)

@@ -80,6 +80,7 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
         "objective": [str(objective) for objective in outcome.objectives],
         "encodings": None if outcome.encodings is None else str(outcome.encodings),
         "status": str(outcome.status),
+        "stopped": outcome.stopped,
         "proof": None if outcome.proof is None else str(outcome.proof),
         "proof_by_objective": {
             str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else outcome.proof)
@@ -151,7 +152,7 @@ def headline(outcome: Outcome) -> str:
     if outcome.costs is None:
         if outcome.status is Status.INFEASIBLE:
             return f"infeasible: proved that no task tree exists ({rule})"
-        return f"unknown: stopped at a limit before any task tree was found ({rule})"
+        return f"unknown: stopped at {outcome.stopped or 'a limit'}, before any task tree was found ({rule})"
     if outcome.encodings is not None:
         rule += f", as {outcome.encodings} has it"
     claim = "optimal" if outcome.status is Status.OPTIMAL else "feasible, not proved best"

@@ -27,6 +27,10 @@ def clash_lines(clash: Clash) -> Iterator[str]:
         return
     if not clash.complete:
         yield f"unknown: stopped at a limit before it was known whether the constraints clash ({rule})"
+        if clash.dropped:
+            yield "without these there is a task tree; a cheaper set may do, or nothing need be dropped"
+            for constraint in clash.dropped:
+                yield from _constraint_lines(constraint)
         return
     number = counted(len(clash.constraints), "constraint")
     if not clash.constraints:
