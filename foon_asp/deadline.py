@@ -37,15 +37,20 @@ class LimitError(KeyboardInterrupt):
 
 
 class Deadline:
-    """When to stop, shared by all that is done for one question, and at what it was when it stopped.
+    """When to stop, shared by all that is done for one question, and at what it stopped.
 
     ``seconds`` count from the beginning, ``memory`` is in bytes; ``None`` is never. The memory is that of
-    this process together with those that work for it. ``doing`` says what is being done, as it follows on
+    this process together with those that work for it. It is over at the latest ``within`` another one, and
+    ctrl-C ends both. ``doing`` says what is being done, as it follows on
     "while". Raises :class:`UserError` for a memory limit where the system does not tell how much is in use.
     """
 
     def __init__(
-        self, seconds: float | None = None, memory: int | None = None, began: float | None = None
+        self,
+        seconds: float | None = None,
+        memory: int | None = None,
+        began: float | None = None,
+        within: "Deadline | None" = None,
     ) -> None:
         if memory is not None and not _STATM.exists():
             raise UserError(
@@ -54,8 +59,14 @@ class Deadline:
             )
         self.seconds, self.memory = seconds, memory
         self.doing = "reading"
-        self._time_words = "" if seconds is None else f"the time limit of {seconds:g} s"
         self._end = None if seconds is None else (time.monotonic() if began is None else began) + seconds
+        self._within = within
+        if within is not None:
+            if within._end is not None and (self._end is None or within._end < self._end):
+                self.seconds, self._end = within.seconds, within._end
+            if within.memory is not None and (memory is None or within.memory < memory):
+                self.memory = within.memory
+        self._time_words = "" if self.seconds is None else f"the time limit of {self.seconds:g} s"
         self._workers: set[int] = set()
         self._looked = 0.0
         self._by: str | None = None
@@ -64,6 +75,9 @@ class Deadline:
     def passed(self) -> bool:
         """Whether to stop."""
         if self._by is not None:
+            return True
+        if self._within is not None and self._within.interrupted:
+            self._by = self._within._by
             return True
         if self._end is None and self.memory is None:
             return False
@@ -82,6 +96,11 @@ class Deadline:
         return self._by == "ctrl-C"
 
     @property
+    def limited(self) -> bool:
+        """Whether anything but ctrl-C can end it."""
+        return self.seconds is not None or self.memory is not None
+
+    @property
     def overdue(self) -> bool:
         """Whether to stop even where nothing is known yet, which may still come half a second late."""
         if not self.passed:
@@ -89,8 +108,11 @@ class Deadline:
         return self._end is None or time.monotonic() >= self._end + _LATE or self._by != self._time_words
 
     def interrupt(self) -> None:
-        """Note that ctrl-C was pressed."""
-        self._by = self._by or "ctrl-C"
+        """Note that ctrl-C was pressed, unless a limit came before."""
+        if self._by is None:
+            self._by = "ctrl-C"
+            if self._within is not None:
+                self._within.interrupt()
 
     def out_of_memory(self) -> None:
         """Note that there is no more memory."""
@@ -154,7 +176,7 @@ class Watch:
         deadline = self._deadline
         deadline.doing = self._doing
         deadline.check()
-        if deadline.seconds is not None or deadline.memory is not None:
+        if deadline.limited:
             self._thread = threading.Thread(target=self._watch, daemon=True, name="foon-asp limits")
             self._thread.start()
         return self

@@ -72,7 +72,7 @@ class Settings(NamedTuple):
     the search, unless there are constraints, bounds or other encodings. ``relaxed`` are constraints in other
     words. Trees keep to what is ``bounded``. ``session`` keeps ground programs for the next question.
     ``memory_limit`` is in bytes, for this process together with the one that grounds. ``deadline`` is that of
-    a question of which this one is a part, and has begun: then it counts and the limits do not.
+    a question of which this one is a part, and has begun.
     """
 
     constraints: tuple[Path, ...] = ()
@@ -89,14 +89,14 @@ class Settings(NamedTuple):
 
     def limited(self) -> "Settings":
         """Give the same settings with a deadline that has begun: now, if it had not."""
-        if self.deadline is not None:
-            return self
-        return self._replace(deadline=Deadline(self.time_limit, self.memory_limit))
+        return self._replace(deadline=self.begun, time_limit=None, memory_limit=None)
 
     @property
     def begun(self) -> Deadline:
-        """The deadline that has begun, or one that begins now."""
-        return self.deadline or Deadline(self.time_limit, self.memory_limit)
+        """The deadline that has begun, and within it one that begins now where there are limits."""
+        if self.deadline is not None and self.time_limit is None and self.memory_limit is None:
+            return self.deadline
+        return Deadline(self.time_limit, self.memory_limit, within=self.deadline)
 
 
 class Program(NamedTuple):

@@ -48,7 +48,7 @@ class Ranked:
             with self._deadline.watched("cutting the network"):
                 self._cut(problem)
         except KeyboardInterrupt:
-            self._deadline.interrupt()  # unless it was a limit
+            self._deadline.interrupt()
 
     def _cut(self, problem: Problem) -> None:
         reached = reach(problem)
@@ -106,7 +106,7 @@ class Ranked:
                     self.problem, self._units, self._scale, with_sources=not self._program.own
                 )
         except KeyboardInterrupt:
-            self._deadline.interrupt()  # unless it was a limit
+            self._deadline.interrupt()
             return Run()
         files = (*self._program.files, encodings_folder() / "questions" / "other_trees.lp")
         return run(

@@ -45,7 +45,7 @@ def run(
     try:
         program = ground(files, facts, arguments, deadline, products, endless)
     except KeyboardInterrupt:
-        deadline.interrupt()  # unless it was a limit
+        deadline.interrupt()
         return Run(ground_seconds=time.perf_counter() - began)
     grounded = time.perf_counter()
     try:

@@ -72,7 +72,7 @@ def solve_soft(
     try:
         facts = _all_facts(problem, deadline)
     except KeyboardInterrupt:
-        deadline.interrupt()  # unless it was a limit, which ends what follows before it begins
+        deadline.interrupt()
         facts = ""
 
     all_said = (facts or "") + program.rules + rules

@@ -114,7 +114,7 @@ class _Solver:
         try:
             first = self.cut()
         except KeyboardInterrupt:
-            self.deadline.interrupt()  # unless it was a limit
+            self.deadline.interrupt()
             return self._outcome(Status.UNKNOWN, None, {})
         if first is None:
             return self._outcome(Status.INFEASIBLE, None, {})
@@ -240,7 +240,7 @@ class _Solver:
                     self.deadline, opt_mode, on_tree, on_bound
                 )
         except KeyboardInterrupt:  # before it came to a search
-            self.deadline.interrupt()  # unless it was a limit
+            self.deadline.interrupt()
             ended = Run()
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
         if ended.units is not None:

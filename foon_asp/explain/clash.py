@@ -97,7 +97,7 @@ def find_clash(
             scale = None if problem.rates is None else problem_scale(problem, units)
             facts = write_facts(problem, units, scale, with_sources=True) + relaxed.rules
     except KeyboardInterrupt:
-        deadline.interrupt()  # unless it was a limit
+        deadline.interrupt()
         return answer(complete=False)
     if not makeable:
         return answer(tree_exists=False)

@@ -97,7 +97,7 @@ def shopping_list(
             offer, wares = following
             lists, complete = _lists(problem, shop, wares, program, deadline, most)
     except KeyboardInterrupt:
-        deadline.interrupt()  # unless it was a limit
+        deadline.interrupt()
         complete = False
     outcome = None
     if lists:
