@@ -135,7 +135,7 @@ def questions(options: argparse.Namespace) -> Iterator[list[Question]]:
         for goal in goals:
             node = goal if isinstance(goal, int) else find_goal(goal, network, data.goals)
             problem = Problem(network, data.kitchen, (node,), data.rates, data.utensils, options.containers)
-            problem.needs  # noqa: B018
+            problem.needs, problem.makers  # noqa: B018
             wanted = options.objective or [Objective.UNITS, Objective.SUCCESS]
             found += [Question(name, str(network.objects[node]), problem, o) for o in wanted]
         yield found
@@ -147,7 +147,14 @@ def unshare(problem: Problem) -> None:
     Looking at a number counts a reference to it, which is a write.
     """
     network = problem.network
-    for lists in (problem.needs, network.inputs, network.outputs, network.producers, [network.motions]):
+    for lists in (
+        problem.needs,
+        problem.gives,
+        problem.makers,
+        network.inputs,
+        network.outputs,
+        [network.motions],
+    ):
         for members in lists:
             for _ in members:
                 pass

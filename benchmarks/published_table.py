@@ -23,7 +23,8 @@ from foon_asp.search import SEARCHES, Count, SearchSettings, Ties
 from foon_asp.text import find_data, find_goal, read_data
 
 # The published procedure with a free choice among equally good units: an object that is needed and not in
-# the kitchen is made by exactly one of its candidates, whose needed inputs are needed in turn.
+# the kitchen is made by exactly one of its candidates, whose needed inputs are needed in turn. It takes the
+# outputs of units as annotated, a container that was skipped among them.
 FREE_CHOICE = """
 needed(O) :- goal(O), not kitchen(O).
 { pick(O,U) : candidate(O,U) } = 1 :- needed(O).

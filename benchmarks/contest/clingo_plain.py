@@ -29,7 +29,7 @@ def plain_facts(instance: Instance, objective: Objective) -> str:
     for action, (needs, gives) in enumerate(zip(instance.needs, instance.gives, strict=True)):
         facts = [f"unit({action})."]
         facts += [f"needs({action},{o})." for o in needs]
-        facts += [f"output({action},{o})." for o in gives]
+        facts += [f"gives({action},{o})." for o in gives]
         if costs:
             facts.append(costs.format(action, instance.costs[action]))
         lines.append(" ".join(facts))

@@ -98,7 +98,7 @@ def instance_of(problem: Problem, units: Sequence[int], objective: Objective) ->
     """
     if objective is Objective.KITCHEN:
         raise ValueError("what the kitchen gives is no cost of units")
-    kitchen, outputs = problem.kitchen, problem.network.outputs
+    kitchen = problem.kitchen
     numbers: dict[int, int] = {}
     needs = []
     for unit in units:
@@ -106,7 +106,7 @@ def instance_of(problem: Problem, units: Sequence[int], objective: Objective) ->
         needs.append(tuple([numbers.setdefault(o, len(numbers)) for o in wanted]))
     goals = tuple(numbers.setdefault(o, len(numbers)) for o in problem.goals if o not in kitchen)
     gives = [
-        tuple({numbers[o] for o in outputs[unit] if o in numbers}.difference(wanted))
+        tuple({numbers[o] for o in problem.gives[unit] if o in numbers}.difference(wanted))
         for unit, wanted in zip(units, needs, strict=True)
     ]
     scale = SCALE if objective is Objective.SUCCESS else 1
