@@ -18,6 +18,8 @@ from foon_asp.asp import Settings, Status, program_facts, solve
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify, certify_infeasible
 from foon_asp.engines.highs import solve_with_highs
+from foon_asp.explain.difference import side
+from foon_asp.explain.menu import menu
 from foon_asp.explain.why_not import why_not
 from foon_asp.network import (
     LEVELS,
@@ -336,7 +338,8 @@ def test_the_command_line(cli: Cli, tmp_path: Path) -> None:
     assert "S\tcontains\t{water}\n" in tree.read_text()
     ran = cli("check", tree, *asked, *pot)
     assert ran.code == 1
-    assert "every unit runs, but the goal is not made: pot; contains {water}" in ran.out
+    assert "every unit runs, but the goal is not made: pot; contains {water}; unit 1, heat    [" in ran.out
+    assert "], took it as given, and so did not make it\n" in ran.out
     assert cli("check", tree, *asked, *hot).code == 0
     ran = cli("search", "bfs", *asked, *pot)
     assert "does not execute" in ran.out
@@ -355,6 +358,25 @@ def test_in_a_picture_no_arrow_leads_to_what_was_skipped(cli: Cli, tmp_path: Pat
         (pots[0][0], "m0"),
         ("m0", pots[1][0]),
     ]
+
+
+def test_two_trees_and_two_goals() -> None:
+    """Where trees part, and which goals a unit serves: a pot that was skipped comes from nowhere."""
+    boil = ("boil", [POT], [ObjectNode.of("steam")])
+    of = network(FILL, boil)
+    problem = ask(boil[2][0], kitchen=(WATER, TAP, EMPTY), of=of)
+    listed = [(of.unit(unit), of.sources[unit][0]) for unit in (0, 1, 2)]
+    kitchen, rule = frozenset((WATER, TAP, EMPTY)), problem.containers
+    tree = side("tree", listed, [POT], kitchen, rule, problem.utensils, None)
+    assert tree.origin(POT) == of.unit(1)
+    assert tree.origin(HOT) == of.unit(0)
+    bare = side("bare", listed[:1], [], kitchen, rule, problem.utensils, None)
+    assert bare.origin(POT) is None
+
+    hot = of.object_id(HOT)
+    assert hot is not None
+    found = menu(replace(problem, goals=(hot, *problem.goals)))
+    assert found.serves == {0: (hot,), 1: problem.goals, 2: problem.goals}
 
 
 def test_a_store_says_the_same(cli: Cli, tmp_path: Path) -> None:

@@ -238,12 +238,13 @@ def test_a_chart_has_all_points_and_lines_only_where_the_front_is_whole(tmp_path
     assert (tmp_path / "three.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_front_for_macaroni_on_the_universal_foon(cli: Cli, universal: Path) -> None:
-    ran = cli(
-        "pareto", "--data", universal, "--goal", "macaroni", "--containers", "implied", "--format", "json"
-    )
-    assert ran.code == 0
-    assert ran.json["complete"]
-    assert [point["measures"]["units"] for point in ran.json["points"]] == [5, 6]
+def test_fronts_on_the_universal_foon(cli: Cli, universal: Path) -> None:
+    words = ("pareto", "--data", universal, "--containers", "implied", "--format", "json", "--goal")
+    ran = cli(*words, "macaroni")
+    assert (ran.code, ran.json["complete"]) == (0, True)
+    assert [point["measures"]["units"] for point in ran.json["points"]] == [6]
+    ran = cli(*words, "potato; cooked; in [pot]")
+    assert (ran.code, ran.json["complete"]) == (0, True)
+    assert [point["measures"]["units"] for point in ran.json["points"]] == [6, 8]
     few, many = (Fraction(point["measures"]["success"]["exact"]) for point in ran.json["points"])
     assert few < many

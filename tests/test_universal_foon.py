@@ -84,3 +84,48 @@ def test_every_makeable_object_is_proved(data: Data, rule: ContainerRule) -> Non
             own = best[objective].costs
             assert own is not None
             assert own.key((objective,)) == key
+
+
+def test_nothing_comes_from_nothing(data: Data) -> None:
+    """The units that put out a container that they skipped, and what could be made of that."""
+    network = data.network
+
+    def ask(goal: int) -> Problem:
+        rule = ContainerRule.IMPLIED
+        return Problem(network, data.kitchen, (goal,), data.rates, data.utensils, rule)
+
+    problem = ask(0)
+    skipping = [u for u, gives in enumerate(problem.gives) if gives != network.outputs[u]]
+    assert len(skipping) == 24
+    annotated = set(data.kitchen)
+    while True:
+        more = {
+            o
+            for unit, needs in enumerate(problem.needs)
+            if annotated.issuperset(needs)
+            for o in network.outputs[unit]
+        }
+        if annotated >= more:
+            break
+        annotated |= more
+    available = reach(problem).available
+    lost = [o for o in annotated if not available[o]]
+    assert len(lost) == 103
+    assert sum(available) == len(annotated) - len(lost)
+    syrup = [
+        o
+        for o, node in enumerate(network.objects)
+        if node.label == "french toast" and "maple syrup" in node.ingredients
+    ]
+    assert syrup
+    assert set(syrup) <= set(lost)
+    assert all(solve(ask(o), ()).status is Status.INFEASIBLE for o in syrup)
+    (cheese,) = (
+        o
+        for o, node in enumerate(network.objects)
+        if node.label == "macaroni and cheese" and node.is_in("plate")
+    )
+    for objective in (Objective.UNITS, Objective.INPUTS):
+        costs = solve(ask(cheese), (objective,)).costs
+        assert costs is not None
+        assert (costs.units, costs.inputs) == (20, 61)

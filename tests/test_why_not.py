@@ -94,7 +94,7 @@ def closure(problem: Problem, at_hand: set[ObjectNode]) -> set[ObjectNode]:
     for _ in units:
         for unit in units:
             if oracle.needed(unit, problem.containers, problem.utensils) <= made:
-                made |= set(unit.outputs)
+                made |= oracle.made(unit, problem.containers, problem.utensils)
     return made
 
 

@@ -3,8 +3,8 @@
 import json
 from collections.abc import Sequence
 
-from foon_asp.network import FunctionalUnit, Source
-from foon_asp.problem import Problem
+from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.problem import Problem, given_outputs
 from foon_asp.proof import Obstacle, Simulation, Verdict
 from foon_asp.report.answer import costs_json, costs_text
 
@@ -15,9 +15,9 @@ def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> st
     """Say whether the listed units execute, in which order, and what stops them."""
     lines = [f"{simulation.verdict} ({problem.conditions})"]
     if simulation.as_listed is not None:
-        lines.append("as listed: " + _obstacle_text(listed, simulation.as_listed))
+        lines.append("as listed: " + _obstacle_text(problem, listed, simulation.as_listed))
     if simulation.obstacle is not None:
-        lines.append("in any order: " + _obstacle_text(listed, simulation.obstacle))
+        lines.append("in any order: " + _obstacle_text(problem, listed, simulation.obstacle))
     foreign = [n for n, (unit, _) in enumerate(listed) if problem.network.unit_id(unit) is None]
     lines += [f"unit {n + 1} is not one of the network: {_unit_text(listed, n)}" for n in foreign]
     if not foreign:
@@ -59,14 +59,26 @@ def _unit_text(listed: Listed, position: int) -> str:
     return f"{unit.motion}    [{source}]"
 
 
-def _obstacle_text(listed: Listed, obstacle: Obstacle) -> str:
+def _obstacle_text(problem: Problem, listed: Listed, obstacle: Obstacle) -> str:
     if obstacle.unit is None:
-        return f"every unit runs, but the goal is not made: {obstacle.missing}"
-    text = f"unit {obstacle.unit + 1}, {_unit_text(listed, obstacle.unit)}, lacks {obstacle.missing}"
+        text = f"every unit runs, but the goal is not made: {obstacle.missing}"
+    else:
+        text = f"unit {obstacle.unit + 1}, {_unit_text(listed, obstacle.unit)}, lacks {obstacle.missing}"
+    skipping = [n for n, (unit, _) in enumerate(listed) if _skips(problem, unit, obstacle.missing)]
+    if skipping:
+        first = f"unit {skipping[0] + 1}, {_unit_text(listed, skipping[0])}"
+        text += f"; {first}, took it as given, and so did not make it"
     if obstacle.cycle:
         waits = " → ".join(str(position + 1) for position in (*obstacle.cycle, obstacle.cycle[0]))
         text += f"; a cycle is to blame, units that wait for each other: {waits}"
     return text
+
+
+def _skips(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
+    """Whether a unit has a node among its outputs and does not make it."""
+    if node not in unit.outputs:
+        return False
+    return node not in given_outputs(unit, problem.containers, problem.utensils, problem.network)
 
 
 def obstacle_json(listed: Listed, obstacle: Obstacle | None) -> dict[str, object] | None:
