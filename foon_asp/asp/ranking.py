@@ -1,15 +1,17 @@
 """Trees in order of their costs, one by one, none of which holds another."""
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Settings, assemble
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter
-from foon_asp.errors import BugError, UserError
+from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
 from foon_asp.resources import encodings_folder
 
 Rounded = tuple[int, ...]  # costs as clingo adds them up: success in rounded logarithms
@@ -38,6 +40,10 @@ class Ranked:
         self.known: list[tuple[tuple[int, ...], Costs]] = []
         self._deadline = settings.begun
         self._program = assemble(settings, (reporter or Reporter()).warning)
+        self._holds = Postconditions(problem, self.levels, settings, self._program.own)
+        ours = encodings_folder()
+        self._replaced = not all(file.is_relative_to(ours) for file in self._program.files[:3])
+        self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
         self._scale: RateScale | None = None
         if Objective.SUCCESS in self.levels and problem.rates is None:
             raise UserError(
@@ -70,6 +76,8 @@ class Ranked:
         if self.complete:
             return
         found: list[tuple[Costs, Rounded, tuple[int, ...]]] = []
+        known: list[frozenset[int]] = []
+        last: Rounded = ()
         avoided = ""
         number = 0
         while True:
@@ -85,9 +93,11 @@ class Ranked:
                 found.sort(key=lambda each: (each[0].key(self.levels), sorted(each[2])))
                 self.known = [(tree, its) for its, _, tree in found]
                 return
+            self._check(ended, rounded, last, units, known)
+            last = rounded
+            known.append(frozenset(units))
             while found and self._is_settled(found[0], rounded):
-                yield found[0][2], found[0][0]
-                del found[0]
+                yield self._next_in_order(found)
             found.append((costs, rounded, units))
             found.sort(key=lambda each: (each[0].key(self.levels), sorted(each[2])))
             avoided += write_avoided(number, map(self.problem.network.unit_number, units))
@@ -95,7 +105,8 @@ class Ranked:
             if not units:  # every other tree holds it
                 break
         self.complete = True
-        yield from ((units, costs) for costs, _, units in found)
+        while found:
+            yield self._next_in_order(found)
 
     def _next(self, avoided: str) -> Run:
         if self._deadline.passed:
@@ -121,12 +132,52 @@ class Ranked:
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]
         known = [unit for unit in units if unit is not None]
-        order = executable_order(self.problem, known) if len(known) == len(units) else None
-        if order is None:
-            if self._program.own:
-                raise BugError("a tree was found that does not execute")
-            raise UserError("a tree was found that does not execute: check the encodings that were replaced")
-        return order
+        if len(known) < len(units):
+            raise UserError("a tree was found with units that the network has not: check the encodings")
+        return self._holds.tree(known)
+
+    def _check(
+        self,
+        ended: Run,
+        rounded: Rounded,
+        last: Rounded,
+        units: Sequence[int],
+        known: Sequence[frozenset[int]],
+    ) -> None:
+        """Require that clingo measures a tree as we do, after the one before it, and that it holds none.
+
+        Raises :class:`UserError` where other encodings measure something else: then its order is not ours.
+        """
+        agree = len(rounded) == len(ended.cost) and all(
+            (ours - theirs) % 2**32 == 0 for ours, theirs in zip(rounded, ended.cost, strict=True)
+        )
+        if not (agree and last <= rounded) and self._replaced:
+            raise UserError(
+                f"{self._program.files[1]} does not measure what the objectives {', '.join(self.levels)} "
+                "measure here, so trees cannot be put in their order"
+            )
+        self._holds.require(
+            agree, lambda: f"clingo reports the costs {list(ended.cost)}, the units {units} cost {rounded}"
+        )
+        self._holds.require(
+            last <= rounded, lambda: f"the tree {units} costs {rounded}, but comes after one for {last}"
+        )
+        self._holds.require(
+            not any(map(frozenset(units).issuperset, known)),
+            lambda: f"the tree {units} holds one that was found before",
+        )
+
+    def _next_in_order(
+        self, found: list[tuple[Costs, Rounded, tuple[int, ...]]]
+    ) -> tuple[tuple[int, ...], Costs]:
+        """Take the first of the trees found, which is no better than those given before."""
+        costs, _, units = found.pop(0)
+        key = costs.key(self.levels)
+        self._holds.require(
+            self._given <= key, lambda: f"the tree {units} is better than one that was given before it"
+        )
+        self._given = key
+        return units, costs
 
     def _rounded(self, units: Sequence[int], costs: Costs) -> Rounded:
         return tuple(

@@ -8,13 +8,14 @@ from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_facts, write_greatest_penalty, write_soft, write_tree
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.outcome import Outcome, Status
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Settings, assemble, find_constraint
 from foon_asp.asp.search import run
-from foon_asp.asp.solver import Reporter, checked_order, solve
+from foon_asp.asp.solver import Reporter, solve
 from foon_asp.deadline import Deadline
-from foon_asp.errors import BugError, UserError
+from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Objective, Problem, reach
+from foon_asp.problem import Objective, Problem, levels, reach
 
 GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
 
@@ -65,6 +66,7 @@ def solve_soft(
     rules = write_soft(by_number)
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, reporter.warning)
+    holds = Postconditions(problem, levels(tuple(objectives)), settings, program.own)
     spent: dict[str, float] = {}
     least: int | None = None
     proved = True
@@ -96,19 +98,29 @@ def solve_soft(
     bound = "" if least is None else write_greatest_penalty(least)
     hard = settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + rules + bound))
     outcome = solve(problem, objectives, hard, Reporter())
-    if least is not None and outcome.status is Status.INFEASIBLE:
-        raise BugError("the least penalty was lost")
+    holds.require(
+        least is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
+    )
     if not proved and outcome.status is Status.OPTIMAL:
         outcome = outcome._replace(status=Status.FEASIBLE, proof=None, bounds={})
     outcome.seconds.update(spent)
     if outcome.units is not None:
         given = ask(write_tree(outcome.units), "ignore")
-        if given.units == frozenset(outcome.units):
-            return told(outcome, given.atoms["_broken"])
         if given.units is not None or given.exhausted:
-            raise BugError("the tree found is none when its soft constraints are looked at")
+            holds.require(
+                given.units == frozenset(outcome.units),
+                lambda: f"the tree {outcome.units} is none when its soft constraints are looked at",
+            )
+            found = told(outcome, given.atoms["_broken"])
+            holds.require(
+                least is None or found.penalty in range(least if proved else 0, least + 1),
+                lambda: (
+                    f"the penalty of {outcome.units} is {found.penalty}, but the least one was to be {least}"
+                ),
+            )
+            return found
     if ended.units is not None:  # stopped: what is known of a tree by then
-        tree = checked_order(problem, ended.units, program.own)
+        tree = holds.tree(ended.units)
         known = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
         return told(known, ended.atoms["_broken"])
     return SoftOutcome(outcome, None, ())

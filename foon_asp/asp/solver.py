@@ -2,7 +2,7 @@
 
 import itertools
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -17,12 +17,13 @@ from foon_asp.asp.facts import (
     write_wanted,
 )
 from foon_asp.asp.outcome import Outcome, Proof, Status
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program, Settings, assemble
-from foon_asp.errors import BugError, UserError
+from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, executable_order, first_tree, levels, reach
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, reach
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
+from foon_asp.resources import encodings_folder
 
 if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import OpenProgram
@@ -98,6 +99,9 @@ class _Solver:
                 "the objective success needs the success rates of the motions; give a rates file with --rates"
             )
         self.program: Program = assemble(settings, reporter.warning)
+        self.holds = Postconditions(problem, self.levels, settings, self.program.own)
+        ours = encodings_folder()
+        self._replaced = not all(file.is_relative_to(ours) for file in self.program.files[:3])
         if settings.clingo_options:  # looked at now, since clingo may have nothing to do
             from foon_asp.asp.search import check  # noqa: PLC0415
 
@@ -117,6 +121,7 @@ class _Solver:
             self.deadline.interrupt()
             return self._outcome(Status.UNKNOWN, None, {})
         if first is None:
+            self.holds.no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
         if self.program.own and not self.program.bounded:
             incumbent = first
@@ -133,22 +138,18 @@ class _Solver:
     def _search(self, incumbent: Units) -> Outcome:
         """Ask clingo for what is better than the tree in hand."""
         if self.reduced and self.deadline.passed:
-            return self._outcome(Status.FEASIBLE, incumbent, self._bounds([]))
+            return self._limited(incumbent, [])
         wanted, strict = self._wanted(incumbent)
         ended = self._run(self.levels, opt_mode=wanted, report=True)
         if ended.units is None and ended.exhausted:
-            if strict:
-                return self._optimal(incumbent)
-            raise BugError("a tree is at hand, but the encodings say that there is none")
-        best = self._better(incumbent, ended.units)
-        if not ended.exhausted:
-            return self._outcome(Status.FEASIBLE, best, self._bounds(ended.lower))
-        best = best if ended.units is None else ended.units
-        if self._measures_agree(ended) and Objective.SUCCESS in self.levels:
-            best, settled = self._settle_success(best)
-            if not settled:
-                return self._outcome(Status.FEASIBLE, best, self._bounds(ended.lower))
-        return self._optimal(best)
+            self.holds.require(strict, lambda: "a tree is at hand, but the encodings say that there is none")
+            return self._optimal(incumbent)
+        best, proved = ended.units, ended.exhausted
+        if best is None or not self._replaced:
+            best = self._better(incumbent, best)
+        if self._measures_agree(ended, self.levels) and proved and Objective.SUCCESS in self.levels:
+            best, proved = self._settle_success(best)
+        return self._optimal(best) if proved else self._limited(best, ended.lower)
 
     def cut(self) -> Units | None:
         """Cut the network down to what can matter; give some tree, or ``None`` when there is none.
@@ -205,6 +206,10 @@ class _Solver:
     def _optimal(self, units: Units) -> Outcome:
         costs = self._costs(units)
         return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
+
+    def _limited(self, units: Units, lower: Sequence[int]) -> Outcome:
+        """State what is known at a limit; nobody knows what replaced encodings have bounds on."""
+        return self._outcome(Status.FEASIBLE, units, {} if self._replaced else self._bounds(lower))
 
     def facts(self) -> str:
         if self._facts is None:
@@ -357,6 +362,7 @@ class _Solver:
                 return chosen, False
             if ended.units is None:
                 break
+            self._require_measures(ended, (*before, Objective.SUCCESS))
             rival = ended.units
             if self._success(rival) > self._success(chosen):
                 chosen, wanted = rival, len(products)
@@ -365,34 +371,53 @@ class _Solver:
         costs = self._costs(chosen)
         mode = ",".join(["opt", *map(str, fixed), *(str(costs.measure(o)) for o in after)])
         ended = self._run((*before, *after), products, wanted, mode)
-        if ended.exhausted and ended.units is None:
-            raise BugError("the best product of success rates was lost")
-        return (chosen if ended.units is None else ended.units), ended.exhausted
+        if ended.units is None:
+            self.holds.require(not ended.exhausted, lambda: "the best product of success rates was lost")
+            return chosen, False
+        self._require_measures(ended, (*before, *after))
+        self.holds.settled(ended.units, chosen, before)
+        return ended.units, ended.exhausted
 
-    def _measures_agree(self, ended: Run) -> bool:
+    def _measures_agree(self, ended: Run, objectives: Sequence[Objective]) -> bool:
         """Hold clingo's cost vector (modulo 2^32) against the costs computed from the units.
 
-        A replaced objectives.lp may measure something else: then the optimum is the one it defines.
+        A replaced objectives.lp may measure something else: then the optimum is the one it defines. A program
+        that is kept measures all levels, and what was not asked for as nothing.
         """
-        if ended.units is None:
-            return False
-        costs = self._costs(ended.units)
-        weights = [
-            self._weight(ended.units) if objective is Objective.SUCCESS else costs.measure(objective)
-            for objective in self.levels
-        ]
-        if len(weights) == len(ended.cost) and all(
-            (ours - theirs) % 2**32 == 0 for ours, theirs in zip(weights, ended.cost, strict=True)
+        units = ended.units
+        if units is None:
+            return True
+        costs = self._costs(units)
+        weights = {
+            objective: self._weight(units)
+            if objective is Objective.SUCCESS
+            else int(costs.measure(objective))
+            for objective in objectives
+        }
+        listed = self.levels if len(ended.cost) == len(self.levels) else objectives
+        ours = [weights.get(objective, 0) for objective in listed]
+        if len(ours) == len(ended.cost) and all(
+            (mine - theirs) % 2**32 == 0 for mine, theirs in zip(ours, ended.cost, strict=True)
         ):
             return True
-        if self.settings.encodings is None:
-            raise BugError(f"clingo reports the costs {list(ended.cost)}, the units cost {weights}")
+        self.holds.require(
+            self._replaced,
+            lambda: f"clingo reports the costs {list(ended.cost)}, the units {sorted(units)} cost {ours}",
+        )
         self.reporter.warning(
-            f"{self.settings.encodings / 'objectives.lp'} does not measure what the objectives "
+            f"{self.program.files[1]} does not measure what the objectives "
             f"{', '.join(self.levels)} measure here: the tree is optimal in its sense, and the costs shown "
             "are the usual ones"
         )
         return False
+
+    def _require_measures(self, ended: Run, objectives: Sequence[Objective]) -> None:
+        """Raise :class:`UserError` where a replaced objectives.lp measures some trees as we do, not this."""
+        if not self._measures_agree(ended, objectives):
+            raise UserError(
+                f"{self.program.files[1]} measures some trees as the objectives {', '.join(self.levels)} do, "
+                "and others not: their success cannot be compared"
+            )
 
     def _better(self, one: Units, other: Units | None) -> Units:
         if other is None:
@@ -456,7 +481,7 @@ class _Solver:
     def _outcome(
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
     ) -> Outcome:
-        """Check the tree by simulation and state the outcome."""
+        """State the outcome, once it holds."""
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
         if status is Status.OPTIMAL and self.reduced and self.reduced.settled:
             proof = Proof.CUTS
@@ -476,17 +501,14 @@ class _Solver:
                 stopped=stopped,
             )
         began = time.perf_counter()
-        problem = self.problem
-        listed = checked_order(problem, units, self.program.own)
-        self._spent("check", began)
-        costs = self._costs(units)
+        listed = self.holds.tree(units)
         cuts = self.reduced.cuts.cuts if self.reduced and self.reduced.cuts else ()
-        return Outcome(
-            problem,
+        outcome = Outcome(
+            self.problem,
             self.objectives,
             status,
             listed,
-            costs,
+            self._costs(units),
             bounds,
             self.seconds,
             self.settings.encodings,
@@ -495,30 +517,12 @@ class _Solver:
             cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
             stopped=stopped,
         )
+        self.holds.outcome(outcome, None if self._replaced else self._best, self.reduced)
+        self._spent("check", began)
+        return outcome
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
-
-
-def checked_order(problem: Problem, units: Collection[int], own: bool) -> tuple[int, ...]:
-    """Put the units of a tree in an order that executes, and hold it against the simulation.
-
-    Raises :class:`UserError` where it does not execute, and :class:`BugError` with rules of ours alone.
-    """
-    order = executable_order(problem, units)
-    listed = tuple(sorted(units)) if order is None else order
-    simulation = simulate_for(problem, problem.tree(listed))
-    if simulation.verdict is Verdict.AS_LISTED:
-        return listed
-    message = f"the tree found {simulation.verdict}"
-    if simulation.obstacle and simulation.obstacle.unit is not None:
-        unit = problem.network.unit(listed[simulation.obstacle.unit])
-        message += f" (the unit {unit.motion!r} lacks {simulation.obstacle.missing})"
-    elif simulation.obstacle:
-        message += f" (nothing in it makes {simulation.obstacle.missing})"
-    if own:
-        raise BugError(message)
-    raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
 
 
 class _Heard(Listener):

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.assisted import assisted, sees_who_does_it
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Bounded
 from foon_asp.asp.ranking import Ranked
 from foon_asp.errors import UserError
@@ -135,6 +136,7 @@ class _Assistant:
                 row = self._row(number)
                 if rows:
                     row = _beside(row, rows[-1], last)
+                self._check(row, rows[-1] if rows else None)
                 rows.append(row)
                 if row.status in {Status.FEASIBLE, Status.UNKNOWN}:
                     return answered(complete=False)
@@ -155,6 +157,33 @@ class _Assistant:
             if row.success == last.costs.success and (most is None or _key(row.costs) == _key(last.costs)):
                 break
         return answered(complete=True)
+
+    def _check(self, row: Assisted, before: Assisted | None) -> None:
+        """Require that the person does few enough units, that the costs say so, and that help never hurts."""
+        if row.units is None or row.costs is None:
+            return
+        holds = Postconditions(
+            self._problem, (Objective.SUCCESS, Objective.UNITS), self._settings, own=self._own
+        )
+        holds.tree(row.units)
+        motions = self._problem.network.motions
+        own = {unit: self._better.get(motions[unit], Fraction(0)) for unit in row.helped}
+        costs = replace(self._problem, own_rates=own).costs(row.units)
+        holds.require(
+            len(row.helped) <= row.most and row.helped <= set(row.units) and _key(costs) == _key(row.costs),
+            lambda: (
+                f"the tree {list(row.units or ())} with help for {sorted(row.helped)} is said to have "
+                f"{_key(row.costs)} with help for {row.most} at most, but has {_key(costs)}"
+            ),
+        )
+        holds.require(
+            row.bound is None or costs.success is None or row.bound >= costs.success,
+            lambda: f"the tree {list(row.units or ())} succeeds more often than its bound allows",
+        )
+        holds.require(
+            before is None or before.costs is None or _key(costs) <= _key(before.costs),
+            lambda: f"with help for {row.most} units the best tree is worse than with less",
+        )
 
     def _row(self, most: int) -> Assisted:
         priced = self._priced

@@ -6,7 +6,8 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, solve
-from foon_asp.problem import Objective, Problem
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.problem import Objective, Problem, levels
 
 
 class Menu(NamedTuple):
@@ -51,6 +52,10 @@ def menu(
     separate = tuple(
         solve(replace(problem, goals=(goal,)), objectives, settings, Reporter()) for goal in problem.goals
     )
+    if settings.constraints == () and settings.encodings is None:  # else goals may have rules of their own
+        holds = Postconditions(problem, levels(tuple(objectives)), settings)
+        for goal, alone in zip(problem.goals, separate, strict=True):
+            holds.no_better(together, alone, f"for goal {goal} alone")
     return Menu(together, separate, _serves(problem, together.units or ()))
 
 

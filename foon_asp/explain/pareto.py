@@ -3,12 +3,14 @@
 import time
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp import Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
-from foon_asp.errors import BugError, UserError
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.errors import UserError
 from foon_asp.explain.alternatives import Tree
 from foon_asp.problem import Costs, Objective, Problem
 
@@ -76,9 +78,9 @@ def pareto_front(
                 now = settings._replace(bounded=better_than(known, others))
             outcome = solve(problem, (leading, *others), now, later if found else reporter)
             if outcome.status is Status.OPTIMAL and outcome.units is not None and outcome.costs is not None:
-                if any(outcome.costs.key(asked) == tree.costs.key(asked) for tree in found):
-                    raise BugError("a point of the front was found twice")
-                found.append(Tree(outcome.units, outcome.costs))
+                point = Tree(outcome.units, outcome.costs)
+                _require_apart(Postconditions(problem, asked, now), point, found)
+                found.append(point)
             elif outcome.status is Status.INFEASIBLE:
                 complete = True
             else:
@@ -88,6 +90,22 @@ def pareto_front(
     found.sort(key=lambda tree: tree.costs.key(asked))
     seconds = time.monotonic() - began
     return Front(problem, asked, tuple(found), complete, seconds, settings.encodings)
+
+
+def _require_apart(holds: Postconditions, point: Tree, found: Sequence[Tree]) -> None:
+    """Require that a point of the front is as good as no other, and that no other is as good as it."""
+    key = point.costs.key(holds.levels)
+    for other in found:
+        theirs = other.costs.key(holds.levels)
+        holds.require(
+            any(a < b for a, b in zip(key, theirs, strict=True))
+            and any(a > b for a, b in zip(key, theirs, strict=True)),
+            partial(
+                "of two points of the front, {} and {}, one is as good as the other everywhere".format,
+                list(point.units),
+                list(other.units),
+            ),
+        )
 
 
 def _nearest(known: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:

@@ -7,7 +7,8 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.problem import Costs, Objective, Problem, levels
 
 
 class Part(StrEnum):
@@ -72,20 +73,25 @@ def regrets(
     taken = sorted({o for unit in tree for o in problem.needs[unit] if o in problem.kitchen})
     quiet = Reporter()
     found = []
+    own = settings.constraints == () and settings.encodings is None  # else rules may ask for what is missing
+    holds = Postconditions(problem, levels(tuple(objectives)), settings)
+
+    def without(part: Part, id_: int, fewer: Problem, how: Settings) -> None:
+        left = solve(fewer, objectives, how, quiet)
+        if own:
+            holds.no_better(left, outcome, f"with the {part} {id_}")
+        found.append(Regret(part, id_, left.status, left.costs))
+
     for unit in sorted(tree.union(units)):
         fewer = replace(problem, network=problem.network.without([unit]))
         alone = settings._replace(session=None)  # another network: a program kept for it would be of no use
-        found.append(_regret(Part.UNIT, unit, solve(fewer, objectives, alone, quiet)))
+        without(Part.UNIT, unit, fewer, alone)
     for o in taken:
         fewer = replace(problem, kitchen=problem.kitchen - {o})
-        found.append(_regret(Part.ITEM, o, solve(fewer, objectives, settings, quiet)))
+        without(Part.ITEM, o, fewer, settings)
     order = (*objectives, Objective.UNITS)
     found.sort(key=lambda regret: _worst_first(regret, order))
     return Regrets(outcome, tuple(found))
-
-
-def _regret(part: Part, id_: int, outcome: Outcome) -> Regret:
-    return Regret(part, id_, outcome.status, outcome.costs)
 
 
 def _worst_first(

@@ -114,6 +114,12 @@ class ExactCosts:
         """Give what an action costs by each objective; for ``success`` in rounded logarithms."""
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
+    def is_logarithm(self, figure: int, product: Fraction) -> bool:
+        """Whether rounded logarithms add up to that of a product of rates."""
+        fine = Context(prec=60)
+        exact = fine.subtract(fine.ln(Decimal(product.denominator)), fine.ln(Decimal(product.numerator)))
+        return abs(figure - int(fine.multiply(exact, Decimal(_SCALE)))) < _ROUNDED
+
     def rate(self, action: int) -> Fraction:
         """Give the rate of an action; taking an item from the kitchen never fails."""
         if action >= self._units:

@@ -1,0 +1,244 @@
+"""What has to hold of every answer before it leaves, whatever found it: solver, cuts, a list of trees.
+
+All of it is worked out anew from the units of a tree. What fails is a bug of ours, and is never an answer.
+"""
+
+import shlex
+from collections.abc import Callable, Collection, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from functools import partial
+
+from foon_asp.asp.outcome import Outcome, Proof, Status
+from foon_asp.asp.program import Settings
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import Costs, Objective, Problem, executable_order
+from foon_asp.proof import Verdict, simulate_for
+from foon_asp.reduce import ExactCosts, Reduced
+
+
+class Postconditions:
+    """What the answers to one question are held against.
+
+    ``levels`` are the objectives as optimized. ``own`` says that all rules are ours: then a tree that does
+    not execute is our fault. Whatever does not hold raises :class:`BugError` with what the question was.
+    """
+
+    def __init__(
+        self, problem: Problem, levels: Sequence[Objective], settings: Settings, own: bool = True
+    ) -> None:
+        self.problem, self.levels = problem, tuple(levels)
+        self._settings, self._own = settings, own
+
+    def require(self, holds: bool, otherwise: Callable[[], str]) -> None:
+        """Raise :class:`BugError` with a message and the question unless something holds."""
+        if not holds:
+            raise BugError(f"{otherwise()}\n{self._question()}")
+
+    def tree(self, units: Collection[int]) -> tuple[int, ...]:
+        """Require that units execute and make the goals; gives them in such an order.
+
+        Raises :class:`UserError` where they do not by rules of the user's.
+        """
+        problem = self.problem
+        order = executable_order(problem, units)
+        listed = tuple(sorted(units)) if order is None else order
+        simulation = simulate_for(problem, problem.tree(listed))
+        if simulation.verdict is not Verdict.AS_LISTED:
+            message = f"the tree found {simulation.verdict}"
+            if simulation.obstacle and simulation.obstacle.unit is not None:
+                unit = problem.network.unit(listed[simulation.obstacle.unit])
+                message += f" (the unit {unit.motion!r} lacks {simulation.obstacle.missing})"
+            elif simulation.obstacle:
+                message += f" (nothing in it makes {simulation.obstacle.missing})"
+            if not self._own:
+                raise UserError(f"{message}: check the constraints and encodings that were added or replaced")
+            self.require(False, lambda: message)
+        return listed
+
+    def no_tree(self) -> None:
+        """Require that nothing makes all goals, going through all that could lead to them."""
+        needs, gives, makers = self.problem.needs, self.problem.gives, self.problem.makers
+        kitchen = self.problem.kitchen
+        wanted = {goal for goal in self.problem.goals if goal not in kitchen}
+        stack, missing = list(wanted), dict[int, int]()
+        takers: dict[int, list[int]] = {}
+        ready: list[int] = []
+        while stack:
+            for unit in makers[stack.pop()]:
+                if unit in missing:
+                    continue
+                lacking = {o for o in needs[unit] if o not in kitchen}
+                missing[unit] = len(lacking)
+                if not lacking:
+                    ready.append(unit)
+                for o in lacking:
+                    takers.setdefault(o, []).append(unit)
+                    if o not in wanted:
+                        wanted.add(o)
+                        stack.append(o)
+        made: set[int] = set()
+        while ready:
+            for o in gives[ready.pop()]:
+                if o not in made:
+                    made.add(o)
+                    for unit in takers.get(o, ()):
+                        missing[unit] -= 1
+                        if not missing[unit]:
+                            ready.append(unit)
+        self.require(
+            any(goal not in made and goal not in kitchen for goal in self.problem.goals),
+            lambda: "the answer is that there is no tree, but the goals can be made",
+        )
+
+    def outcome(self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None) -> None:
+        """Require that an outcome with a tree claims what is so.
+
+        ``best`` is the best tree that was heard of on the way, and ``reduced`` what the reductions made of
+        the question, where they were asked.
+        """
+        assert outcome.units is not None
+        assert outcome.costs is not None
+        units, costs = outcome.units, outcome.costs
+        self.require(len(set(units)) == len(units), lambda: f"a unit is twice in the tree {list(units)}")
+        anew = self.problem.costs(units)
+        self.require(
+            costs == anew,
+            lambda: f"the answer says {_said(costs)}, but the tree {list(units)} costs {_said(anew)}",
+        )
+        self.require(
+            best is None or costs.key(self.levels) <= best.key(self.levels),
+            lambda: f"the tree {list(units)} costs {_said(costs)}, but one was found for {_said(best)}",
+        )
+        self._bounds(outcome, costs)
+        if reduced is not None and reduced.costs is not None:
+            self._reduced(outcome, costs, reduced, reduced.costs)
+
+    def settled(self, tree: Collection[int], chosen: Collection[int], before: Sequence[Objective]) -> None:
+        """Require that a tree has the success that was settled on, and the measures that come before it."""
+        ours, theirs = self.problem.costs(tree), self.problem.costs(chosen)
+        by = (*before, Objective.SUCCESS)
+        self.require(
+            ours.key(by) == theirs.key(by),
+            lambda: (
+                f"the tree {sorted(tree)} is to be as good as {sorted(chosen)} by {', '.join(by)}, "
+                f"but costs {_said(ours)} and not {_said(theirs)}"
+            ),
+        )
+
+    def no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
+        """Require that a tree is no better than what is proved of a question with that tree, and others."""
+        if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
+            return
+        theirs = easier.costs
+        self.require(
+            theirs is not None and harder.costs.key(self.levels) >= theirs.key(self.levels),
+            lambda: (
+                f"the best tree {by} costs {_said(theirs)}, but a question with fewer trees has one for "
+                f"{_said(harder.costs)}"
+            ),
+        )
+
+    def _bounds(self, outcome: Outcome, costs: Costs) -> None:
+        """Require that bounds leave room for the tree, and none where it is called optimal."""
+        exact = {objective: costs.measure(objective) for objective in self.levels}
+        self.require(
+            outcome.status is not Status.OPTIMAL or outcome.bounds == exact,
+            lambda: (
+                f"the tree is called optimal and costs {_said(costs)}, "
+                f"but the bounds are {list(map(_text, outcome.bounds.values()))}"
+            ),
+        )
+        for objective, have in exact.items():
+            bound = outcome.bounds.get(objective)
+            if bound is None or (bound > have if objective is Objective.SUCCESS else bound < have):
+                return  # what comes after counts among better trees only
+            self.require(
+                bound == have,
+                partial(
+                    "the tree has {} by {}, which the bound {} rules out".format,
+                    _text(have),
+                    objective,
+                    _text(bound),
+                ),
+            )
+
+    def _reduced(self, outcome: Outcome, costs: Costs, reduced: Reduced, exact: ExactCosts) -> None:
+        """Require that the reductions measure the tree as its costs do, and that their bound allows it."""
+        assert outcome.units is not None
+        units = frozenset(outcome.units)
+        size = len(self.problem.network)
+        actions = sorted(units)
+        if Objective.KITCHEN in self.levels:  # then taking an item is an action as well
+            needed = {o for unit in units for o in self.problem.needs[unit]}
+            actions += [size + o for o in needed & self.problem.kitchen]
+        totals = dict.fromkeys(self.levels, 0)
+        for action in actions:
+            for objective, figure in exact.figures(action):
+                totals[objective] += figure
+        self.require(
+            all(
+                exact.is_logarithm(total, Fraction(costs.measure(objective)))
+                if objective is Objective.SUCCESS
+                else total == costs.measure(objective)
+                for objective, total in totals.items()
+            ),
+            lambda: f"the tree {actions} costs {_said(costs)}, but the reductions make it {totals}",
+        )
+        total = sum(map(exact, actions))
+        self.require(
+            reduced.bound <= total + exact.doubt,
+            lambda: f"the tree costs {total} to the reductions, which bound all trees by {reduced.bound}",
+        )
+        self.require(
+            outcome.proof is not Proof.CUTS
+            or (units == reduced.tree and total <= reduced.bound + exact.doubt),
+            lambda: (
+                f"the tree {sorted(units)} is called optimal by cuts, which prove {reduced.bound} "
+                f"of {total} for {sorted(reduced.tree or ())}"
+            ),
+        )
+
+    def _question(self) -> str:
+        """Say what was asked, so that it can be asked again."""
+        problem, how = self.problem, self._settings
+        words = ["foon-asp", "facts"]
+        for goal in problem.goals:
+            words += ["--goal", str(problem.network.objects[goal])]
+        words += ["--objective", ",".join(self.levels), "--containers", str(problem.containers)]
+        words += ["--level", str(problem.network.level)]
+        constraints = [*how.constraints, *(how.relaxed.files if how.relaxed else ())]
+        for file in constraints:
+            words += ["--constraint", str(file)]
+        if how.encodings is not None:
+            words += ["--encodings", str(how.encodings)]
+        others = {
+            "constants": ", ".join(how.constants),
+            "reductions": ", ".join(sorted(how.reductions)) or "none",
+            "options of clingo": " ".join(how.clingo_options),
+            "soft constraints or dropped ones": ", ".join(map(str, how.relaxed.files)) if how.relaxed else "",
+            "bounds": how.bounded.rules.replace("\n", " ").strip() if how.bounded else "",
+            "time limit": "" if how.time_limit is None else f"{how.time_limit} s",
+            "session": "yes" if how.session is not None else "",
+        }
+        return "\n".join(
+            [
+                "what was asked, with the network, kitchen and rates of your command:",
+                f"  {shlex.join(words)}",
+                *(f"  {name}: {text}" for name, text in others.items() if text),
+            ]
+        )
+
+
+def _said(costs: Costs | None) -> str:
+    if costs is None:
+        return "nothing"
+    return ", ".join(f"{name} {_text(figure)}" for name, figure in costs._asdict().items())
+
+
+def _text(figure: int | Fraction | None) -> str:
+    """Write a figure: a product of rates may have more digits than Python turns into text at once."""
+    if figure is None:
+        return "unknown"
+    above, below = Decimal(figure.numerator), Decimal(figure.denominator)
+    return f"{above}" if below == 1 else f"{above}/{below}"
