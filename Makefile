@@ -1,19 +1,22 @@
 # make demo   solve every goal of the bundled kitchen, compare the searches with the optimum, draw a tree
 # make test   the tests, in less than three minutes; make test-slow for the long ones
+# make test-lowest   the tests with the lowest versions of our dependencies that pyproject.toml allows
 # make lint   style and types
 # make bench  the benchmarks, in a few minutes, into docs/performance.md; make bench-full the large ones, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
-# Each makes .venv and installs what it needs when run first.
+# Each makes .venv and installs what it needs when run first. With PYTHON=python3.13 VENV=.venv-3.13 it is another
+# Python in a folder of its own.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
-BIN := .venv/bin
+VENV ?= .venv
+BIN := $(VENV)/bin
 CORES := -n auto --dist worksteal
 PAGE := --page docs/performance.md
 
-.PHONY: demo test test-slow lint bench bench-full clean
+.PHONY: demo test test-slow test-lowest lint bench bench-full clean
 
-demo: .venv/installed
+demo: $(VENV)/installed
 	@mkdir -p demo
 	@$(BIN)/foon-asp compare --chart demo/searches.svg --chart demo/searches.png
 	@echo
@@ -21,23 +24,26 @@ demo: .venv/installed
 	@echo
 	@$(BIN)/foon-asp draw --goal macaroni -o demo/macaroni.svg
 
-test: .venv/installed-dev
+test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES)
 
-test-slow: .venv/installed-dev
+test-slow: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES) -m slow
 
-lint: .venv/installed-dev
+test-lowest:
+	PYTHON="$(PYTHON)" .ci/lowest $(CORES)
+
+lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-bench: .venv/installed-bench
+bench: $(VENV)/installed-bench
 	$(BIN)/python benchmarks/solve_phases.py
 	$(BIN)/python benchmarks/opponents.py --limit 10 $(PAGE) --section quick-opponents
 	$(BIN)/python benchmarks/scaling.py $(PAGE) --section quick-scaling
 
-bench-full: .venv/installed-bench
+bench-full: $(VENV)/installed-bench
 	for family in recipe-like deep; do \
 	  $(BIN)/python benchmarks/opponents.py --family $$family --units 100000 --rows $$family.jsonl \
 	    $(PAGE) --section $$family || exit 1; done
@@ -49,20 +55,20 @@ bench-full: .venv/installed-bench
 	rm -f recipe-like.jsonl deep.jsonl large.jsonl
 
 clean:
-	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
+	rm -rf .venv .venv-* .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
 
-.venv/bin/python:
+$(VENV)/bin/python:
 	@test -n "$(PYTHON)" || { echo "foon-asp needs Python 3.11 or newer"; exit 1; }
-	$(PYTHON) -m venv .venv
+	$(PYTHON) -m venv $(VENV)
 
-.venv/installed: pyproject.toml | .venv/bin/python
+$(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[pictures]'
 	@touch $@
 
-.venv/installed-dev: pyproject.toml | .venv/bin/python
+$(VENV)/installed-dev: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,pictures]'
-	@touch .venv/installed $@
+	@touch $(VENV)/installed $@
 
-.venv/installed-bench: pyproject.toml | .venv/bin/python
+$(VENV)/installed-bench: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,pictures,bench]'
-	@touch .venv/installed .venv/installed-dev $@
+	@touch $(VENV)/installed $(VENV)/installed-dev $@

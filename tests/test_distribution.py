@@ -2,8 +2,10 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+import sysconfig
 import tarfile
 import zipfile
 from pathlib import Path
@@ -15,9 +17,9 @@ ROOT = Path(__file__).resolve().parent.parent
 pytestmark = pytest.mark.slow
 
 
-def run(*arguments: str | Path, cwd: Path, **environment: str) -> str:
+def run(*arguments: str | Path, cwd: Path, by: str | Path = sys.executable, **environment: str) -> str:
     """Run Python in a folder and give its stdout; fails with its stderr when it does not end with 0."""
-    command = [sys.executable, *map(str, arguments)]
+    command = [str(by), *map(str, arguments)]
     variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     ended = subprocess.run(
         command, cwd=cwd, env=variables | environment, capture_output=True, text=True, check=False
@@ -144,3 +146,34 @@ def test_installed_wheel_knows_its_constraints(installed: Path, tmp_path: Path) 
         PYTHONPATH=str(installed),
     )
     assert json.loads(answer)["costs"]["units"] == 3
+
+
+def test_an_editable_install_runs_the_encodings_and_the_kitchen_of_the_checkout(
+    unpacked: Path, tmp_path: Path
+) -> None:
+    checkout = tmp_path / "checkout"
+    shutil.copytree(unpacked, checkout)
+    build = "import hatchling.build, sys; print(hatchling.build.build_editable(sys.argv[1]))"
+    name = run("-c", build, tmp_path, cwd=checkout).split()[-1]
+    # an environment of its own: it finds dependencies where the running Python does, but no other foon-asp
+    run("-m", "venv", "--without-pip", tmp_path / "venv", cwd=tmp_path)
+    python = tmp_path / "venv" / ("Scripts" if os.name == "nt" else "bin") / "python"
+    folder = Path(
+        run("-c", "import sysconfig; print(sysconfig.get_path('purelib'))", cwd=tmp_path, by=python).strip()
+    )
+    (folder / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
+    run(
+        *("-m", "pip", "--disable-pip-version-check", "install", "--quiet"),
+        *("--no-deps", "--no-index", "--target", folder, tmp_path / name),
+        cwd=tmp_path,
+    )
+    question = ("-m", "foon_asp", "solve", "--goal", "ice", "--format", "json")
+    assert json.loads(run(*question, cwd=tmp_path, by=python))["costs"]["units"] == 2
+    with (checkout / "encodings" / "show.lp").open("a", encoding="utf-8") as encoding:
+        encoding.write('\n:- use(U), motion(U, "crush").\n')
+    answer = json.loads(run(*question, "--reduce", "none", cwd=tmp_path, by=python))
+    assert answer["costs"]["units"] == 3, "the encoding that was changed is not the one that ran"
+    (checkout / "data" / "kitchen" / "kitchen.json").write_text("[]", encoding="utf-8")
+    (checkout / "encodings" / "show.lp").write_bytes((ROOT / "encodings" / "show.lp").read_bytes())
+    ended = subprocess.run([python, *question], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (ended.returncode, json.loads(ended.stdout)["status"]) == (1, "infeasible"), ended.stderr

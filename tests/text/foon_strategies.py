@@ -42,13 +42,17 @@ def nodes(without: str = "") -> st.SearchStrategy[ObjectNode]:
 
 
 def units(most: int = 4) -> st.SearchStrategy[list[FunctionalUnit]]:
-    """Draw lists of units, each with an input; some without outputs, some nodes used several times."""
+    """Draw lists of units, each with an input; some without outputs, some nodes used several times.
+
+    No motion ends in ``*``, which in FOON text marks a composite motion and is no part of its name.
+    """
+    motion = names().filter(lambda name: not name.endswith("*") or not name.strip("* "))
 
     def of_nodes(pool: list[ObjectNode]) -> st.SearchStrategy[list[FunctionalUnit]]:
         some = st.sampled_from(pool)
         unit = st.builds(
             FunctionalUnit.of,
-            names(),
+            motion,
             st.lists(some, min_size=1, max_size=3),
             st.lists(some, max_size=3),
         )
