@@ -50,7 +50,7 @@ def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval
     ``implied`` let a unit skip counts as made here, and not when the tree is executed.
 
     Source: D. Paulius et al., "Functional Object-Oriented Network for Manipulation Learning", IROS 2016
-    (retrieval of task trees), and the published programs that followed.
+    (retrieval of task trees), and the published programs that followed (docs/sources.md).
     """
     network, kitchen = problem.network, problem.kitchen
     waiting = deque(problem.goals)
