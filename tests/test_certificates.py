@@ -4,6 +4,7 @@ import json
 import random
 import subprocess
 import sys
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -21,6 +22,7 @@ from foon_asp.certificate import (
     certify_outcome,
     coverage,
 )
+from foon_asp.errors import BugError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, Verified, read_certificate, verify
@@ -466,3 +468,104 @@ def run_python(*arguments: str) -> str:
 def test_a_refusal_is_an_error_of_its_own() -> None:
     with pytest.raises(RefusedError, match="a key stands twice"):
         read_certificate('{"version": 1, "version": 1}')
+
+
+# --- an answer and a certificate that cannot both be true
+
+
+def broken(change: Callable[[dict[str, Any]], None]) -> Callable[..., Certificate]:
+    """Give a finder whose certificates say something else, and were never verified."""
+
+    def find(problem: Problem, objectives: Sequence[Objective], *rest: Any) -> Certificate:
+        right = certify(problem, objectives, *rest)
+        assert right is not None
+        content = {**right.content}
+        change(content)
+        return Certificate(content, content["claim"], right.certified)
+
+    return find
+
+
+@pytest.mark.parametrize(
+    ("values", "reason"),
+    [
+        ({"claim": "bound", "bound": [{"1/2": "1"}, "0"]}, "the tree costs less"),
+        ({"claim": "bound", "bound": [{"9/10": "1"}, "2"]}, "the tree costs less"),
+        ({"claim": "infeasible"}, "the certificate proves that there is no tree"),
+        ({"tree": [1]}, "the certificate proves another tree optimal, the units [1] (1 units"),
+        ({"goals": [{"id": 0, "node": "start"}]}, "the certificate speaks of the goals [0]"),
+        ({"containers": "implied"}, "the certificate speaks of the goals [1] under implied containers"),
+    ],
+)
+def test_an_answer_and_a_certificate_at_odds_are_a_bug(
+    monkeypatch: pytest.MonkeyPatch, values: dict[str, Any], reason: str
+) -> None:
+    problem = two_ways("9/10", "1/2")
+    outcome = solve(problem, (Objective.SUCCESS,))
+    assert outcome.units == (0,)
+    monkeypatch.setattr(
+        "foon_asp.certificate.outcome.certify", broken(lambda content: content.update(values))
+    )
+    settings = Settings((Path("require_motion"),), constants=("required_motion=pour",))
+    with pytest.raises(BugError) as bug:
+        certify_outcome(outcome, settings)
+    said = str(bug.value)
+    assert reason in said
+    assert "the answer is optimal, the units [0] (1 units, 1 inputs, 0 ingredients, 1 kitchen items" in said
+    for line in ("goals: end", "containers: strict, level 3", "objectives: success, units"):
+        assert line in said
+    assert "constraint: require_motion\nconstant: required_motion=pour" in said
+
+
+@pytest.mark.parametrize("bound", [[{"9/10": "1"}, "1"], [{}, "5"], [{"9/10": "1", "1/2": "-1"}, "7"]])
+def test_a_bound_at_or_below_the_tree_is_no_bug(monkeypatch: pytest.MonkeyPatch, bound: list[Any]) -> None:
+    outcome = solve(two_ways("9/10", "1/2"), (Objective.SUCCESS,))
+    finder = broken(lambda content: content.update(claim="bound", bound=bound))
+    monkeypatch.setattr("foon_asp.certificate.outcome.certify", finder)
+    marked, found = certify_outcome(outcome, Settings())
+    assert found is not None
+    assert marked.proof is not Proof.CERTIFICATE
+
+
+def test_no_tree_and_a_certificate_of_one_are_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = two_ways("9/10", "1/2")
+    outcome = solve(replace(problem, kitchen=frozenset()))
+    assert outcome.status is Status.INFEASIBLE
+    right = certify(problem, (Objective.UNITS,), [0])
+    monkeypatch.setattr("foon_asp.certificate.outcome.certify_infeasible", lambda *_: right)
+    with pytest.raises(
+        BugError, match="the answer is infeasible, no tree, but the certificate claims optimal"
+    ):
+        certify_outcome(outcome, Settings())
+
+
+@pytest.mark.parametrize("verb", [("certify",), ("solve", "--certificate")])
+def test_a_broken_finder_ends_with_70(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, verb: tuple[str, ...]
+) -> None:
+    """A bound above what the tree costs is never written beside ``optimal``."""
+
+    def above(content: dict[str, Any]) -> None:
+        content.update(claim="bound", bound=["1000"])
+
+    monkeypatch.setattr("foon_asp.certificate.outcome.certify", broken(above))
+    file = tmp_path / "proof.json"
+    words = (*verb, file) if "--certificate" in verb else (*verb, "-o", file)
+    ran = cli(words[0], "--goal", "ice", *words[1:])
+    assert ran.code == 70
+    assert "optimal" not in ran.out
+    assert "the certificate proves the bound ['1000'], and the tree costs less" in ran.err
+    assert "goals: ice; crushed; in [drinking glass]" in ran.err
+    assert not file.exists()
+
+
+def test_a_tree_called_optimal_that_is_not_ends_with_70(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def worse(problem: Problem, *_: Any, **__: Any) -> Any:
+        outcome = solve(problem)
+        assert outcome.units is not None
+        return outcome._replace(units=(*outcome.units, 0), costs=problem.costs((*outcome.units, 0)))
+
+    monkeypatch.setattr("foon_asp.cli.certify.solve", worse)
+    ran = cli("certify", "--goal", "ice")
+    assert ran.code == 70
+    assert "but there is a better tree, the units [" in ran.err

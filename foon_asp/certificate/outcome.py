@@ -1,13 +1,19 @@
 """From the solver's answer to one that a certificate proves."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
+from foon_asp.bounds import Vector
 from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
-from foon_asp.certificate.coverage import coverage
+from foon_asp.certificate.coverage import Coverage, coverage
+from foon_asp.certificate.question import Question
 from foon_asp.errors import BugError
-from foon_asp.problem import levels
+from foon_asp.problem import Objective, Problem, levels
+
+_WRITTEN = 13_000  # bits of a number that is printed; Python writes at most 4,300 digits
 
 
 def certify_outcome(
@@ -17,7 +23,7 @@ def certify_outcome(
 
     The answer is marked ``certificate`` where the whole of its claim is proved; where only the first of its
     objectives are, it says for each. Raises :class:`BugError` when a tree that the solver called optimal is
-    not.
+    not, and when answer and certificate cannot both be true.
     """
     began = time.perf_counter()
     covered = coverage(settings)
@@ -35,14 +41,99 @@ def certify_outcome(
                 outcome.cuts,
             )
         except NotBestError as better:
-            raise BugError(
-                f"the solver calls the tree {list(outcome.units)} optimal by "
-                f"{', '.join(outcome.objectives)}, but "
-                f"the units {list(better.units)} make the goals for {better.costs}"
+            raise _contradiction(
+                outcome, settings, f"there is a better tree, {_tree(outcome, better.units)}"
             ) from None
     outcome.seconds["certificate"] = time.perf_counter() - began
+    if found is not None:
+        why = _at_odds(outcome, found, covered)
+        if why is not None:
+            raise _contradiction(outcome, settings, why)
     if found is None or found.claim == "bound":
         return outcome, found
     complete = found.claim == "infeasible" or found.certified == levels(outcome.objectives)
     proof = Proof.CERTIFICATE if complete else outcome.proof
     return outcome._replace(proof=proof, certified=found.certified), found
+
+
+def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
+    """Say why an answer and a certificate cannot both be true; ``None`` where they can.
+
+    The certificate was verified, but not against the answer: that it speaks of the same goals and rule, and
+    proves nothing that the answer denies, is looked at here and not taken from how it was found.
+    """
+    problem, content = outcome.problem, certificate.content
+    goals = tuple(goal["id"] for goal in content["goals"])
+    if (goals, content["containers"]) != (problem.goals, str(problem.containers)):
+        return f"the certificate speaks of the goals {list(goals)} under {content['containers']} containers"
+    if outcome.units is None:
+        return None if certificate.claim == "infeasible" else f"the certificate claims {certificate.claim}"
+    if certificate.claim == "infeasible":
+        return "the certificate proves that there is no tree"
+    return _costs_at_odds(outcome, outcome.units, certificate, covered)
+
+
+def _costs_at_odds(
+    outcome: Outcome, units: Sequence[int], certificate: Certificate, covered: Coverage
+) -> str | None:
+    """Say why a tree cannot cost what a certificate proves; ``None`` where it can."""
+    problem, content = outcome.problem, certificate.content
+    question = Question(problem, certificate.certified, covered)
+    cost = question.order.total(question.costs[a] for a in question.actions(units))
+    if certificate.claim == "bound":
+        least = _read(question, content["bound"])
+        if question.order.sign(_minus(cost, least)) < 0:
+            return f"the certificate proves the bound {content['bound']}, and the tree costs less"
+        return None
+    proved = question.order.total(question.costs[a] for a in question.actions(content["tree"]))
+    if question.order.sign(_minus(cost, proved)) != 0:
+        return f"the certificate proves another tree optimal, {_tree(outcome, content['tree'])}"
+    return None
+
+
+def _read(question: Question, stated: Sequence[Any]) -> Vector:
+    """Read a bound as certificates state it back into a cost."""
+    vector: list[Fraction] = []
+    for objective, part in zip(question.objectives, stated, strict=True):
+        if objective is Objective.SUCCESS:
+            vector += [Fraction(part.get(str(rate), 0)) for rate in question.rates]
+        else:
+            vector.append(Fraction(part))
+    return tuple(vector)
+
+
+def _minus(one: Vector, other: Vector) -> Vector:
+    return tuple(a - b for a, b in zip(one, other, strict=True))
+
+
+def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
+    """Say that the solver's answer is not true, with all that asking again takes but the data."""
+    problem = outcome.problem
+    asked = [
+        f"goals: {' | '.join(str(problem.network.objects[goal]) for goal in problem.goals)}",
+        f"containers: {problem.containers}, level {problem.network.level}",
+        f"objectives: {', '.join(levels(outcome.objectives))}",
+        f"network: {len(problem.network)} units, {len(problem.network.objects)} object nodes",
+        f"kitchen: {len(problem.kitchen)} items",
+    ]
+    asked += [f"constraint: {file}" for file in settings.constraints]
+    asked += [f"constant: {constant}" for constant in settings.constants]
+    if settings.encodings is not None:
+        asked.append(f"encodings: {settings.encodings}")
+    answer = "no tree" if outcome.units is None else _tree(outcome, outcome.units)
+    return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(asked))
+
+
+def _tree(outcome: Outcome, units: Sequence[int]) -> str:
+    """Name a tree and its costs."""
+    return f"the units {list(units)} ({_figures(outcome.problem, units)})"
+
+
+def _figures(problem: Problem, units: Sequence[int]) -> str:
+    costs = problem.costs(units)
+    figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
+    figures.append(f"{costs.kitchen} kitchen items")
+    if costs.success is not None:
+        long = costs.success.denominator.bit_length() > _WRITTEN
+        figures.append(f"success {'of too many digits to print' if long else costs.success}")
+    return ", ".join(figures)
