@@ -5,9 +5,9 @@ from fractions import Fraction
 from pathlib import PurePath
 
 from foon_asp.asp.exact_success import RateScale
-from foon_asp.errors import UserError
+from foon_asp.errors import BugError, UserError
 from foon_asp.network import Source
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, multiplies
 
 # Every predicate written here, with its arity; encodings/README.md gives the meanings.
 FACT_PREDICATES = {
@@ -56,7 +56,7 @@ FACT_PREDICATES = {
     "_at_most_assisted": 1,
 }
 
-OBJECTIVE_TERMS = {
+_OBJECTIVE_TERMS = {
     Objective.UNITS: "units",
     Objective.INPUTS: "inputs",
     Objective.INPUTS_AND_INGREDIENTS: "inputs_and_ingredients",
@@ -178,10 +178,17 @@ def described(problem: Problem, units: Iterable[int]) -> list[int]:
     return sorted(touched.union(problem.goals))
 
 
+def objective_term(objective: Objective) -> str:
+    """Give the name of an objective in the encodings; raises :class:`BugError` where it has none."""
+    if objective not in _OBJECTIVE_TERMS:
+        raise BugError(f"the encodings have no criterion for the objective {str(objective)!r}")
+    return _OBJECTIVE_TERMS[objective]
+
+
 def write_objectives(objectives: Sequence[Objective]) -> str:
     """Switch criteria on, the first with the highest priority."""
     return "".join(
-        f"optimize({OBJECTIVE_TERMS[objective]},{len(objectives) - place}).\n"
+        f"optimize({objective_term(objective)},{len(objectives) - place}).\n"
         for place, objective in enumerate(objectives)
     )
 
@@ -251,10 +258,10 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
 
     Raises ``ValueError`` for ``success``, which does not count.
     """
-    if Objective.SUCCESS in bounds:
+    if any(map(multiplies, bounds)):
         raise ValueError("success is a product, and no sum that a bound could be put on")
     return "".join(
-        f"_at_most({number},{OBJECTIVE_TERMS[objective]},{_check(bound)}).\n"
+        f"_at_most({number},{objective_term(objective)},{_check(bound)}).\n"
         for objective, bound in bounds.items()
     )
 

@@ -12,7 +12,7 @@ from functools import partial
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.program import Settings
 from foon_asp.errors import BugError, UserError
-from foon_asp.problem import Costs, Objective, Problem, executable_order
+from foon_asp.problem import Costs, Objective, Problem, executable_order, multiplies
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.reduce import ExactCosts, Reduced
 
@@ -151,7 +151,7 @@ class Postconditions:
         )
         for objective, have in exact.items():
             bound = outcome.bounds.get(objective)
-            if bound is None or (bound > have if objective is Objective.SUCCESS else bound < have):
+            if bound is None or (bound > have if multiplies(objective) else bound < have):
                 return  # what comes after counts among better trees only
             self.require(
                 bound == have,
@@ -179,7 +179,7 @@ class Postconditions:
         self.require(
             all(
                 exact.is_logarithm(total, Fraction(costs.measure(objective)))
-                if objective is Objective.SUCCESS
+                if multiplies(objective)
                 else total == costs.measure(objective)
                 for objective, total in totals.items()
             ),

@@ -11,7 +11,7 @@ from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach, relevant
 from foon_asp.resources import encodings_folder
 
 Rounded = tuple[int, ...]  # costs as clingo adds them up: success in rounded logarithms
@@ -182,7 +182,7 @@ class Ranked:
     def _rounded(self, units: Sequence[int], costs: Costs) -> Rounded:
         return tuple(
             sum(self._weight(unit) for unit in units)
-            if objective is Objective.SUCCESS
+            if multiplies(objective)
             else int(costs.measure(objective))
             for objective in self.levels
         )

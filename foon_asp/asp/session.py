@@ -9,7 +9,7 @@ fact: searches with the whole kitchen left open were up to a hundred times as lo
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 from foon_asp.asp.exact_success import RateScale, problem_scale
-from foon_asp.asp.facts import OBJECTIVE_TERMS, described, write_exponents, write_open_facts, write_product
+from foon_asp.asp.facts import described, objective_term, write_exponents, write_open_facts, write_product
 from foon_asp.asp.program import Program
 from foon_asp.asp.search import ground, refused
 from foon_asp.deadline import Deadline
@@ -95,7 +95,7 @@ class OpenProgram:
             self.scale = problem_scale(problem, self._units)
         facts = write_open_facts(problem, closed, left_open, self.scale, program.looked_at)
         facts += "".join(
-            f"#external optimize({OBJECTIVE_TERMS[objective]},{priority}).\n"
+            f"#external optimize({objective_term(objective)},{priority}).\n"
             for objective, priority in sorted(self._pairs)
         )
         self._ground = ground(
@@ -170,7 +170,7 @@ class OpenProgram:
         true = {_case(case, network) for case in self._open.intersection(_cases(problem, units))}
         true |= {_atom("goal", network.object_number(o)) for o in problem.goals}
         true |= {
-            f"optimize({OBJECTIVE_TERMS[objective]},{priority})"
+            f"optimize({objective_term(objective)},{priority})"
             for objective, priority in _pairs(levels)
             if objective in objectives
         }

@@ -21,7 +21,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program, Settings, assemble
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, reach
+from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, multiplies, reach
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
 from foon_asp.resources import encodings_folder
 
@@ -389,9 +389,7 @@ class _Solver:
             return True
         costs = self._costs(units)
         weights = {
-            objective: self._weight(units)
-            if objective is Objective.SUCCESS
-            else int(costs.measure(objective))
+            objective: self._weight(units) if multiplies(objective) else int(costs.measure(objective))
             for objective in objectives
         }
         listed = self.levels if len(ended.cost) == len(self.levels) else objectives
@@ -445,7 +443,7 @@ class _Solver:
         """
         bounds: dict[Objective, int | Fraction] = {
             objective: max(0, value)
-            if objective is not Objective.SUCCESS
+            if not multiplies(objective)
             else self.scale.success_bound(max(0, value))
             if self.scale
             else Fraction(1)
@@ -456,7 +454,7 @@ class _Solver:
         if reduced is None or reduced.costs is None:
             return bounds
         proved = reduced.costs.first(reduced.bound)
-        if first is Objective.SUCCESS:
+        if multiplies(first):
             bounds[first] = min(bounds[first], proved)
         elif self._best is not None:
             have = self._best.measure(first)
@@ -464,7 +462,7 @@ class _Solver:
             if len(bounds) > 1 and bounds[first] < have:
                 return {first: bounds[first]}
             for objective in self.levels[1:]:
-                if objective in bounds and objective is not Objective.SUCCESS:
+                if objective in bounds and not multiplies(objective):
                     bounds[objective] = min(bounds[objective], self._best.measure(objective))
         return bounds
 

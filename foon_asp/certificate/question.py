@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from foon_asp.bounds import Hypergraph, Lexicographic, Vector
 from foon_asp.certificate.coverage import Coverage
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, multiplies, unit_count
 
 
 class Question:
@@ -20,7 +20,7 @@ class Question:
         network = problem.network
         self.problem, self.objectives = problem, tuple(objectives)
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
-        self.order = Lexicographic([self.rates if o is Objective.SUCCESS else None for o in objectives])
+        self.order = Lexicographic([self.rates if multiplies(o) else None for o in objectives])
         self.goals = [goal for goal in problem.goals if goal not in problem.kitchen]
         self.forbidden = covered.forbids(network)
         known: dict[object, Vector] = {}
@@ -41,7 +41,7 @@ class Question:
 
     def parts(self, objective: Objective) -> int:
         """Give the number of coordinates that an objective has in a cost."""
-        return len(self.rates) if objective is Objective.SUCCESS else 1
+        return len(self.rates) if multiplies(objective) else 1
 
     def actions(self, units: Iterable[int]) -> list[int]:
         """Give the actions of a tree: its units, and the taking of the kitchen items that they need."""
@@ -56,7 +56,7 @@ class Question:
         for objective in self.objectives:
             values = vector[place : place + self.parts(objective)]
             place += len(values)
-            if objective is Objective.SUCCESS:
+            if multiplies(objective):
                 parts.append({str(r): str(e) for r, e in zip(self.rates, values, strict=True) if e})
             else:
                 parts.append(str(values[0]))
@@ -73,24 +73,15 @@ class Question:
 
     def _cost(self, unit: int, known: dict[object, Vector]) -> Vector:
         network = self.problem.network
-        inputs = network.inputs[unit]
         rate = self.problem.rate(unit) if self.rates else None
-        ingredients = 0
-        if Objective.INPUTS_AND_INGREDIENTS in self.objectives:
-            ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
-        key = (len(inputs), ingredients, rate)
+        counts = [0 if multiplies(o) else unit_count(network, o, unit) for o in self.objectives]
+        key = (rate, *counts)
         if key not in known:
-            counts = {
-                Objective.UNITS: 1,
-                Objective.INPUTS: len(inputs),
-                Objective.INPUTS_AND_INGREDIENTS: len(inputs) + ingredients,
-                Objective.KITCHEN: 0,
-            }
             cost: list[Fraction] = []
-            for objective in self.objectives:
-                if objective is Objective.SUCCESS:
+            for objective, count in zip(self.objectives, counts, strict=True):
+                if multiplies(objective):
                     cost += [Fraction(r == rate) for r in self.rates]
                 else:
-                    cost.append(Fraction(counts[objective]))
+                    cost.append(Fraction(count))
             known[key] = tuple(cost)
         return known[key]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Self
 import click
 
 from foon_asp.asp import Reporter
-from foon_asp.problem import Costs, Objective
+from foon_asp.problem import Costs, Objective, multiplies
 from foon_asp.report.answer import costs_text, success_text
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class Progress(Reporter):
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
         """Note the bound."""
-        if objective is Objective.SUCCESS:
+        if multiplies(objective):
             self._bound = f"proved: success at most {success_text(Fraction(bound))}"
         else:
             self._bound = f"proved: at least {bound} {objective}"

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.errors import BugError
-from foon_asp.problem import ContainerRule, Objective, Problem, conditions
+from foon_asp.problem import ContainerRule, Objective, Problem, conditions, multiplies
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.search import SEARCHES, Ending, SearchSettings
 
@@ -66,7 +66,7 @@ class Comparison(NamedTuple):
     def beats_the_optimum(self, judgement: Judgement, objective: Objective) -> bool:
         """Whether a tree is better than the proved optimum, as only one that does not execute can be."""
         ratio = self.ratio(judgement, objective)
-        return ratio is not None and (ratio > 1 if objective is Objective.SUCCESS else ratio < 1)
+        return ratio is not None and (ratio > 1 if multiplies(objective) else ratio < 1)
 
 
 def compare(
@@ -80,7 +80,7 @@ def compare(
     objects = problem.network.objects
     optima: dict[Objective, Optimum] = {}
     for objective in MEASURED:
-        if objective is Objective.SUCCESS and problem.rates is None:
+        if multiplies(objective) and problem.rates is None:
             continue
         outcome = solve(problem, (objective,), Settings(time_limit=time_limit))
         value = None if outcome.costs is None else Fraction(outcome.costs.measure(objective))
@@ -128,7 +128,7 @@ def judge(problem: Problem, name: str, settings: SearchSettings) -> Judgement:
     measures = {
         objective: Fraction(costs.measure(objective))
         for objective in MEASURED
-        if objective is not Objective.SUCCESS or costs.success is not None
+        if not multiplies(objective) or costs.success is not None
     }
     return Judgement(
         name,

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Status
 from foon_asp.compare.comparison import MEASURED, Comparison
-from foon_asp.problem import Objective
+from foon_asp.problem import Objective, multiplies
 from foon_asp.proof import Verdict
 from foon_asp.search import Ending
 
@@ -61,7 +61,7 @@ def _summary(name: str, rows: list[Comparison]) -> Summary:
         for row, judgement in found:
             ratio = row.ratio(judgement, objective)
             if ratio and judgement.executes in {Verdict.AS_LISTED, Verdict.REORDERED}:
-                ratios.append((1 / ratio if objective is Objective.SUCCESS else ratio, row.goal))
+                ratios.append((1 / ratio if multiplies(objective) else ratio, row.goal))
         if ratios:
             distances[objective] = _distance(sorted(ratios))
     return Summary(

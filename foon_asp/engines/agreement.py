@@ -7,7 +7,7 @@ from typing import NamedTuple
 from foon_asp.asp import Outcome, Status
 from foon_asp.engines import fast_downward, highs
 from foon_asp.engines.engine import EngineAnswer
-from foon_asp.problem import Costs, Objective, Problem, executable_order, levels
+from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, multiplies
 from foon_asp.proof import Verdict, simulate_for
 
 Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
@@ -78,8 +78,8 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> None:
         ours, theirs = outcome.costs.measure(objective), costs.measure(objective)
         if ours == theirs:
             continue
-        better = theirs > ours if objective is Objective.SUCCESS else theirs < ours
-        if not better and objective is Objective.SUCCESS and _close(outcome.costs, costs):
+        better = theirs > ours if multiplies(objective) else theirs < ours
+        if not better and multiplies(objective) and _close(outcome.costs, costs):
             return  # what it then finds for the objectives after this one is about other trees
         raise DisagreementError(
             f"by {objective} our tree has {ours}, the one of {answer.engine} {theirs}; "

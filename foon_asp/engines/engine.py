@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, multiplies, unit_count
 
 
 class EngineAnswer(NamedTuple):
@@ -48,14 +48,10 @@ def backwards(problem: Problem, forbidden: frozenset[int]) -> Scope:
 
 def cost(problem: Problem, objective: Objective, unit: int) -> float:
     """Give what a unit alone costs: a whole number, but for ``success``; ``kitchen`` is no cost of units."""
-    network = problem.network
-    inputs = network.inputs[unit]
-    if objective is Objective.SUCCESS:
+    if multiplies(objective):
         rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
-    if objective is Objective.INPUTS_AND_INGREDIENTS:
-        return len(inputs) + sum(len(network.objects[o].ingredients) for o in inputs)
-    return {Objective.UNITS: 1, Objective.INPUTS: len(inputs), Objective.KITCHEN: 0}[objective]
+    return unit_count(problem.network, objective, unit)
 
 
 def taken(problem: Problem, units: Iterable[int]) -> list[int]:

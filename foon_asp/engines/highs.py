@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from foon_asp.engines.engine import EngineAnswer, backwards, cost, taken
 from foon_asp.errors import BugError
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, multiplies
 
 NAME = "HiGHS"
 _CLOSE = 1e-6  # within which HiGHS keeps to a sum of logarithms
@@ -106,7 +106,7 @@ class _Program:
         values = self._highs.getSolution().col_value
         terms = self._costs(objective)
         now = sum(value * round(values[variable]) for variable, value in terms)
-        close = _CLOSE if objective is Objective.SUCCESS else 0.5
+        close = _CLOSE if multiplies(objective) else 0.5
         self._at_least(-now - close, [(variable, -value) for variable, value in terms])
 
     def units(self) -> tuple[int, ...]:

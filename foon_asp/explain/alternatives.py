@@ -10,7 +10,7 @@ from foon_asp.asp.program import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.search import run
 from foon_asp.errors import BugError
-from foon_asp.problem import Costs, Objective, Problem, levels
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.resources import encodings_folder
 
 
@@ -166,4 +166,4 @@ def _is_too_dear(costs: Costs, best: Costs, order: tuple[Objective, ...], worse:
     if not worse:
         return costs.key(order) > best.key(order)
     ours, least = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
-    return ours < least * (1 - worse) if order[0] is Objective.SUCCESS else ours > least * (1 + worse)
+    return ours < least * (1 - worse) if multiplies(order[0]) else ours > least * (1 + worse)

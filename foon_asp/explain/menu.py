@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, solve
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.problem import Objective, Problem, levels
+from foon_asp.problem import Objective, Problem, levels, multiplies
 
 
 class Menu(NamedTuple):
@@ -28,12 +28,12 @@ class Menu(NamedTuple):
 
     def sum_of_separate(self, objective: Objective) -> int | Fraction | None:
         """Add up what the trees cost one by one (``success``: multiply); ``None`` where one has no tree."""
-        total: int | Fraction = Fraction(1) if objective is Objective.SUCCESS else 0
+        total: int | Fraction = Fraction(1) if multiplies(objective) else 0
         for outcome in self.separate:
             if outcome.costs is None:
                 return None
             figure = outcome.costs.measure(objective)
-            total = total * figure if objective is Objective.SUCCESS else total + figure
+            total = total * figure if multiplies(objective) else total + figure
         return total
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.problem import Costs, Objective, Problem, levels
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 
 
 class Part(StrEnum):
@@ -38,7 +38,7 @@ class Regret(NamedTuple):
         if self.costs is None:
             return None
         ours, theirs = best.measure(objective), self.costs.measure(objective)
-        if objective is Objective.SUCCESS:
+        if multiplies(objective):
             return 1 - Fraction(theirs) / Fraction(ours) if ours else Fraction(0)
         return theirs - ours
 

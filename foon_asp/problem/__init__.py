@@ -2,10 +2,11 @@
 
 from foon_asp.problem.containers import ContainerRule, conditions, given_outputs, needed_inputs
 from foon_asp.problem.costs import Costs
-from foon_asp.problem.objective import Objective, levels, parse_objectives
+from foon_asp.problem.objective import Objective, levels, multiplies, parse_objectives
 from foon_asp.problem.order import executable_order
 from foon_asp.problem.problem import Problem, require_rates
 from foon_asp.problem.relevance import Reached, first_tree, reach, relevant
+from foon_asp.problem.unit_count import unit_count
 
 __all__ = [
     "ContainerRule",
@@ -18,9 +19,11 @@ __all__ = [
     "first_tree",
     "given_outputs",
     "levels",
+    "multiplies",
     "needed_inputs",
     "parse_objectives",
     "reach",
     "relevant",
     "require_rates",
+    "unit_count",
 ]

@@ -3,7 +3,8 @@
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.problem.objective import Objective
+from foon_asp.errors import BugError
+from foon_asp.problem.objective import Objective, multiplies
 
 
 class Costs(NamedTuple):
@@ -23,23 +24,26 @@ class Costs(NamedTuple):
     def measure(self, objective: Objective) -> int | Fraction:
         """Give the figure an objective looks at; for ``success`` more is better, else less.
 
-        Raises ``ValueError`` for ``success`` where no rates are known.
+        Raises ``ValueError`` for ``success`` where no rates are known, and :class:`BugError` for an objective
+        that is not known here.
         """
-        if objective is Objective.SUCCESS:
+        if multiplies(objective):
             if self.success is None:
                 raise ValueError("no success rates are known")
             return self.success
-        if objective is Objective.INPUTS_AND_INGREDIENTS:
-            return self.inputs + self.ingredients
-        return {
+        known = {
             Objective.UNITS: self.units,
             Objective.INPUTS: self.inputs,
+            Objective.INPUTS_AND_INGREDIENTS: self.inputs + self.ingredients,
             Objective.KITCHEN: self.kitchen,
-        }[objective]
+        }
+        if objective not in known:
+            raise BugError(f"nothing says what a tree has by the objective {str(objective)!r}")
+        return known[objective]
 
     def key(self, objectives: tuple[Objective, ...]) -> tuple[int | Fraction, ...]:
         """Give a tuple that is smaller for a better tree under the lexicographic list."""
         return tuple(
-            -self.measure(objective) if objective is Objective.SUCCESS else self.measure(objective)
+            -self.measure(objective) if multiplies(objective) else self.measure(objective)
             for objective in objectives
         )

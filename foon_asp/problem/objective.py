@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from enum import StrEnum
 
-from foon_asp.errors import UserError
+from foon_asp.errors import BugError, UserError
 
 
 class Objective(StrEnum):
@@ -20,6 +20,24 @@ class Objective(StrEnum):
     INPUTS_AND_INGREDIENTS = "inputs+ingredients"
     SUCCESS = "success"
     KITCHEN = "kitchen"
+
+
+_ADDED_UP = frozenset(
+    {Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS, Objective.KITCHEN}
+)
+
+
+def multiplies(objective: Objective) -> bool:
+    """Whether an objective multiplies rates, and more is better; the others add up counts, and less is.
+
+    To be asked wherever that makes a difference, since it raises :class:`BugError` for an objective of which
+    nobody has said so: one that is added falls through nowhere.
+    """
+    if objective is Objective.SUCCESS:
+        return True
+    if objective not in _ADDED_UP:
+        raise BugError(f"nothing says how the objective {str(objective)!r} is measured")
+    return False
 
 
 def parse_objectives(names: Iterable[str]) -> tuple[Objective, ...]:

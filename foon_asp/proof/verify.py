@@ -438,6 +438,7 @@ class _Check:
             elif objective == "success":
                 cost[level, (self.rates or {})[network.motions[member]]] = Fraction(1)
             else:
+                _require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
                 inputs = network.inputs[member]
                 count = len(inputs)
                 if objective == "inputs+ingredients":

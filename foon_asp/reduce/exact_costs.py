@@ -6,7 +6,7 @@ from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 
 from foon_asp.bounds import Cuts, Lexicographic
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, multiplies, unit_count
 
 _COARSE = 1000  # steps of -ln(rate) to 1, where a cost need not be exact
 _SCALE = 10**40  # steps of logarithms where rounding must not decide
@@ -31,6 +31,7 @@ class ExactCosts:
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
         self._problem, self._objectives = problem, tuple(objectives)
+        self._multiplied = frozenset(filter(multiplies, self._objectives))
         self._units = units = len(problem.network)
         self._weights: dict[Fraction, int] = {}
         if Objective.SUCCESS in objectives:
@@ -40,7 +41,7 @@ class ExactCosts:
         self.doubt = 0
         for objective in reversed(self._objectives):
             self._factors.append(factor)
-            if objective is Objective.SUCCESS:
+            if objective in self._multiplied:
                 self.doubt = _ROUNDED * factor
             if objective is not self._objectives[0]:
                 factor *= 1 + self._most(objective, actions)
@@ -51,7 +52,7 @@ class ExactCosts:
         """Give what no set of actions costs more than by one objective."""
         if objective in {Objective.UNITS, Objective.KITCHEN}:
             return len(actions)
-        if objective is Objective.SUCCESS:
+        if objective in self._multiplied:
             return len(actions) * max(self._weights.values(), default=0)
         return sum(self._figure(objective, a) for a in actions)
 
@@ -67,7 +68,7 @@ class ExactCosts:
     def first(self, total: int) -> int | Fraction:
         """Turn a lower bound on sums into one on the first objective (on success: from above)."""
         figure = total // self._factors[0]
-        if self._objectives[0] is not Objective.SUCCESS:
+        if self._objectives[0] not in self._multiplied:
             return figure
         context = Context(prec=60, rounding=ROUND_CEILING)
         exponent = context.divide(Decimal(min(0, _ROUNDED - figure)), Decimal(_SCALE))
@@ -88,7 +89,7 @@ class ExactCosts:
         if cuts.bound + self.doubt < total:
             return False
         rates = sorted({rate for rate in self._weights if rate != 1})
-        order = Lexicographic([rates if o is Objective.SUCCESS else None for o in self._objectives])
+        order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])
         places = {rate: place for place, rate in enumerate(rates)}
         vectors = _Vectors(self, places)
         tight = {a for a, left in cuts.left.items() if left <= self.doubt} | {c.cheapest for c in cuts.cuts}
@@ -129,9 +130,9 @@ class ExactCosts:
     def _figure(self, objective: Objective, action: int) -> int:
         if action >= self._units:
             return int(objective is Objective.KITCHEN)
-        if objective is Objective.SUCCESS:
+        if objective in self._multiplied:
             return self._weights[self._problem.rate(action)]
-        return _count(problem=self._problem, objective=objective, unit=action)
+        return unit_count(self._problem.network, objective, action)
 
 
 def _large(vector: Sequence[int]) -> bool:
@@ -147,7 +148,7 @@ class _Vectors:
     def of(self, action: int) -> list[int]:
         vector: list[int] = []
         for objective, figure in self._costs.figures(action):
-            if objective is Objective.SUCCESS:
+            if multiplies(objective):
                 parts = [0] * len(self._places)
                 if figure:
                     parts[self._places[self._costs.rate(action)]] = 1
@@ -157,26 +158,15 @@ class _Vectors:
         return vector
 
 
-def _count(problem: Problem, objective: Objective, unit: int) -> int:
-    network = problem.network
-    if objective is Objective.UNITS:
-        return 1
-    if objective is Objective.KITCHEN:
-        return 0
-    inputs = network.inputs[unit]
-    if objective is Objective.INPUTS:
-        return len(inputs)
-    return len(inputs) + sum(len(network.objects[o].ingredients) for o in inputs)
-
-
 class CoarseCosts:
     """The first objective alone, in small whole numbers and never above what it is: a guide for estimates."""
 
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
+        self._multiplied = multiplies(objective)
         self._by_motion: dict[str, int] = {}
         self._by_unit: dict[int, int] = {}
-        if objective is Objective.SUCCESS:
+        if self._multiplied:
             self._by_motion = {motion: _coarse(rate) for motion, rate in (problem.rates or {}).items()}
             self._by_unit = {unit: _coarse(rate) for unit, rate in problem.own_rates.items()}
 
@@ -184,10 +174,10 @@ class CoarseCosts:
         """Give about what an action costs."""
         if action >= len(self._problem.network):
             return int(self._objective is Objective.KITCHEN)
-        if self._objective is Objective.SUCCESS:
+        if self._multiplied:
             own = self._by_unit.get(action)
             return self._by_motion[self._problem.network.motions[action]] if own is None else own
-        return _count(self._problem, self._objective, action)
+        return unit_count(self._problem.network, self._objective, action)
 
 
 def _coarse(rate: Fraction) -> int:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
 from foon_asp.network import Network
-from foon_asp.problem import Costs, Objective, Problem, levels
+from foon_asp.problem import Costs, Problem, levels, multiplies
 from foon_asp.text import write_units
 
 
@@ -36,7 +36,7 @@ def costs_json(costs: Costs | None) -> dict[str, object] | None:
 def bounds_json(outcome: Outcome) -> dict[str, object]:
     """Give the proved bounds by objective."""
     return {
-        str(objective): fraction_json(Fraction(bound)) if objective is Objective.SUCCESS else bound
+        str(objective): fraction_json(Fraction(bound)) if multiplies(objective) else bound
         for objective, bound in outcome.bounds.items()
     }
 
@@ -181,7 +181,7 @@ def counted(number: int, noun: str) -> str:
 def _bound_line(outcome: Outcome) -> str:
     bounds = [
         f"success at most {success_text(Fraction(bound))}"
-        if objective is Objective.SUCCESS
+        if multiplies(objective)
         else f"{objective} at least {bound}"
         for objective, bound in outcome.bounds.items()
     ]

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from foon_asp.asp import Status
 from foon_asp.compare import MEASURED, Comparison, Judgement, Optimum, Summary
-from foon_asp.problem import Objective
+from foon_asp.problem import Objective, multiplies
 from foon_asp.proof import Verdict
 
 _HEADINGS = ("goal", "search", "units", "inputs", "success", "executes")
@@ -146,7 +146,7 @@ def _cell(comparison: Comparison, judgement: Judgement, objective: Objective) ->
 
 
 def _figure(objective: Objective, value: Fraction) -> str:
-    if objective is not Objective.SUCCESS:
+    if not multiplies(objective):
         return str(value)
     return f"{float(value):.4f}" if value >= Fraction(1, 1000) else f"{float(value):.2e}"
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from foon_asp.explain.alternatives import Tree
 from foon_asp.explain.pareto import Front
-from foon_asp.problem import Objective
+from foon_asp.problem import Objective, multiplies
 from foon_asp.report.chart_file import TEXT, write_figure
 from foon_asp.report.pareto import success_texts
 
@@ -64,7 +64,7 @@ def write_front_chart(front: Front, file: Path) -> None:
 def _axes(front: Front) -> _Axes:
     """Choose what is drawn where."""
     upwards = Objective.SUCCESS in front.objectives
-    counts = [objective for objective in front.objectives if objective is not Objective.SUCCESS]
+    counts = [objective for objective in front.objectives if not multiplies(objective)]
     series = None
     if len(front.objectives) > 2:
         series = min(counts, key=lambda objective: len({t.costs.measure(objective) for t in front.points}))
@@ -87,7 +87,7 @@ def _draw(front: Front, figure: "Figure") -> None:
     axes.set_xlabel(_NAMES[chosen.x])
     axes.set_ylabel(_NAMES[chosen.y])
     axes.grid(axis="x")
-    if chosen.y is Objective.SUCCESS and _is_long([float(tree.costs.measure(chosen.y)) for tree in points]):
+    if multiplies(chosen.y) and _is_long([float(tree.costs.measure(chosen.y)) for tree in points]):
         axes.set_yscale("log")
     right = max(x for x, _ in _places(points, chosen)) + _BEYOND
     if chosen.series is None:
@@ -112,7 +112,7 @@ def _draw(front: Front, figure: "Figure") -> None:
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     if places == 1:
         axes.set_xlim(right - _BEYOND - 1, right + 1 - _BEYOND)
-    if chosen.y is not Objective.SUCCESS:
+    if not multiplies(chosen.y):
         axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         heights = {y for _, y in _places(points, chosen)}
         if len(heights) == 1:
@@ -170,7 +170,7 @@ def _draw_steps(
 def _name_points(axes: "Axes", points: Sequence[Tree], chosen: _Axes) -> None:
     """Put beside each point what it has of y; what it has of x can be read off the axis."""
     measures = [tree.costs.measure(chosen.y) for tree in points]
-    upwards = chosen.y is Objective.SUCCESS
+    upwards = multiplies(chosen.y)
     texts = success_texts(list(map(Fraction, measures))) if upwards else list(map(str, measures))
     for place, text in zip(_places(points, chosen), texts, strict=True):
         axes.annotate(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from foon_asp.explain.menu import Menu
-from foon_asp.problem import Objective
+from foon_asp.problem import multiplies
 from foon_asp.report.answer import counted, fraction_json, headline, outcome_dict, steps, success_text
 
 
@@ -51,7 +51,7 @@ def _lines(menu: Menu) -> Iterator[str]:
     total = menu.sum_of_separate(first)
     if total is not None:
         ours = menu.together.costs.measure(first)
-        if first is Objective.SUCCESS:
+        if multiplies(first):
             shown = f"one by one {success_text(Fraction(total))}, together {success_text(Fraction(ours))}"
         else:
             shown = f"one by one {total} {first}, together {ours}"

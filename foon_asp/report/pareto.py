@@ -9,7 +9,7 @@ from fractions import Fraction
 from foon_asp.explain.alternatives import Tree
 from foon_asp.explain.pareto import Front
 from foon_asp.network import Network
-from foon_asp.problem import Objective
+from foon_asp.problem import multiplies
 from foon_asp.report.alternatives import unit_lines
 from foon_asp.report.answer import costs_json, costs_text, counted, fraction_json, goal_lines, unit_json
 
@@ -104,7 +104,7 @@ def _table(front: Front) -> Iterator[str]:
     columns = [["point", *(str(number + 1) for number in range(len(front.points)))]]
     for objective in front.objectives:
         figures = [tree.costs.measure(objective) for tree in front.points]
-        texts = success_texts([Fraction(f) for f in figures]) if objective is Objective.SUCCESS else figures
+        texts = success_texts([Fraction(f) for f in figures]) if multiplies(objective) else figures
         columns.append([str(objective), *map(str, texts)])
     widths = [max(map(len, column)) for column in columns]
     words = ["", *(_words(front, number) for number in range(len(front.points)))]

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from foon_asp.asp import Status
 from foon_asp.explain.regret import Part, Regret, Regrets
-from foon_asp.problem import Objective
+from foon_asp.problem import multiplies
 from foon_asp.report.answer import (
     costs_json,
     costs_text,
@@ -66,7 +66,7 @@ def _loss(found: Regrets, regret: Regret) -> str:
     loss = regret.loss(found.outcome.costs, first)
     if not loss:
         return "nothing "
-    if first is Objective.SUCCESS:
+    if multiplies(first):
         text = success_text(Fraction(loss * 100))
         return f"≈ -{text[2:]} %" if text.startswith("≈") else f"-{text} %"
     return f"+{loss} {first}"
