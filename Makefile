@@ -1,6 +1,7 @@
 # make demo   solve every goal of the bundled kitchen, compare the searches with the optimum, draw a tree
 # make test   the tests, in less than three minutes; make test-slow for the long ones
 # make test-lowest   the tests with the lowest versions of our dependencies that pyproject.toml allows
+# make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes
 # make lint   style and types
 # make bench  the benchmarks, in a few minutes, into docs/performance.md; make bench-full the large ones, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
@@ -14,7 +15,7 @@ BIN := $(VENV)/bin
 CORES := -n auto --dist worksteal
 PAGE := --page docs/performance.md
 
-.PHONY: demo test test-slow test-lowest lint bench bench-full clean
+.PHONY: demo test test-slow test-lowest mutants lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -29,6 +30,9 @@ test: $(VENV)/installed-dev
 
 test-slow: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES) -m slow
+
+mutants: $(VENV)/installed-dev
+	$(BIN)/python -m tests.mutation $(if $(SAMPLE),--seconds $(SAMPLE))
 
 test-lowest:
 	PYTHON="$(PYTHON)" .ci/lowest $(CORES)
