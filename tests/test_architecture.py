@@ -36,6 +36,7 @@ SIDEWAYS = {
     ("resources", "errors"): "a broken installation is reported as such",
     ("deadline", "errors"): "a limit that cannot be held is refused",
     ("asp", "proof"): "every tree found is simulated before it is given out",
+    ("engines", "certificate"): "which rules do no more than rule units out is asked of both",
 }
 
 # What a room may not import although, or as if, the floors allowed it.

@@ -12,7 +12,16 @@ import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.cli import cross_check as command
-from foon_asp.engines import ENGINES, DisagreementError, EngineAnswer, agree, cross_check
+from foon_asp.engines import (
+    ENGINES,
+    Asked,
+    Check,
+    DisagreementError,
+    EngineAnswer,
+    NotCheckedError,
+    agree,
+    cross_check,
+)
 from foon_asp.engines.agreement import Engine
 from foon_asp.engines.fast_downward import installed, solve_with_fast_downward
 from foon_asp.engines.highs import solve_with_highs
@@ -72,36 +81,45 @@ def test_every_engine_agrees_with_brute_force(engine: Solve, rule: ContainerRule
 @pytest.mark.parametrize("rule", [RULES[0], pytest.param(RULES[1], marks=pytest.mark.slow)])
 def test_all_engines_give_one_answer(rule: ContainerRule) -> None:
     asked = 0
+    missing = [engine.name for engine in ENGINES if not engine.installed()]
     for seed in range(100, 104):
         for problem in (random_problem(seed, rule), replace(gap_problem(seed, 4), containers=rule)):
             for objective in Objective:
-                answers = cross_check(solve(problem, (objective,)), frozenset(), 60.0)
-                assert all(answer.finished for answer in answers)
-                asked += len(answers)
-    assert asked == 40 * sum(engine.installed() for engine in ENGINES)
+                checks = cross_check(Asked(solve(problem, (objective,))), 60.0)
+                asked += sum(check.reason is None for check in checks)
+                assert [check.engine for check in checks if check.reason is not None] == missing
+    assert asked == 40 * (3 - len(missing))
 
 
 def test_lists_are_checked_level_by_level() -> None:
     for seed in range(40):
         problem = random_problem(seed, RULES[seed % 2])
         objectives = tuple(random.Random(seed).sample(list(Objective), 3))
-        (answer,) = cross_check(solve(problem, objectives), frozenset(), 60.0, ENGINES[:1])
-        assert answer.objectives == levels(objectives)
+        outcome = solve(problem, objectives)
+        wanted = levels(objectives) if outcome.units is not None else ()
+        clingo, highs = cross_check(Asked(outcome), 60.0, ENGINES[:1])
+        assert (clingo.objectives, clingo.reason) == (wanted, None)
+        if highs.objectives != wanted:  # floats may be unable to tell
+            assert wanted[len(highs.objectives)] is Objective.SUCCESS
 
 
 def test_forbidden_units_are_left_out() -> None:
     problem = gap_problem(1, 4)
     settings = Settings((Path("forbid_motion"),), constants=("forbidden_motion=scrub",))
     forbidden = frozenset(u for u, motion in enumerate(problem.network.motions) if motion == "scrub")
-    for answer in cross_check(solve(problem, (Objective.SUCCESS,), settings), forbidden, 60.0):
-        assert answer.finished
-        assert not forbidden & {*(answer.units or ())}
+    outcome = solve(problem, (Objective.SUCCESS,), settings)
+    for check in cross_check(Asked(outcome, settings), 60.0):
+        assert check.reason is None or "not installed" in check.reason
+    answer = solve_with_highs(problem, levels((Objective.SUCCESS,)), forbidden, 60.0)
+    assert answer.units
+    assert not forbidden & {*answer.units}
 
 
 def test_an_engine_that_finds_nothing_in_time_says_so() -> None:
     answer = solve_with_highs(hard_problem(), (Objective.UNITS,), frozenset(), 0.05)
     assert not answer.finished
-    agree(solve(gap_problem(0, 3)), answer)
+    with pytest.raises(NotCheckedError, match="no answer in time"):
+        agree(solve(gap_problem(0, 3)), answer)
 
 
 # --- disagreements
@@ -118,7 +136,7 @@ def answer(outcome: Outcome, units: tuple[int, ...] | None) -> EngineAnswer:
 def test_disagreements_are_found() -> None:
     outcome = optimum()
     assert outcome.units is not None
-    agree(outcome, answer(outcome, outcome.units))
+    assert agree(outcome, answer(outcome, outcome.units)) == (Objective.UNITS,)
     with pytest.raises(DisagreementError, match="we say a tree exists, Oracle says no tree exists"):
         agree(outcome, answer(outcome, None))
     none = outcome._replace(status=Status.INFEASIBLE, units=None, costs=None)
@@ -144,7 +162,9 @@ def test_success_is_compared_as_far_as_engines_can_tell() -> None:
         costs: Costs = outcome.costs._replace(success=outcome.costs.success * Fraction(factor))  # type: ignore[union-attr, operator]
         return outcome._replace(costs=costs)
 
-    agree(with_success("1.0000001"), answer(outcome, outcome.units))
+    assert agree(outcome, answer(outcome, outcome.units)) == (Objective.SUCCESS, Objective.UNITS)
+    with pytest.raises(NotCheckedError, match="floats"):
+        agree(with_success("1.0000001"), answer(outcome, outcome.units))
     with pytest.raises(DisagreementError, match="Oracle calls a worse one the best"):
         agree(with_success("1.001"), answer(outcome, outcome.units))
     with pytest.raises(DisagreementError, match="ours is not the best"):
@@ -155,15 +175,27 @@ def test_the_command_line_says_who_agrees(cli: Cli) -> None:
     ran = cli("solve", "--goal", "macaroni", "--objective", "success", "--cross-check")
     assert ran.code == 0
     assert "cross-check: HiGHS agrees by success, units (" in ran.out
+    assert "cross-check: clingo agrees by success, units (" in ran.out
     if installed():
         assert "cross-check: Fast Downward agrees by success (" in ran.out
     else:
-        assert "cross-check: Fast Downward is not installed" in ran.out
-    assert cli("solve", "--goal", "apple pie", "--cross-check", "--format", "json").code == 1
+        assert "cross-check: Fast Downward: not checked: it is not installed" in ran.out
+    none = cli("solve", "--goal", "apple pie", "--cross-check", "--format", "json")
+    assert none.code == 1
+    assert "cross-check: clingo agrees that no tree exists (" in none.err
+    assert [row["agrees_by"] for row in none.json["cross_check"]] == [[], [], []]
     narrower = ("--constraint", "at_most_units", "-c", "max_units=9")
-    refused = cli("solve", "--goal", "ice", "--cross-check", *narrower)
-    assert refused.code == 2
-    assert "at_most_units.lp" in refused.err
+    ran = cli("solve", "--goal", "ice", "--cross-check", *narrower, "--format", "json")
+    assert ran.code == 0
+    rows = [
+        (row["engine"], row["checked"], row["agrees_by"], row["reason"]) for row in ran.json["cross_check"]
+    ]
+    unknown = "it knows no rules such as at_most_units.lp, max_units=9"
+    assert rows == [
+        ("clingo", True, ["units"], None),
+        ("HiGHS", False, [], unknown),
+        ("Fast Downward", False, [], unknown),
+    ]
 
 
 def test_an_engine_that_is_not_installed_is_named(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,7 +203,7 @@ def test_an_engine_that_is_not_installed_is_named(cli: Cli, monkeypatch: pytest.
     ran = cli("solve", "--goal", "ice", "--cross-check")
     assert ran.code == 0
     assert ran.out.endswith(
-        "cross-check: Fast Downward is not installed (pip install 'foon-asp[cross-check]')\n"
+        "cross-check: Fast Downward: not checked: it is not installed (pip install 'foon-asp[cross-check]')\n"
     )
     assert "HiGHS agrees" in ran.out
 
@@ -184,8 +216,8 @@ def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     ) -> EngineAnswer:
         return EngineAnswer("Liar", objectives, None, True, seconds)
 
-    def with_liar(outcome: Outcome, forbidden: frozenset[int], seconds: float) -> list[EngineAnswer]:
-        return cross_check(outcome, forbidden, seconds, (Engine("Liar", lambda: True, liar),))
+    def with_liar(asked: Asked, seconds: float) -> list[Check]:
+        return cross_check(asked, seconds, (Engine("Liar", lambda: True, liar),))
 
     monkeypatch.setattr(command, "cross_check", with_liar)
     monkeypatch.chdir(tmp_path)

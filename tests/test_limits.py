@@ -137,3 +137,15 @@ def test_grounding_without_an_end_is_stopped(tmp_path: Path) -> None:
     outcome = solve(hard_problem(3, 3, 2, 2), settings=Settings(constraints=(rules,), time_limit=1))
     assert time.monotonic() - began < 2.5
     assert outcome.status is Status.UNKNOWN
+
+
+def test_rules_are_found_in_the_folder_of_the_moment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The process that grounds was begun in one folder and is asked again in another."""
+    for name, rule in (("one", ""), ("other", ":- not use(U) : unit(U)."), ("third", ":-.")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "mine.lp").write_text(rule)
+    statuses: list[Status] = []
+    for name in ("one", "other", "third", "one"):
+        monkeypatch.chdir(tmp_path / name)
+        statuses.append(solve(hard_problem(3, 3, 2, 2), settings=Settings((Path("mine.lp"),))).status)
+    assert statuses == [Status.OPTIMAL, Status.OPTIMAL, Status.INFEASIBLE, Status.OPTIMAL]

@@ -54,6 +54,11 @@ FACT_PREDICATES = {
     "_at_most": 3,
     "_takes_over": 2,
     "_at_most_assisted": 1,
+    "_given": 1,
+    "_given_units": 1,
+    "_same_rate": 2,
+    "_most_alike": 2,
+    "_exactly_alike": 2,
 }
 
 _OBJECTIVE_TERMS = {
@@ -248,6 +253,11 @@ def write_soft(weights: Mapping[int, int]) -> str:
     return "".join(f"_soft({number},{_check(weight)}).\n" for number, weight in weights.items())
 
 
+def write_least_penalty(priority: int) -> str:
+    """Ask for the least sum of the weights of what is broken, with a priority among the objectives."""
+    return f"optimize(_soft,{priority}).\n"
+
+
 def write_greatest_penalty(penalty: int) -> str:
     """Bound the sum of the weights of what is broken."""
     return f"_greatest_penalty({_check(penalty)}).\n"
@@ -280,6 +290,28 @@ def write_tree(units: Collection[int]) -> str:
 def write_avoided(number: int, units: Iterable[int]) -> str:
     """Rule out a tree, by the ids of its units in the whole network, and all that hold it."""
     return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
+
+
+def write_given(numbers: Collection[int]) -> str:
+    """Ask whether units, by their numbers in the whole network, are a tree."""
+    return f"_given_units({len(numbers)}).\n" + "".join(f"_given({number}).\n" for number in numbers)
+
+
+def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
+    """Give the units of each success rate, by their numbers in the whole network."""
+    return "".join(
+        f"_same_rate({rate},{number}).\n" for rate, numbers in enumerate(classes) for number in numbers
+    )
+
+
+def write_most_alike(most: Sequence[int]) -> str:
+    """Bound how many units of each success rate a tree has."""
+    return "".join(f"_most_alike({rate},{_check(number)}).\n" for rate, number in enumerate(most))
+
+
+def write_exactly_alike(numbers: Sequence[int]) -> str:
+    """Say how many units of each success rate the tree is to have."""
+    return "".join(f"_exactly_alike({rate},{_check(number)}).\n" for rate, number in enumerate(numbers))
 
 
 def write_distances(trees: Sequence[Collection[int]], chosen: int) -> str:

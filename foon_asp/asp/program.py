@@ -102,7 +102,8 @@ class Settings(NamedTuple):
 class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
-    ``rules`` are added to them as text. ``exact_success`` is loaded beside ``files`` when products of rates
+    ``constants`` are those of the ``arguments`` that set constants. ``rules`` are added to them as text.
+    ``exact_success`` is loaded beside ``files`` when products of rates
     are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
     matter. ``bounded`` says that a tree of the unbounded question need not be one. ``looked_at`` are the
     names of the predicates that rules of the user's look at. ``text`` is all that the files said when they
@@ -120,6 +121,7 @@ class Program(NamedTuple):
     text: str = ""
     open: bool = False
     endless: bool = False
+    constants: tuple[str, ...] = ()
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
@@ -184,6 +186,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         text=text,
         open=is_open,
         endless=endless,
+        constants=tuple(constants),
     )
 
 

@@ -5,11 +5,17 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp.exact_success import problem_scale
-from foon_asp.asp.facts import write_facts, write_greatest_penalty, write_soft, write_tree
+from foon_asp.asp.facts import (
+    write_facts,
+    write_greatest_penalty,
+    write_least_penalty,
+    write_soft,
+    write_tree,
+)
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.program import Settings, assemble, find_constraint
+from foon_asp.asp.program import Relaxed, Settings, assemble, find_constraint
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter, solve
 from foon_asp.deadline import Deadline
@@ -41,6 +47,22 @@ class SoftOutcome(NamedTuple):
     constraints: tuple[Broken, ...]
 
 
+def soft_rules(
+    settings: Settings, weights: Mapping[Path, int]
+) -> tuple[tuple[IntegrityConstraint, ...], dict[int, int], Relaxed]:
+    """Number the integrity constraints of soft files, with their weights, and put them in other words.
+
+    Raises :class:`UserError` for a file that is among the constraints of the settings, too.
+    """
+    both = set(map(find_constraint, settings.constraints)) & set(map(find_constraint, weights))
+    if both:
+        raise UserError(f"{min(both)} is named as a constraint and as a soft one; leave one of them out")
+    constraints, relaxed = relax(tuple(weights), settings.constants, soft=True)
+    of_file = {find_constraint(path): weight for path, weight in weights.items()}
+    by_number = {c.number: of_file[c.file] for c in constraints}
+    return constraints, by_number, relaxed._replace(rules=relaxed.rules + write_soft(by_number))
+
+
 def solve_soft(
     problem: Problem,
     objectives: Sequence[Objective],
@@ -55,15 +77,9 @@ def solve_soft(
     whole, costs its weight. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     reporter = reporter or Reporter()
-    both = set(map(find_constraint, settings.constraints)) & set(map(find_constraint, weights))
-    if both:
-        raise UserError(f"{min(both)} is named as a constraint and as a soft one; leave one of them out")
     settings = settings.limited()
     deadline = settings.begun
-    constraints, relaxed = relax(tuple(weights), settings.constants, soft=True)
-    of_file = {find_constraint(path): weight for path, weight in weights.items()}
-    by_number = {c.number: of_file[c.file] for c in constraints}
-    rules = write_soft(by_number)
+    constraints, by_number, relaxed = soft_rules(settings, weights)
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, reporter.warning)
     holds = Postconditions(problem, levels(tuple(objectives)), settings, program.own)
@@ -77,7 +93,7 @@ def solve_soft(
         deadline.interrupt()
         facts = ""
 
-    all_said = (facts or "") + program.rules + rules
+    all_said = (facts or "") + program.rules
 
     def ask(more: str, opt_mode: str) -> Run:
         files, arguments, broken = program.files, program.arguments, ("_broken",)
@@ -90,13 +106,13 @@ def solve_soft(
         return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
 
     if facts is not None:
-        ended = ask("optimize(_soft,1).\n", "opt")
+        ended = ask(write_least_penalty(1), "opt")
         proved = ended.exhausted
         spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
             least = sum(by_number[number] * ways for number, ways in ended.atoms["_broken"].items())
     bound = "" if least is None else write_greatest_penalty(least)
-    hard = settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + rules + bound))
+    hard = settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + bound))
     outcome = solve(problem, objectives, hard, Reporter())
     holds.require(
         least is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
@@ -105,8 +121,9 @@ def solve_soft(
         outcome = outcome._replace(status=Status.FEASIBLE, proof=None, bounds={})
     outcome.seconds.update(spent)
     if outcome.units is not None:
-        given = ask(write_tree(outcome.units), "ignore")
-        if given.units is not None or given.exhausted:
+        # helpers of the user's may be free to break more or less with one tree: what counts is the least
+        given = ask(write_tree(outcome.units) + write_least_penalty(1), "opt")
+        if given.exhausted:
             holds.require(
                 given.units == frozenset(outcome.units),
                 lambda: f"the tree {outcome.units} is none when its soft constraints are looked at",

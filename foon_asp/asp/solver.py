@@ -21,7 +21,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program, Settings, assemble
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, multiplies, reach
+from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, multiplies, reach, relevant
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
 from foon_asp.resources import encodings_folder
 
@@ -61,13 +61,17 @@ def solve(
 
 
 def program_facts(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> str:
-    """Give the facts that :func:`solve` hands to clingo first, as text.
+    """Give the facts that :func:`solve` without reductions hands to clingo first, as text.
 
-    With them, bare clingo finds the same optimum from the same encodings.
+    With them, bare clingo finds the same optimum; :mod:`foon_asp.asp.bare_program` says from which files.
+    Where a goal cannot be made, units that cannot run are there, too: bare clingo is to see that for itself.
     """
-    solver = _Solver(problem, tuple(objectives), settings._replace(reductions=NONE), Reporter())
-    solver.cut()
-    return solver.facts() + write_objectives(solver.levels)
+    solver = _Solver(problem, tuple(objectives), settings, Reporter())
+    reached = reach(problem)
+    if not all(reached.available[goal] for goal in problem.goals):
+        reached = reached._replace(units=tuple(range(len(problem.network))))
+    solver.units = relevant(problem, reached) if solver.program.own else tuple(sorted(reached.units))
+    return solver.facts() + solver.program.rules + write_objectives(solver.levels)
 
 
 class _Solver:

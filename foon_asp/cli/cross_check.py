@@ -1,59 +1,32 @@
 """``--cross-check``: the answer held against other engines before it is given out."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
-from foon_asp.asp import Outcome, Settings, Status
-from foon_asp.certificate import Coverage, coverage
-from foon_asp.engines import ENGINES, DisagreementError, cross_check
+from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import BugError, UserError
+from foon_asp.report.cross_check import check_lines, checked_dict
 from foon_asp.report.disagreement import disagreement_files, disagreement_name
 from foon_asp.report.whole_file import write_whole
 
 _PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
 
 
-def checkable(settings: Settings) -> Coverage:
-    """Give what constraints rule out; other engines know of no other rules.
-
-    Raises :class:`UserError` for constraints that say more.
-    """
-    covered = coverage(settings)
-    if covered.not_covered:
-        raise UserError(
-            "--cross-check knows of no rules but forbid_motion and forbid_object, and here are also "
-            + ", ".join(name.partition(" ")[0] for name in covered.not_covered)
-        )
-    return covered
-
-
-def check_across(outcome: Outcome, covered: Coverage, time_limit: float | None) -> list[str]:
-    """Ask the other engines and say what they answer, a line for each.
+def check_across(asked: Asked) -> tuple[list[str], dict[str, object]]:
+    """Ask the other engines; give what they say in lines, and as a key of JSON.
 
     Where one disagrees, writes all that is needed to look into it to a new folder and raises
     :class:`BugError`.
     """
-    if outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
-        return ["cross-check: nothing is proved, so there is nothing to check"]
+    limit = asked.settings.time_limit
     try:
-        answers = cross_check(
-            outcome, covered.forbids(outcome.problem.network), _PATIENCE if time_limit is None else time_limit
-        )
+        checks = cross_check(asked, _PATIENCE if limit is None else limit)
     except DisagreementError as found:
-        folder = Path(disagreement_name(outcome))
-        folder.mkdir(exist_ok=True)
-        for name, content in disagreement_files(outcome, covered, found).items():
-            write_whole(folder / name, content.encode())
+        folder = Path(disagreement_name(asked.outcome))
+        try:
+            for name, content in disagreement_files(asked, found).items():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                write_whole(folder / name, content.encode("utf-8", "surrogatepass"))
+        except (OSError, UserError) as error:  # what was found counts more than where it is written
+            raise BugError(f"{found}; the data could not be written to {folder}/: {error}") from None
         raise BugError(f"{found}; data, question and answers are in {folder}/ (see report.json)") from None
-
-    def lines() -> Iterator[str]:
-        for answer in answers:
-            said = (
-                f"agrees by {', '.join(answer.objectives)}" if answer.finished else "found no answer in time"
-            )
-            yield f"cross-check: {answer.engine} {said} ({answer.seconds:.2f} s)"
-        for engine in ENGINES:
-            if not engine.installed():
-                yield f"cross-check: {engine.name} is not installed (pip install 'foon-asp[cross-check]')"
-
-    return list(lines())
+    return list(check_lines(asked, checks)), checked_dict(checks)

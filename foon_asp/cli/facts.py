@@ -4,9 +4,11 @@ from pathlib import Path
 
 import click
 
-from foon_asp.asp import Settings, program_facts
+from foon_asp.asp import Settings
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.weighted_files import weighted_files
 from foon_asp.problem import parse_objectives
 
 
@@ -15,6 +17,7 @@ from foon_asp.problem import parse_objectives
 @options.objective_option
 @options.containers_option
 @options.constraint_options
+@options.soft_option
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
@@ -22,21 +25,28 @@ def command(
     containers: str,
     constraints: tuple[Path, ...],
     encodings: Path | None,
+    soft: tuple[str, ...],
     **data: object,
 ) -> ExitCode:
     """Print the facts that clingo is given for a goal; encodings/README.md says what they mean.
 
     Units that no goal can need are left out, which is right for constraints that only forbid. Name a
-    constraint that asks for something with --constraint, and all units that can be made are there.
+    constraint that asks for something with --constraint, and all units that can be made are there. The
+    rules of a --soft file are printed with the facts, as rules for what is broken.
 
     \b
     foon-asp facts --goal ice > facts.lp
     python -m clingo encodings/{task_tree,objectives,show}.lp facts.lp mine.lp
+
+    \b
+    foon-asp facts --goal ice --soft mine.lp=3 > facts.lp
+    python -m clingo encodings/*.lp encodings/questions/soft.lp facts.lp
     """
     chosen = parse_objectives(objectives)
     question = options.read_question(**data)  # type: ignore[arg-type]
     problem = question.problem(
-        question.goals(goals_named), containers, everything=bool(constraints or encodings)
+        question.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
     )
-    click.echo(program_facts(problem, chosen, Settings(constraints, encodings)), nl=False)
+    program = bare_program(problem, chosen, Settings(constraints, encodings), weighted_files(soft, "--soft"))
+    click.echo(program.facts, nl=False)
     return ExitCode.DONE

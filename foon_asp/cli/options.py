@@ -81,6 +81,13 @@ containers_option = click.option(
     help="Whether a unit needs every input, or takes utensils that hold one of them as given.",
 )
 
+soft_option = click.option(
+    "--soft",
+    multiple=True,
+    metavar="FILE.lp=WEIGHT",
+    help="Constraints that may be broken, each way at that price; the least sum comes first.",
+)
+
 constant_option = click.option(
     "-c", "constants", multiple=True, metavar="NAME=VALUE", help="Set a #const of an encoding; repeatable."
 )

@@ -8,11 +8,12 @@ import click
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.certify import expiry, find_certificate, write_certificate
-from foon_asp.cli.cross_check import check_across, checkable
+from foon_asp.cli.cross_check import check_across
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.cli.weighted_files import weighted_files
+from foon_asp.engines import Asked
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, parse_objectives, reach
 from foon_asp.reduce import Reduction, parse_reductions
@@ -26,12 +27,7 @@ from foon_asp.report.certified import certificate_lines
 @options.containers_option
 @options.constraint_options
 @options.constant_option
-@click.option(
-    "--soft",
-    multiple=True,
-    metavar="FILE.lp=WEIGHT",
-    help="Constraints that may be broken, each way at that price; the least sum comes first.",
-)
+@options.soft_option
 @options.time_limit_option
 @click.option(
     "--reduce",
@@ -51,7 +47,7 @@ from foon_asp.report.certified import certificate_lines
 @click.option(
     "--cross-check",
     is_flag=True,
-    help="Also ask other engines: HiGHS, and Fast Downward where it is installed.",
+    help="Also ask other engines: bare clingo, HiGHS, and Fast Downward where it is installed.",
 )
 @options.format_option("text", "json", "foon")
 @options.data_options
@@ -104,15 +100,11 @@ def command(
         session=options.session_here(),
     )
     if soft:
-        if certificate_file is not None or cross_check:
-            raise UserError(
-                "soft constraints have neither certificates nor a cross-check; leave one of them out"
-            )
-        return _solve_soft(
-            problem, chosen, settings, weighted_files(soft, "--soft"), question.read_seconds, format_
-        )
+        if certificate_file is not None:
+            raise UserError("soft constraints have no certificates; leave one of them out")
+        weights = weighted_files(soft, "--soft")
+        return _solve_soft(problem, chosen, settings, weights, question.read_seconds, cross_check, format_)
     expired = expiry(time_limit)
-    covered = checkable(settings) if cross_check else None
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
     outcome.seconds["read"] = question.read_seconds
@@ -121,15 +113,20 @@ def command(
         outcome, certificate = find_certificate(outcome, settings, expired)
         write_certificate(certificate, certificate_file)
         remarks = certificate_lines(outcome, certificate, str(certificate_file))
-    render = {"text": answer.outcome_text, "json": answer.outcome_json, "foon": answer.outcome_foon}[format_]
-    click.echo(render(outcome), nl=False)
+    more: dict[str, object] = {}
+    if cross_check:
+        lines, more = check_across(Asked(outcome, settings))
+        remarks += lines
+    if format_ == "json":
+        click.echo(answer.outcome_json(outcome, more), nl=False)
+    else:
+        render = {"text": answer.outcome_text, "foon": answer.outcome_foon}[format_]
+        click.echo(render(outcome), nl=False)
     if format_ == "text" and outcome.status is Status.INFEASIBLE:
         for line in answer.why_infeasible(problem, reach(problem).available):
             click.echo(line)
     if format_ != "text" and outcome.status is not Status.OPTIMAL:
         click.echo(answer.headline(outcome), err=True)
-    if covered is not None:
-        remarks += check_across(outcome, covered, time_limit)
     for line in remarks:
         click.echo(line, err=format_ != "text")
     return of_status(outcome.status)
@@ -141,6 +138,7 @@ def _solve_soft(
     settings: Settings,
     weights: Mapping[Path, int],
     read_seconds: float,
+    cross_check: bool,
     format_: str,
 ) -> ExitCode:
     from foon_asp.asp.soft import solve_soft
@@ -150,8 +148,12 @@ def _solve_soft(
         found = solve_soft(problem, objectives, settings, weights, progress)
     outcome = found.outcome
     outcome.seconds["read"] = read_seconds
+    more: dict[str, object] = {}
+    remarks: list[str] = []
+    if cross_check:
+        remarks, more = check_across(Asked(outcome, settings, weights, found.penalty))
     if format_ == "json":
-        click.echo(soft_json(found), nl=False)
+        click.echo(soft_json(found, more), nl=False)
     elif format_ == "text":
         click.echo(soft_text(found), nl=False)
     else:
@@ -160,4 +162,6 @@ def _solve_soft(
     if outcome.status is Status.INFEASIBLE and format_ == "text":
         for line in answer.why_infeasible(problem, reach(problem).available):
             click.echo(line)
+    for line in remarks:
+        click.echo(line, err=format_ != "text")
     return of_status(outcome.status)

@@ -1,20 +1,25 @@
 """Holding the answers of all engines against each other: one question, one answer."""
 
 import math
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Status
-from foon_asp.engines import fast_downward, highs
-from foon_asp.engines.engine import EngineAnswer
-from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, multiplies
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.certificate import Coverage, coverage
+from foon_asp.engines import bare_clingo, fast_downward, highs
+from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError, check_tree
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 
 Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
 
+# Engines compute logarithms of rates in floats or in millionths: closer than this for each unit is equal.
+_CLOSE = 2e-6
+_EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
+
 
 class Engine(NamedTuple):
-    """A second engine: its name, whether it is installed, and how it is asked."""
+    """A second engine that knows no constraints but units ruled out, whether it is there, how it is asked."""
 
     name: str
     installed: Callable[[], bool]
@@ -26,66 +31,113 @@ ENGINES = (
     Engine(fast_downward.NAME, fast_downward.installed, fast_downward.solve_with_fast_downward),
 )
 
-# Engines compute logarithms of rates in floats or in millionths: closer than this for each unit is equal.
-_CLOSE = 2e-6
 
+class Check(NamedTuple):
+    """What came of asking an engine: it agrees, or has not checked the answer; to disagree is an exception.
 
-class DisagreementError(Exception):
-    """Two engines give answers that cannot both be right: a bug, here or there."""
-
-    def __init__(self, message: str, answer: EngineAnswer) -> None:
-        super().__init__(message)
-        self.answer = answer
-
-
-def cross_check(
-    outcome: Outcome, forbidden: frozenset[int], seconds: float, engines: tuple[Engine, ...] = ENGINES
-) -> list[EngineAnswer]:
-    """Ask every engine that is installed what an answer says, each for at most so many seconds.
-
-    The answer has to be ``optimal`` or ``infeasible``; ``forbidden`` are the units that its constraints rule
-    out. Raises :class:`DisagreementError` at the first that says otherwise.
+    ``objectives`` are those by which it finds our tree best, in the order of the list; ``reason`` says why it
+    has checked nothing, and is ``None`` where it agrees.
     """
+
+    engine: str
+    objectives: tuple[Objective, ...]
+    reason: str | None
+    seconds: float
+
+
+def cross_check(asked: Asked, seconds: float, engines: tuple[Engine, ...] = ENGINES) -> list[Check]:
+    """Ask every engine what an answer says, each for at most so many seconds.
+
+    Bare clingo is asked under whatever rules there are; ``engines`` where all rules are ours, or rule units
+    out one by one. Raises :class:`DisagreementError` at the first that says otherwise. From ctrl-C on nothing
+    else is checked.
+    """
+    checks: list[Check] = []
+    interrupted = False
+    for name, ask in _engines(asked, seconds, engines):
+        began = time.monotonic()
+        objectives: tuple[Objective, ...] = ()
+        reason: str | None = None
+        try:
+            if interrupted:
+                raise NotCheckedError("interrupted")
+            if asked.outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
+                raise NotCheckedError("nothing is proved, so there is nothing to check")
+            objectives = ask()
+        except NotCheckedError as error:
+            reason = str(error)
+        except KeyboardInterrupt:
+            interrupted, reason = True, "interrupted"
+        checks.append(Check(name, objectives, reason, time.monotonic() - began))
+    return checks
+
+
+def _engines(
+    asked: Asked, seconds: float, engines: tuple[Engine, ...]
+) -> Iterator[tuple[str, Callable[[], tuple[Objective, ...]]]]:
+    """Give every engine by name, with a function that asks it and gives by what it agrees."""
+    outcome = asked.outcome
     wanted = levels(outcome.objectives)
-    answers: list[EngineAnswer] = []
+
+    def ask_clingo() -> tuple[Objective, ...]:
+        bare_clingo.check_with_bare_clingo(asked, seconds)
+        return () if outcome.units is None else wanted
+
+    yield bare_clingo.NAME, ask_clingo
+    covered = coverage(asked.settings)
+
+    def ask(engine: Engine) -> tuple[Objective, ...]:
+        foreign = _foreign(asked, covered)
+        if foreign:
+            raise NotCheckedError(f"it knows no rules such as {', '.join(foreign)}")
+        if not engine.installed():
+            raise NotCheckedError(_EXTRA)
+        forbidden = covered.forbids(outcome.problem.network)
+        return agree(outcome, engine.solve(outcome.problem, wanted, forbidden, seconds))
+
     for engine in engines:
-        if engine.installed():
-            answers.append(engine.solve(outcome.problem, wanted, forbidden, seconds))
-            agree(outcome, answers[-1])
-    return answers
+        yield engine.name, lambda engine=engine: ask(engine)  # type: ignore[misc]
 
 
-def agree(outcome: Outcome, answer: EngineAnswer) -> None:
-    """Raise :class:`DisagreementError` where an engine's answer and ours cannot both be right.
+def _foreign(asked: Asked, covered: Coverage) -> list[str]:
+    """Name the rules that only clingo can read."""
+    return [name.partition(" ")[0] for name in covered.not_covered] + [file.name for file in asked.soft]
+
+
+def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
+    """Give the objectives by which an engine finds our tree best, too.
 
     Costs are computed anew from the units, as rational numbers. Where rates are multiplied, an engine that
-    works in floats may take a tree for the best that is so by less than it can tell.
+    works in floats may take a tree for the best that is so by less than it can tell: then nothing is said of
+    success, nor of the objectives after it. Raises :class:`DisagreementError` where both answers cannot be
+    right, and :class:`NotCheckedError` where nothing follows from the other.
     """
     if not answer.finished:
-        return
+        raise NotCheckedError("it found no answer in time")
     if (answer.units is None) != (outcome.status is Status.INFEASIBLE):
         sides = ("a tree exists", "no tree exists")
         none = answer.units is None
         raise DisagreementError(f"we say {sides[not none]}, {answer.engine} says {sides[none]}", answer)
     if answer.units is None or outcome.costs is None:
-        return
-    problem = outcome.problem
-    order = executable_order(problem, answer.units)
-    if order is None or simulate_for(problem, problem.tree(order)).verdict is not Verdict.AS_LISTED:
-        raise DisagreementError(f"the tree of {answer.engine} does not execute", answer)
-    costs = problem.costs(order)
+        return ()
+    costs = outcome.problem.costs(check_tree(outcome.problem, answer))
+    agreed: list[Objective] = []
     for objective in answer.objectives:
         ours, theirs = outcome.costs.measure(objective), costs.measure(objective)
         if ours == theirs:
+            agreed.append(objective)
             continue
         better = theirs > ours if multiplies(objective) else theirs < ours
         if not better and multiplies(objective) and _close(outcome.costs, costs):
-            return  # what it then finds for the objectives after this one is about other trees
+            break  # what it then finds for the objectives after this one is about other trees
         raise DisagreementError(
             f"by {objective} our tree has {ours}, the one of {answer.engine} {theirs}; "
             + ("ours is not the best" if better else f"{answer.engine} calls a worse one the best"),
             answer,
         )
+    if not agreed:
+        raise NotCheckedError("its floats cannot tell our tree from a slightly worse one")
+    return tuple(agreed)
 
 
 def _close(one: Costs, other: Costs) -> bool:

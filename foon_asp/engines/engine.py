@@ -1,10 +1,26 @@
 """What every second engine is asked and answers."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.problem import Objective, Problem, multiplies, unit_count
+from foon_asp.asp import Outcome, Settings
+from foon_asp.problem import Objective, Problem, executable_order, multiplies, unit_count
+from foon_asp.proof import Verdict, simulate_for
+
+
+class Asked(NamedTuple):
+    """An answer to be checked, and all that it was asked under.
+
+    ``soft`` are the weights of constraint files that may be broken, and ``penalty`` is what the tree of the
+    outcome is said to pay for those it breaks.
+    """
+
+    outcome: Outcome
+    settings: Settings = Settings()
+    soft: Mapping[Path, int] = {}
+    penalty: int | None = None
 
 
 class EngineAnswer(NamedTuple):
@@ -19,6 +35,26 @@ class EngineAnswer(NamedTuple):
     units: tuple[int, ...] | None
     finished: bool
     seconds: float
+
+
+class DisagreementError(Exception):
+    """Two engines give answers that cannot both be right: a bug, here or there."""
+
+    def __init__(self, message: str, answer: EngineAnswer) -> None:
+        super().__init__(message)
+        self.answer = answer
+
+
+class NotCheckedError(Exception):
+    """An engine says nothing of an answer, neither for it nor against it; the message says why."""
+
+
+def check_tree(problem: Problem, answer: EngineAnswer) -> tuple[int, ...]:
+    """Give the units of an engine's tree in an order that executes; raises :class:`DisagreementError`."""
+    order = executable_order(problem, answer.units or ())
+    if order is None or simulate_for(problem, problem.tree(order)).verdict is not Verdict.AS_LISTED:
+        raise DisagreementError(f"the tree of {answer.engine} does not execute", answer)
+    return order
 
 
 class Scope(NamedTuple):

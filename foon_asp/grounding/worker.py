@@ -32,7 +32,9 @@ def serve() -> None:
         nonlocal program
         if command == "ground":
             program = None  # before there are two
-            *described, memory = given
+            folder, *described, memory = given
+            if folder is not None:
+                os.chdir(folder)
             _bound_memory(memory)
             program = GroundProgram(*described)
             return program.messages

@@ -46,7 +46,7 @@ class WorkerProgram:
         memory = None
         if deadline.memory is not None:
             memory = max(1, deadline.memory - deadline.memory_in_use())
-        command = "ground", list(files), text, list(arguments), products, memory
+        command = "ground", _folder(), list(files), text, list(arguments), products, memory
         self.messages: list[str] = self._worker.ask(deadline, *command)
 
     def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
@@ -74,6 +74,14 @@ class WorkerProgram:
     def close(self) -> None:
         """Let the process have another program."""
         self._give_back()
+
+
+def _folder() -> str | None:
+    """Give the folder that names of files are relative to: it may be another one than at the last program."""
+    try:
+        return os.getcwd()
+    except OSError:  # it was removed
+        return None
 
 
 class _Worker:

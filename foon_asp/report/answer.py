@@ -1,7 +1,7 @@
 """An outcome for people, for programs and as FOON text."""
 
 import json
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 
@@ -62,9 +62,9 @@ def unit_json(network: Network, unit: int) -> dict[str, object]:
     return given
 
 
-def outcome_json(outcome: Outcome) -> str:
-    """Give an outcome as JSON."""
-    return json.dumps(outcome_dict(outcome), indent=2, ensure_ascii=False) + "\n"
+def outcome_json(outcome: Outcome, more: Mapping[str, object] | None = None) -> str:
+    """Give an outcome as JSON, with more keys after those of :func:`outcome_dict`."""
+    return json.dumps(outcome_dict(outcome) | dict(more or {}), indent=2, ensure_ascii=False) + "\n"
 
 
 def outcome_dict(outcome: Outcome) -> dict[str, object]:

@@ -1,7 +1,7 @@
 """Constraints that cannot hold together, and soft ones that are broken, for people and for programs."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from foon_asp.asp import Status
 from foon_asp.asp.integrity import IntegrityConstraint
@@ -124,9 +124,9 @@ def soft_lines(soft: SoftOutcome) -> Iterator[str]:
         yield from _constraint_lines(each.constraint, f"    (weight {each.weight}{times})")
 
 
-def soft_json(soft: SoftOutcome) -> str:
-    """Give the answer with the penalty and every soft constraint."""
-    return json.dumps(_soft_dict(soft), indent=2, ensure_ascii=False) + "\n"
+def soft_json(soft: SoftOutcome, more: Mapping[str, object] | None = None) -> str:
+    """Give the answer with the penalty, every soft constraint, and more keys after those."""
+    return json.dumps(_soft_dict(soft) | dict(more or {}), indent=2, ensure_ascii=False) + "\n"
 
 
 def _soft_dict(soft: SoftOutcome) -> dict[str, object]:

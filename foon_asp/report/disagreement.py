@@ -5,12 +5,17 @@ import platform
 import shlex
 from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
 from foon_asp.asp import Outcome
-from foon_asp.certificate import Coverage
-from foon_asp.engines import DisagreementError
+from foon_asp.asp.encoding import read_encoding
+from foon_asp.asp.program import ENCODING_FILES, find_constraint
+from foon_asp.certificate import coverage
+from foon_asp.engines import Asked, DisagreementError
+from foon_asp.engines.bare_clingo import printed_command
 from foon_asp.proof.verify import digests
 from foon_asp.report.answer import costs_json, outcome_dict
+from foon_asp.resources import encodings_folder
 from foon_asp.text import write_units
 
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
@@ -23,11 +28,13 @@ def disagreement_name(outcome: Outcome) -> str:
     return f"foon-asp-disagreement-{marks['network'][:8]}-{'-'.join(map(str, problem.goals))}"
 
 
-def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementError) -> dict[str, str]:
-    """Give the files of the folder by name: the data, numbered as they were, and ``report.json``.
+def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]:
+    """Give the files of the folder by name: the data, numbered as they were, the rules, and ``report.json``.
 
-    The kitchen lists nodes as JSON kitchens can; ``report.json`` has them in one-line notation, too.
+    The kitchen lists nodes as JSON kitchens can; ``report.json`` has them in one-line notation, too. Files of
+    rules have in them what they include. ``facts.lp`` is what bare clingo was given.
     """
+    outcome, settings = asked.outcome, asked.settings
     problem, answer = outcome.problem, found.answer
     network = problem.network
     # below level 3 the folder has what the network was made from; the command names the level
@@ -47,19 +54,27 @@ def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementE
     goals = [str(network.objects[o]) for o in problem.goals]
     words = ["foon-asp", "solve", "--data", ".", "--containers", str(problem.containers)]
     words += ["--level", str(network.level), "--objective", ",".join(outcome.objectives), "--cross-check"]
-    for name, values in (("motion", covered.motions), ("object", covered.labels)):
-        for value in values:
-            words += ["--constraint", f"forbid_{name}", "-c", f"forbidden_{name}={value}"]
+    rules = _Rules()
+    for file in dict.fromkeys(map(find_constraint, settings.constraints)):
+        words += ["--constraint", rules.copy(file)]
+    for file, weight in asked.soft.items():
+        words += ["--soft", f"{rules.copy(file)}={weight}"]
+    if settings.encodings is not None:
+        words += ["--encodings", rules.copy_encodings(settings.encodings)]
+    words += [word for setting in settings.constants for word in ("-c", setting)]
     words += [word for goal in goals for word in ("--goal", goal if ";" in goal else goal + ";")]
+    bare, facts = printed_command(asked)
+    bare = [rules.names.get(word, word) for word in bare]
     report = {
         "message": str(found),
         "command": shlex.join(words),
+        "bare_clingo": shlex.join(bare),
         "versions": {"python": platform.python_version()} | {name: _version(name) for name in _DISTRIBUTIONS},
         "platform": platform.platform(),
         "digests": digests(network, problem.kitchen, problem.rates, problem.utensils),
         "kitchen": [str(node) for node in nodes],
-        "forbidden_units": sorted(covered.forbids(network)),
-        "answer": outcome_dict(outcome),
+        "forbidden_units": sorted(coverage(settings).forbids(network)),
+        "answer": outcome_dict(outcome) | ({"penalty": asked.penalty} if asked.soft else {}),
         "other": {
             "engine": answer.engine,
             "objectives": [str(objective) for objective in answer.objectives],
@@ -71,11 +86,40 @@ def disagreement_files(outcome: Outcome, covered: Coverage, found: DisagreementE
         "FOON.txt": write_units(map(whole.unit, range(len(whole)))),
         "kitchen.json": json.dumps(kitchen, indent=1, ensure_ascii=False) + "\n",
         "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
+        "facts.lp": facts,
+        **rules.files,
         "report.json": json.dumps(report, indent=2, ensure_ascii=False) + "\n",
     }
     if problem.rates is not None:
         files["motion.txt"] = "".join(f"{motion}\t{_decimal(r)}\n" for motion, r in problem.rates.items())
     return files
+
+
+class _Rules:
+    """The user's files of rules, copied: ``files`` are their texts by name, ``names`` the names by path."""
+
+    def __init__(self) -> None:
+        self.files: dict[str, str] = {}
+        self.names: dict[str, str] = {}
+
+    def copy(self, file: Path) -> str:
+        """Give what a constraint is called in the folder; ours is called by its name."""
+        if file.parent.resolve() == (encodings_folder() / "constraints").resolve():
+            return file.stem
+        return self._add(file, f"rules-{len(self.files) + 1}-{file.name}")
+
+    def copy_encodings(self, folder: Path) -> str:
+        """Give what replaced encodings are called in the folder."""
+        if not folder.is_dir():
+            return str(folder)
+        for name in ENCODING_FILES:
+            if (folder / name).is_file():
+                self._add(folder / name, f"encodings/{name}")
+        return "encodings"
+
+    def _add(self, file: Path, name: str) -> str:
+        self.files[name], self.names[str(file)] = read_encoding(file).text, name
+        return name
 
 
 def _version(distribution: str) -> str | None:

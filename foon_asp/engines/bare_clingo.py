@@ -1,0 +1,380 @@
+"""The same question put to stock clingo: a process of its own, on the text that ``foon-asp facts`` prints.
+
+Whatever the constraints, soft files, constants and encodings are, it reads them as they stand. Nothing is
+reduced before it, kept from a question before it, or known to it of our answer while it looks for its own;
+it searches in another way than ours, too. What it says is held against our answer here, in exact numbers:
+the costs it adds up against those of its units, its tree against the simulation, our tree against its rules.
+
+By ``success`` clingo goes by rounded weights, which are no answer yet. Every tree that is at least as good as
+ours has a rounded weight within a bound that is worked out here anew; see docs/proofs.md. clingo gives the
+trees within it, and their rates are multiplied as fractions.
+"""
+
+import contextlib
+import json
+import math
+import re
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from decimal import Context, Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from foon_asp.asp import Status
+from foon_asp.asp.bare_program import BareProgram, bare_program
+from foon_asp.asp.facts import write_exactly_alike, write_given, write_most_alike, write_same_rates
+from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError, check_tree
+from foon_asp.problem import Objective, levels, multiplies
+from foon_asp.resources import encodings_folder
+
+NAME = "clingo"
+OPTIONS = ("--opt-strategy=usc,pmres,disjoint,stratify",)  # ended most often of those tried, ours apart
+MOST_KINDS = 10_000  # of trees within the bound
+_MEMORY = 4 * 2**30  # bytes, where no memory limit says otherwise
+_ENDED = {0, 10, 20, 30}  # the program and the Python module end otherwise where there was no fault
+_SECOND_OPINION = "second_opinion.lp"
+_STRING_OR_RISK = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])risk\((\d+),(\d+)\)')
+_SHOWN = re.compile(r"use\((\d+)\)")
+
+
+def installed() -> bool:
+    """Whether the engine can be asked: always, since clingo is among the dependencies."""
+    return True
+
+
+def check_with_bare_clingo(asked: Asked, seconds: float) -> None:
+    """Hold an answer against clingo's own.
+
+    Raises :class:`DisagreementError` where both cannot be right, and :class:`NotCheckedError` where clingo
+    came to no end within so many seconds.
+    """
+    outcome = asked.outcome
+    program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
+    _Check(asked, program, _Clingo(program, seconds, asked.settings.memory_limit)).check()
+
+
+def printed_command(asked: Asked) -> tuple[list[str], str]:
+    """Give the command that asks bare clingo the question, and the text of its ``facts.lp``."""
+    outcome = asked.outcome
+    program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
+    files = [*map(str, program.files), "facts.lp"]
+    return ["python", "-m", "clingo", *files, *program.constants, *OPTIONS], program.facts
+
+
+class Found(NamedTuple):
+    """An answer of clingo: the numbers of the units used, and the costs as clingo adds them up."""
+
+    units: frozenset[int]
+    costs: tuple[int, ...]
+
+
+class _Clingo:
+    """Runs clingo, time after time until the end."""
+
+    def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
+        self.program, self.seconds = program, seconds
+        self.end = time.monotonic() + seconds
+        self.memory = _MEMORY if memory is None else min(memory, _MEMORY)
+
+    def best(self, more: str = "") -> Found | None:
+        """Give an optimal answer, ``more`` text being read beside the facts; ``None`` where there is none."""
+        found = self._run(more, ("--opt-mode=opt", "--models=0", "--quiet=1"))
+        answers = _answers(found)
+        if found["Result"] == "UNSATISFIABLE":
+            return None
+        if found["Result"] != "OPTIMUM FOUND" or not answers:
+            raise NotCheckedError(f"clingo ended with {found['Result']!r}")
+        return answers[-1]
+
+    def all_kinds(self, more: str, bounds: Sequence[int]) -> list[Found]:
+        """Give an answer of every kind that costs at most so much."""
+        mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
+        found = self._run(more, (mode, f"--models={MOST_KINDS + 1}", "--project=project"))
+        answers = _answers(found)
+        if len(answers) > MOST_KINDS:
+            raise NotCheckedError(
+                f"more than {MOST_KINDS} kinds of trees are too close to the best by rounded success rates"
+            )
+        if found["Models"]["More"] != "no":
+            raise NotCheckedError(f"clingo ended with {found['Result']!r}")
+        return answers
+
+    def _run(self, more: str, options: Iterable[str]) -> dict[str, Any]:
+        program = self.program
+        # absolute, since a name may begin with -; not resolved, since files include others beside them
+        files = [str(file.absolute()) for file in (*program.files, *([_second_opinion()] if more else []))]
+        command = [sys.executable, "-P", "-m", "clingo", *files, "-", *program.constants, "--outf=2"]
+        text = (program.facts + more).encode("utf-8", "surrogatepass")
+        left = self.end - time.monotonic()
+        if left <= 0:
+            raise self._late()
+        with subprocess.Popen(
+            [*command, *OPTIONS, *options],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,  # ctrl-C is for us, who then stop the process
+        ) as process:
+            try:
+                _limit(process.pid, left, self.memory)
+                out, err = process.communicate(text, left)
+            except subprocess.TimeoutExpired:
+                raise self._late() from None
+            finally:
+                process.kill()
+        try:
+            found: dict[str, Any] = json.loads(out.decode("utf-8", "replace"), strict=False)
+        except ValueError:
+            found = {}
+        if process.returncode == 33 or b"bad_alloc" in err:
+            raise NotCheckedError("clingo ran out of memory")
+        if process.returncode not in _ENDED or found.get("Result", "UNKNOWN") == "UNKNOWN":
+            said = err.decode("utf-8", "replace").strip().split("\n")
+            error = next((line for line in said if ": error: " in line), said[-1])
+            raise NotCheckedError(f"clingo ended with the code {process.returncode}: {error}")
+        return found
+
+    def _late(self) -> NotCheckedError:
+        return NotCheckedError(f"clingo came to no end within {self.seconds:g} s")
+
+
+class _Check:
+    """One answer held against clingo's."""
+
+    def __init__(self, asked: Asked, program: BareProgram, clingo: _Clingo) -> None:
+        self.asked, self.program, self.clingo = asked, program, clingo
+        self.outcome, self.problem = asked.outcome, asked.outcome.problem
+        self.levels = levels(self.outcome.objectives)
+        self.weights: dict[int, int] = {}
+        for number, weight in _STRING_OR_RISK.findall(program.facts):
+            if number:
+                self.weights.setdefault(int(number), int(weight))
+
+    def check(self) -> None:
+        outcome = self.outcome
+        theirs = self.clingo.best()
+        if theirs is None:
+            if outcome.status is not Status.INFEASIBLE:
+                raise self._disagreement("we say a tree exists, clingo says no tree exists", None)
+            return
+        if outcome.status is Status.INFEASIBLE or outcome.units is None:
+            raise self._disagreement("we say no tree exists, clingo says a tree exists", theirs)
+        ours = self._ours()
+        usual = self._usual(theirs) and self._usual(ours)
+        if not usual:
+            self._by_replaced_objectives(ours, theirs)
+        elif any(map(multiplies, self.levels)):
+            self._by_success(theirs)
+        else:
+            self._compare(theirs, self.levels)
+
+    def _ours(self) -> Found:
+        """Ask clingo whether our tree is one under the rules, and what it costs."""
+        assert self.outcome.units is not None
+        network = self.problem.network
+        units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True, 0.0))
+        if self.problem.costs(units) != self.outcome.costs:
+            raise self._disagreement("the costs of our tree are not those of its units", None)
+        given = self.clingo.best(write_given([network.unit_number(unit) for unit in self.outcome.units]))
+        if given is None:
+            raise self._disagreement("clingo says that our tree breaks the rules", None)
+        penalty = given.costs[0] if self.asked.soft else None
+        if penalty != self.asked.penalty:
+            raise self._disagreement(
+                f"we say our tree has the penalty {self.asked.penalty}, clingo says {penalty}", given
+            )
+        return given
+
+    def _usual(self, found: Found) -> bool:
+        """Whether the costs that clingo adds up are those of the units, which replaced encodings may change.
+
+        The penalty is for clingo alone to know.
+        """
+        costs = self.problem.costs(self._tree(found))
+        figures = [
+            sum(self.weights[number] for number in found.units)
+            if multiplies(objective)
+            else costs.measure(objective)
+            for objective in self.levels
+        ]
+        said = list(found.costs[1:] if self.asked.soft else found.costs)
+        if said == figures:
+            return True
+        if self.asked.settings.encodings is None:
+            raise self._disagreement(f"clingo adds up the costs {said}, its units cost {figures}", found)
+        return False
+
+    def _by_replaced_objectives(self, ours: Found, theirs: Found) -> None:
+        if any(map(multiplies, self.levels)):
+            raise NotCheckedError("the replaced encodings do not measure success as it is measured here")
+        if ours.costs != theirs.costs:
+            raise self._disagreement(
+                f"as the encodings have it our tree costs {list(ours.costs)}, "
+                f"the one of clingo {list(theirs.costs)}",
+                theirs,
+            )
+
+    def _compare(self, found: Found, objectives: Sequence[Objective]) -> None:
+        """Hold the penalty and some objectives against ours; raise where one is not the same."""
+        assert self.outcome.costs is not None
+        costs = self.problem.costs(self._answer(found).units or ())
+        rows: list[tuple[str, bool, int | Fraction, int | Fraction]] = [
+            (str(by), multiplies(by), self.outcome.costs.measure(by), costs.measure(by)) for by in objectives
+        ]
+        if self.asked.soft:
+            rows.insert(0, ("penalty", False, self.asked.penalty or 0, found.costs[0]))
+        for name, more_is_better, ours, theirs in rows:
+            if ours != theirs:
+                better = theirs > ours if more_is_better else theirs < ours
+                raise self._disagreement(
+                    f"by {name} our tree has {ours}, the one of clingo {theirs}; "
+                    + ("ours is not the best" if better else "clingo calls a worse one the best"),
+                    found,
+                )
+
+    def _by_success(self, theirs: Found) -> None:
+        """Compare success exactly, with what counts more before it and what counts less after it."""
+        outcome, problem = self.outcome, self.problem
+        assert outcome.units is not None
+        assert outcome.costs is not None
+        place = self.levels.index(Objective.SUCCESS)
+        before = self.levels[:place]
+        self._compare(theirs, before)
+        if self._key(theirs, self.levels) < outcome.costs.key(self.levels):
+            self._compare(theirs, self.levels)  # best by weights, and better than ours in truth
+        rates = {number: problem.rate(self._unit(number)) for number in self.weights}
+        own = [problem.rate(unit) for unit in outcome.units]
+        most = greatest_weight({(rates[number], weight) for number, weight in self.weights.items()}, own)
+        different = sorted({rate for rate in rates.values() if rate != 1})
+        classes = [[number for number in rates if rates[number] == rate] for rate in different]
+        lightest = [min(self.weights[number] for number in numbers) for numbers in classes]
+        alike = [
+            min(len(numbers), most // light) if light else len(numbers)
+            for numbers, light in zip(classes, lightest, strict=True)
+        ]
+        same = write_same_rates(classes)
+        fixed = [int(outcome.costs.measure(objective)) for objective in before]
+        if self.asked.soft:
+            fixed.insert(0, self.asked.penalty or 0)
+        kinds = self.clingo.all_kinds(same + write_most_alike(alike), [*fixed, most])
+        equal: list[list[int]] = []
+        for found in kinds:
+            units = self._tree(found)
+            if not self._usual(found):
+                raise NotCheckedError("the replaced encodings measure some trees in another way")
+            self._compare(found, before)
+            success = problem.costs(units).success
+            if success is None or success > (outcome.costs.success or 0):
+                self._compare(found, [Objective.SUCCESS])
+            elif success == outcome.costs.success:
+                counted = Counter(rates[number] for number in found.units)
+                equal.append([counted[rate] for rate in different])
+        counted = Counter(own)
+        if [counted[rate] for rate in different] not in equal:  # it is within the bound itself
+            raise self._disagreement("our tree is not among those that clingo finds within the bound", None)
+        if before == self.levels[:-1]:
+            return
+        best: Found | None = None
+        for numbers in equal:
+            found_best = self.clingo.best(same + write_exactly_alike(numbers))
+            if found_best is None:
+                raise NotCheckedError("clingo loses a kind of tree that it found")
+            self._tree(found_best)
+            after = self.levels[place:]
+            if best is None or self._key(found_best, after) < self._key(best, after):
+                best = found_best
+        if best is not None:
+            self._compare(best, self.levels)
+
+    def _tree(self, found: Found) -> tuple[int, ...]:
+        """Give the units of an answer in an order that executes."""
+        try:
+            return check_tree(self.problem, self._answer(found))
+        except DisagreementError as error:
+            if self.asked.settings.encodings is None:
+                raise
+            raise NotCheckedError(f"{error}, as the replaced encodings allow") from None
+
+    def _key(self, found: Found, objectives: tuple[Objective, ...]) -> tuple[int | Fraction, ...]:
+        return self.problem.costs(map(self._unit, found.units)).key(objectives)
+
+    def _unit(self, number: int) -> int:
+        unit = self.problem.network.unit_of_number(number)
+        if unit is None:
+            raise self._disagreement(f"clingo uses a unit number {number}, which there is not", None)
+        return unit
+
+    def _answer(self, found: Found | None) -> EngineAnswer:
+        units = None if found is None else tuple(map(self._unit, sorted(found.units)))
+        return EngineAnswer(NAME, self.levels, units, True, 0.0)
+
+    def _disagreement(self, message: str, found: Found | None) -> DisagreementError:
+        return DisagreementError(message, self._answer(found))
+
+
+def greatest_weight(weights: Iterable[tuple[Fraction, int]], own: Iterable[Fraction]) -> int:
+    """Give the greatest sum of weights that a tree can have whose product of rates is at least that of ours.
+
+    ``weights`` are the different pairs of a rate and the weight of a unit that has it; ``own`` are the rates
+    of our tree. Nothing is taken for granted of how the weights were rounded. Write L(p) = -ln p, and let S
+    be the greatest w / L(p) over all units of rates below 1. Then w <= S * L(p) for every unit, so the sum of
+    the weights of any tree T is at most S * L(T), where L(T) is the sum of its logarithms; and L(T) is no
+    greater than that of our tree. Raises :class:`NotCheckedError` for a unit of rate 1 with a weight, where
+    there is no such S, and for rates that have no logarithm.
+    """
+    weights, own = set(weights), list(own)
+    if any(rate <= 0 for rate in (*(rate for rate, _ in weights), *own)):
+        raise NotCheckedError("a success rate of 0 has no logarithm")
+    if any(rate >= 1 and weight for rate, weight in weights):
+        raise NotCheckedError("a unit that never fails has a weight")
+    bounds = {rate: _minus_log(rate) for rate in {*own, *(rate for rate, _ in weights)}}
+    greatest = max((weight / bounds[rate][0] for rate, weight in weights if rate < 1), default=Fraction(0))
+    return math.floor(greatest * sum(bounds[rate][1] for rate in own))
+
+
+def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
+    """Enclose -ln of a rate between two fractions, both above 0 where the rate is below 1."""
+    lost = 1 - rate
+    if lost < Fraction(1, 10**40):  # lost <= -ln(1 - lost) <= lost / (1 - lost), next to 1 all but the same
+        return lost, lost / rate
+    context = Context(prec=100)  # of which no more than 50 are lost in the difference of two logarithms
+
+    def enclosed(number: int) -> tuple[Fraction, Fraction]:
+        if number == 1:
+            return Fraction(0), Fraction(0)
+        logarithm = context.ln(Decimal(number))  # correctly rounded: the true one is between its neighbours
+        return Fraction(context.next_minus(logarithm)), Fraction(context.next_plus(logarithm))
+
+    (low, high), (lower, higher) = enclosed(rate.numerator), enclosed(rate.denominator)
+    return lower - high, higher - low
+
+
+def _answers(found: Mapping[str, Any]) -> list[Found]:
+    """Take the answers out of clingo's JSON; what else the user's files show is passed over."""
+    return [
+        Found(
+            frozenset(int(match[1]) for shown in witness["Value"] if (match := _SHOWN.fullmatch(shown))),
+            tuple(witness.get("Costs", ())),
+        )
+        for call in found["Call"]
+        for witness in call.get("Witnesses", ())
+        if "Value" in witness
+    ]
+
+
+def _second_opinion() -> Path:
+    return encodings_folder() / "questions" / _SECOND_OPINION
+
+
+def _limit(process: int, seconds: float, memory: int) -> None:
+    """Keep endless grounding from taking all memory, and from outliving us, where the system can."""
+    with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
+        import resource  # noqa: PLC0415 (not everywhere)
+
+        resource.prlimit(process, resource.RLIMIT_AS, (memory, memory))
+        most = math.ceil(seconds) + 1
+        resource.prlimit(process, resource.RLIMIT_CPU, (most, most))

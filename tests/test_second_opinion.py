@@ -1,0 +1,522 @@
+"""Bare clingo as a second engine: what is right, what is wrong, and what it leaves open."""
+
+import json
+import math
+import random
+import shlex
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations_with_replacement
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp.exact_success import rate_scale
+from foon_asp.asp.soft import solve_soft
+from foon_asp.cli import cross_check as checking
+from foon_asp.cli import solve as command
+from foon_asp.engines import Asked, Check, DisagreementError, NotCheckedError, bare_clingo, cross_check
+from foon_asp.engines.bare_clingo import check_with_bare_clingo, greatest_weight
+from foon_asp.problem import ContainerRule, Objective, Problem
+from tests import oracle
+from tests.conftest import Cli
+from tests.gap_problem import gap_problem
+from tests.random_problems import MOTIONS, SERIES, random_problem
+from tests.test_exact_success import two_ways
+
+RULES = list(ContainerRule)
+PATIENCE = 60.0
+
+
+def agrees(outcome: Outcome, settings: Settings | None = None) -> None:
+    check_with_bare_clingo(Asked(outcome, settings or Settings()), PATIENCE)
+
+
+def with_tree(outcome: Outcome, units: tuple[int, ...]) -> Outcome:
+    """Claim that another tree is the best one."""
+    return outcome._replace(status=Status.OPTIMAL, units=units, costs=outcome.problem.costs(units))
+
+
+def without_tree(outcome: Outcome) -> Outcome:
+    """Claim that there is no tree."""
+    return outcome._replace(status=Status.INFEASIBLE, units=None, costs=None)
+
+
+# --- The bound on rounded weights.
+
+
+def test_no_tree_as_good_as_ours_weighs_more_than_the_bound() -> None:
+    """Whatever the weights are, and however they were rounded: right, coarsely, by chance, or to 0."""
+    rng = random.Random(1)
+    tight = 0
+    for _ in range(150):
+        rates = [Fraction(rng.randint(1, 99), 100) for _ in range(3)] + [
+            1 - Fraction(1, 10 ** rng.randint(3, 60))
+        ]
+        scale = 10 ** rng.randint(0, 8)
+        weights = rng.choice(
+            [
+                rate_scale(rates).weights,
+                {rate: math.floor(-math.log(rate) * scale) for rate in rates},
+                {rate: rng.randint(0, 50) for rate in rates},
+            ]
+        )
+        own = rng.choices(rates, k=rng.randint(0, 4))
+        most = greatest_weight([(rate, weights[rate]) for rate in rates], own)
+        for size in range(5):
+            for other in combinations_with_replacement(rates, size):
+                if math.prod(other) >= math.prod(own):
+                    weight = sum(weights[rate] for rate in other)
+                    assert weight <= most
+                    tight += weight == most
+    assert tight > 100
+
+
+def test_the_bound_is_no_wider_than_rounding_down_makes_it() -> None:
+    rates = [Fraction(text) for text in ("0.3", "0.9", "0.85", "0.999999999999")]
+    weights = rate_scale(rates).weights
+    for size in range(5):
+        for own in combinations_with_replacement(rates, size):
+            most = greatest_weight(weights.items(), own)
+            assert (
+                sum(map(weights.__getitem__, own))
+                <= most
+                <= sum(map(weights.__getitem__, own)) + max(0, size - 1)
+            )
+
+
+def test_a_rate_without_a_logarithm_or_with_a_wrong_weight_is_not_checked() -> None:
+    with pytest.raises(NotCheckedError, match="no logarithm"):
+        greatest_weight([(Fraction(0), 5)], [])
+    with pytest.raises(NotCheckedError, match="never fails"):
+        greatest_weight([(Fraction(1), 5)], [])
+    assert greatest_weight([(Fraction(1), 0)], [Fraction(1)]) == 0
+    assert greatest_weight([(1 - Fraction(1, 10**5000), 0)], [1 - Fraction(1, 10**5000)]) == 0
+
+
+# --- It agrees with what is right.
+
+
+def some_rules(rng: random.Random, folder: Path) -> str:
+    """Write rules by chance: over motions, numbers of units, order, with helpers, negation and choice."""
+    one, other = rng.sample(MOTIONS, 2)
+    pool = [
+        f':- use(U), motion(U,"{one}").',
+        f':- not use(U) : motion(U,"{one}").',
+        f':- #count {{ U : use(U), motion(U,"{one}") }} > 1.',
+        f":- #count {{ U : use(U) }} < {rng.randint(1, 4)}.",
+        f':- use(U), motion(U,"{one}"), use(V), motion(V,"{other}").',
+        'touched(L) :- use(U), input(U,O), label(O,L).  :- not touched("salt"), touched("bowl").',
+        f'{{ left_out(M) : motion(_,M) }} = 1.  :- left_out(M), use(U), motion(U,M).  :- left_out("{one}").',
+        f"#const few{one} = {rng.randint(1, 3)}.  :- many(M).\n"
+        f"many(M) :- motion(_,M), few{one} < #count {{ U : use(U), motion(U,M) }}.",
+        ":- use(U), rate(U,N), N < 100000.",
+    ]
+    return "\n".join(rng.sample(pool, rng.randint(1, 2)))
+
+
+@SERIES
+@pytest.mark.parametrize("rule", RULES)
+def test_answers_under_rules_by_chance_agree(rule: ContainerRule, part: int, tmp_path: Path) -> None:
+    statuses = dict.fromkeys(Status, 0)
+    for seed in range(0, 60, part):
+        rng = random.Random(seed)
+        problem = random_problem(seed, rule)
+        mine = tmp_path / f"mine{seed}.lp"
+        mine.write_text(some_rules(rng, tmp_path))
+        objectives = rng.sample(list(Objective), rng.randint(1, 3))
+        settings = Settings((mine,)) if seed % 4 else Settings(encodings=Path("by_need"))
+        outcome = solve(problem, objectives, settings)
+        agrees(outcome, settings)
+        statuses[outcome.status] += 1
+    assert statuses[Status.OPTIMAL] > 15 // part
+    assert statuses[Status.INFEASIBLE] > 1
+
+
+@SERIES
+def test_answers_under_soft_rules_agree(part: int, tmp_path: Path) -> None:
+    penalties = 0
+    for seed in range(0, 45, part):
+        rng = random.Random(seed)
+        problem = random_problem(seed, RULES[seed % 2])
+        files = {tmp_path / f"{name}{seed}.lp": rng.randint(1, 9) for name in ("anna", "ben")}
+        for file in files:
+            # one file may not define a constant of the other
+            file.write_text(some_rules(rng, tmp_path).replace("few", f"few_{file.stem}"))
+        objectives = rng.sample(list(Objective), 2)
+        found = solve_soft(problem, objectives, Settings(), files)
+        check_with_bare_clingo(Asked(found.outcome, Settings(), files, found.penalty), PATIENCE)
+        penalties += bool(found.penalty)
+    assert penalties > 3
+
+
+def test_a_coarse_scale_leaves_many_trees_to_look_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With weights of next to nothing nearly every tree is within the bound, and the answer still agrees."""
+    monkeypatch.setattr("foon_asp.asp.exact_success._SCALES", (1,))
+    monkeypatch.setattr("foon_asp.asp.exact_success._ENOUGH", 0)
+    for seed in range(12):
+        problem = random_problem(seed, RULES[seed % 2])
+        agrees(solve(problem, (Objective.SUCCESS, Objective.KITCHEN)))
+
+
+@pytest.mark.parametrize(
+    ("better", "worse"),
+    [
+        (["0.090000001"], ["0.3", "0.3"]),
+        (["0.5"] * 9, ["0.001953124999999999999"]),
+        (["1"], ["0." + "9" * 20]),
+        (["0." + "9" * 400], ["0." + "9" * 399 + "8"]),
+        (["0.99999999999"], ["0.999999999"]),
+    ],
+)
+def test_products_that_differ_late_are_told_apart(better: list[str], worse: list[str]) -> None:
+    problem = two_ways(better, worse)
+    outcome = solve(problem, (Objective.SUCCESS,))
+    agrees(outcome)
+    other = tuple(unit for unit in range(len(problem.network)) if unit not in (outcome.units or ()))
+    with pytest.raises(DisagreementError, match=r"by success our tree has .* ours is not the best"):
+        agrees(with_tree(outcome, other))
+
+
+def test_what_comes_after_an_equal_product_is_checked() -> None:
+    problem = two_ways(["0.09"], ["0.3", "0.3"])
+    outcome = solve(problem, (Objective.SUCCESS,))
+    agrees(outcome)
+    with pytest.raises(
+        DisagreementError, match="by units our tree has 2, the one of clingo 1; ours is not the best"
+    ):
+        agrees(with_tree(outcome, (1, 2)))
+
+
+def test_costs_of_more_than_32_bits_are_read_whole() -> None:
+    problem = two_ways(["0." + "0" * 8 + "1"] * 30, ["0." + "0" * 8 + "1"] * 31)
+    outcome = solve(problem, (Objective.SUCCESS,))
+    weight = rate_scale(set((problem.rates or {}).values())).weights[Fraction(1, 10**9)]
+    assert 30 * weight > 2**32
+    agrees(outcome)
+
+
+def test_replaced_encodings_that_measure_something_else(tmp_path: Path) -> None:
+    """Then the costs are what the encodings say."""
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "objectives.lp").write_text("#minimize { 5@1,U : use(U) }.\n")
+    settings = Settings(encodings=folder)
+    outcome = solve(gap_problem(1, 4), (Objective.UNITS,), settings)
+    agrees(outcome, settings)
+    with pytest.raises(DisagreementError, match="as the encodings have it our tree costs"):
+        agrees(with_tree(outcome, tuple(range(len(outcome.problem.network)))), settings)
+    with pytest.raises(NotCheckedError, match="do not measure success"):
+        agrees(solve(gap_problem(1, 4), (Objective.SUCCESS,), settings), settings)
+
+
+# --- It finds what is wrong.
+
+
+def wrong_answers(outcome: Outcome, allowed: oracle.Allowed) -> Iterator[Outcome]:
+    """Give claims that are wrong: a tree that costs more or is not allowed, none where there is one."""
+    problem = outcome.problem
+    if outcome.units is None:
+        return
+    yield without_tree(outcome)
+    best = oracle.key(
+        problem, tuple(map(problem.network.unit, outcome.units)), list(map(str, outcome.objectives))
+    )
+    numbers = {problem.network.unit(unit): unit for unit in range(len(problem.network))}
+    for tree in oracle.trees(problem):
+        key = oracle.key(problem, tree, list(map(str, outcome.objectives)))
+        if key > best or not allowed(tree):
+            yield with_tree(outcome, tuple(numbers[unit] for unit in tree))
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("objective", [Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN])
+def test_wrong_answers_are_found(rule: ContainerRule, objective: Objective, tmp_path: Path) -> None:
+    mine = tmp_path / "mine.lp"
+    mine.write_text(':- use(U), motion(U,"pour").\n')
+    settings = Settings((mine,))
+    found = 0
+    for seed in range(20, 32):
+        outcome = solve(random_problem(seed, rule, units=6), (objective,), settings)
+        wrong = list(wrong_answers(outcome, lambda tree: all(unit.motion != "pour" for unit in tree)))
+        for claim in random.Random(seed).sample(wrong, min(4, len(wrong))):
+            with pytest.raises(DisagreementError):
+                agrees(claim, settings)
+            found += 1
+    assert found > 7
+
+
+def test_wrong_answers_under_soft_rules_are_found(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.lp"
+    mine.write_text(':- use(U), motion(U,"draw").\n:- use(U), motion(U,"clear").\n')
+    problem = gap_problem(2, 4)
+    weights = {mine: 3}
+    found = solve_soft(problem, (Objective.UNITS,), Settings(), weights)
+    check_with_bare_clingo(Asked(found.outcome, Settings(), weights, found.penalty), PATIENCE)
+    assert found.penalty
+    everything = with_tree(found.outcome, tuple(range(len(problem.network))))
+    for outcome, penalty, message in (
+        (found.outcome, found.penalty - 3, "we say our tree has the penalty"),
+        (found.outcome, found.penalty + 3, "we say our tree has the penalty"),
+        (everything, found.penalty, "we say our tree has the penalty"),
+        (without_tree(found.outcome), None, "we say no tree exists"),
+    ):
+        with pytest.raises(DisagreementError, match=message):
+            check_with_bare_clingo(Asked(outcome, Settings(), weights, penalty), PATIENCE)
+    # a tree with a penalty that is right, and not the least
+    ways = sum(problem.network.motions[unit] in {"draw", "clear"} for unit in range(len(problem.network)))
+    with pytest.raises(DisagreementError, match=r"by penalty our tree has .* ours is not the best"):
+        check_with_bare_clingo(Asked(everything, Settings(), weights, 3 * ways), PATIENCE)
+
+
+def test_wrong_costs_and_trees_that_do_not_execute_are_found() -> None:
+    outcome = solve(gap_problem(2, 4), (Objective.UNITS,))
+    assert outcome.units is not None
+    assert outcome.costs is not None
+    with pytest.raises(DisagreementError, match="the costs of our tree are not those of its units"):
+        agrees(outcome._replace(costs=outcome.costs._replace(kitchen=9)))
+    with pytest.raises(DisagreementError, match="the tree of foon-asp does not execute"):
+        agrees(with_tree(outcome, outcome.units[1:]))
+
+
+def test_wrong_facts_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What clingo adds up is held against the units: facts that say something else are no second opinion."""
+    outcome = solve(gap_problem(2, 4), (Objective.INPUTS,))
+    right = bare_clingo.bare_program
+
+    def wrong(*args: object) -> object:
+        program = right(*args)  # type: ignore[arg-type]
+        return program._replace(facts=program.facts.replace("inputs(0,", "inputs(0,1"))
+
+    monkeypatch.setattr(bare_clingo, "bare_program", wrong)
+    with pytest.raises(DisagreementError, match="clingo adds up the costs"):
+        agrees(with_tree(outcome, tuple(range(len(outcome.problem.network)))))
+
+
+# --- It says what it left open.
+
+
+def test_too_many_trees_within_the_bound_are_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    outcome = solve(gap_problem(2, 4), (Objective.SUCCESS,))
+    agrees(outcome)
+    monkeypatch.setattr(bare_clingo, "MOST_KINDS", 0)
+    (check, *_) = cross_check(Asked(outcome), PATIENCE, ())
+    assert check == Check("clingo", (), check.reason, check.seconds)
+    assert check.reason
+    assert "more than 0 kinds of trees are too close" in check.reason
+
+
+ENDLESS = "p(1..2000).  q(X,Y,Z) :- p(X), p(Y), p(Z).  :- q(1,1,1), not use(0), not use(1).\n"
+
+
+def test_endless_grounding_is_ended(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.lp"
+    mine.write_text(ENDLESS)
+    outcome = solve(gap_problem(2, 4), (Objective.UNITS,))
+    began = time.monotonic()
+    (check,) = cross_check(Asked(outcome, Settings((mine,))), 1.5, ())
+    assert time.monotonic() - began < 10
+    assert check.reason == "clingo came to no end within 1.5 s"
+    ours = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
+    assert str(mine) not in ours
+
+
+def test_memory_that_runs_out_is_not_checked(tmp_path: Path) -> None:
+    if not hasattr(__import__("resource"), "prlimit"):
+        pytest.skip("only Linux limits the memory of another process")
+    mine = tmp_path / "mine.lp"
+    mine.write_text(ENDLESS)
+    settings = Settings((mine,), memory_limit=2**28)
+    outcome = solve(gap_problem(2, 4), (Objective.UNITS,))
+    (check,) = cross_check(Asked(outcome, settings), PATIENCE, ())
+    assert check.reason is not None
+    assert "memory" in check.reason
+
+
+def test_rules_that_clingo_refuses_are_not_checked(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.lp"
+    mine.write_text(":- use(U), X < 3.\n")
+    (check,) = cross_check(Asked(solve(gap_problem(2, 4)), Settings((mine,))), PATIENCE, ())
+    assert check.reason is not None
+    assert f"{mine}:1:1-18: error: unsafe variables in" in check.reason
+
+
+def test_what_is_not_proved_is_not_checked() -> None:
+    outcome = solve(gap_problem(2, 4))._replace(status=Status.FEASIBLE)
+    assert {check.reason for check in cross_check(Asked(outcome), PATIENCE)} == {
+        "nothing is proved, so there is nothing to check"
+    }
+
+
+def test_from_an_interruption_on_nothing_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(asked: Asked, seconds: float) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(bare_clingo, "check_with_bare_clingo", interrupted)
+    checks = cross_check(Asked(solve(gap_problem(2, 4))), PATIENCE)
+    assert {check.reason for check in checks} == {"interrupted"}
+
+
+def test_nothing_of_the_working_folder_is_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("clingo.py", "json.py", "cffi.py"):
+        (tmp_path / name).write_text("raise SystemExit('run')\n")
+    monkeypatch.chdir(tmp_path)
+    agrees(solve(gap_problem(2, 4)))
+
+
+# --- On the command line.
+
+
+def test_a_worse_tree_is_our_bug_with_all_that_is_needed(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = command.solve
+
+    def worse(problem: Problem, *args: object) -> Outcome:
+        outcome = right(problem, *args)  # type: ignore[arg-type]
+        more = right(problem, (Objective.UNITS,), Settings((Path("at_least.lp"),)))
+        assert more.units is not None
+        return with_tree(outcome, more.units)
+
+    monkeypatch.chdir(tmp_path)
+    Path("at_least.lp").write_text(":- #count { U : use(U) } < 4.\n")
+    Path("part.lp").write_text("touched(L) :- use(U), input(U,O), label(O,L).\n")
+    Path("mine.lp").write_text('#include "part.lp".\n#const name = "".\n:- touched(name).\n')
+    monkeypatch.setattr(command, "solve", worse)
+    words = (
+        "--goal",
+        "ice",
+        "--constraint",
+        "mine.lp",
+        "-c",
+        "name=freezer bag",
+        "--objective",
+        "success,units",
+    )
+    ran = cli("solve", *words, "--cross-check", "--format", "json")
+    assert ran.code == 70
+    assert not ran.out
+    assert "ours is not the best" in ran.err
+    monkeypatch.undo()
+    (folder,) = (path for path in tmp_path.iterdir() if path.is_dir())
+    report = json.loads((folder / "report.json").read_text())
+    assert report["other"]["engine"] == "clingo"
+    Path(tmp_path / "part.lp").unlink()
+    monkeypatch.chdir(folder)
+    bare = shlex.split(report["bare_clingo"])
+    said = subprocess.run([sys.executable, *bare[1:]], capture_output=True, text=True, check=False).stdout
+    assert "OPTIMUM FOUND" in said
+    again = cli(*shlex.split(report["command"])[1:], "--format", "json")
+    assert again.code == 0
+    assert again.json["cross_check"][0]["checked"]
+    assert [int(cost) for cost in said.split("Optimization : ")[1].split("\n")[0].split()][1] == (
+        again.json["costs"]["units"]
+    )
+
+
+def test_a_tree_that_is_denied_is_our_bug(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from foon_asp.asp import soft  # noqa: PLC0415
+
+    right = soft.solve_soft
+
+    def denied(*args: object) -> soft.SoftOutcome:
+        found = right(*args)  # type: ignore[arg-type]
+        return soft.SoftOutcome(without_tree(found.outcome), None, ())
+
+    monkeypatch.setattr(soft, "solve_soft", denied)
+    monkeypatch.chdir(tmp_path)
+    words = ("--goal", "ice", "--soft", "forbid_motion=3", "-c", "forbidden_motion=crush", "--cross-check")
+    ran = cli("solve", *words)
+    assert ran.code == 70
+    assert "we say no tree exists, clingo says a tree exists" in ran.err
+    (folder,) = tmp_path.iterdir()
+    report = json.loads((folder / "report.json").read_text())
+    monkeypatch.undo()
+    monkeypatch.chdir(folder)
+    again = cli(*shlex.split(report["command"])[1:])
+    assert again.code == 0
+    assert "cross-check: clingo agrees by penalty, units (" in again.out
+
+
+def test_what_is_found_is_said_where_no_file_can_be_written(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def wrong(asked: Asked, seconds: float) -> list[Check]:
+        check_with_bare_clingo(asked._replace(outcome=without_tree(asked.outcome)), seconds)
+        return []
+
+    monkeypatch.setattr(checking, "cross_check", wrong)
+    monkeypatch.setattr(checking, "disagreement_name", lambda outcome: "file/folder")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("")
+    ran = cli("solve", "--goal", "ice", "--cross-check")
+    assert ran.code == 70
+    assert "we say no tree exists, clingo says a tree exists; the data could not be written" in ran.err
+
+
+def test_not_checked_is_said(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bare_clingo, "MOST_KINDS", 0)
+    words = ("solve", "--goal", "macaroni", "--objective", "success", "--cross-check")
+    ran = cli(*words)
+    assert ran.code == 0
+    assert "cross-check: clingo: not checked: more than 0 kinds" in ran.out
+    assert "clingo agrees" not in ran.out
+    row = cli(*words, "--format", "json").json["cross_check"][0]
+    assert (row["checked"], row["agrees_by"]) == (False, [])
+    assert "more than 0 kinds" in row["reason"]
+
+
+@pytest.mark.parametrize("level", ["1", "2", "3"])
+@pytest.mark.parametrize("rule", RULES)
+def test_levels_rules_and_several_goals(cli: Cli, level: str, rule: ContainerRule) -> None:
+    words = ("--goal", "ice", "--goal", "tea", "--level", level, "--containers", rule)
+    more = ("--constraint", "at_most_utensils", "-c", "max_utensils=5", "--objective", "success,kitchen")
+    ran = cli("solve", *words, *more, "--cross-check", "--format", "json")
+    assert ran.code in {0, 1}, ran.err
+    assert ran.json["cross_check"][0]["checked"], ran.err
+
+
+# --- Soft constraints in bare clingo.
+
+
+def test_facts_of_soft_files_give_the_same_optimum_in_bare_clingo(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The command of the help and of docs/questions.md."""
+    monkeypatch.chdir(Path(__file__).resolve().parent.parent)
+    anna, ben, facts = (tmp_path / name for name in ("anna.lp", "ben.lp", "facts.lp"))
+    anna.write_text(':- use(U), motion(U,"whip").\n:- use(U), motion(U,"beat").\n')
+    ben.write_text(':- use(U), motion(U,"dispense").\n:- #count { U : use(U) } < 6.\n')
+    words = [
+        "--goal",
+        "whipped cream",
+        "--soft",
+        f"{anna}=1",
+        "--soft",
+        f"{ben}=3",
+        "--objective",
+        "inputs,units",
+    ]
+    facts.write_text(cli("facts", *words).out)
+    solved = cli("solve", *words, "--format", "json").json
+    clingo = f"{shlex.quote(sys.executable)} -m clingo encodings/*.lp encodings/questions/soft.lp {facts}"
+    said = subprocess.run(clingo, shell=True, capture_output=True, text=True, check=False).stdout
+    costs = said.split("Optimization : ")[1].split("\n")[0].split()
+    assert "OPTIMUM FOUND" in said
+    assert list(map(int, costs)) == [solved["penalty"], solved["costs"]["inputs"], solved["costs"]["units"]]
+    assert solved["penalty"]
+
+
+def test_a_helper_that_is_free_to_break_more_is_no_penalty(tmp_path: Path) -> None:
+    """What a tree pays is the least that its helpers can make of it."""
+    mine = tmp_path / "mine.lp"
+    mine.write_text("{ extra(1..5) }.\n:- extra(X).\n:- use(U), not extra(1).\n")
+    problem = replace(gap_problem(2, 4))
+    found = solve_soft(problem, (Objective.UNITS,), Settings(), {mine: 2})
+    assert found.penalty == 2
+    check_with_bare_clingo(Asked(found.outcome, Settings(), {mine: 2}, found.penalty), PATIENCE)
