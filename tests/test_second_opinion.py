@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.exact_success import rate_scale
 from foon_asp.asp.soft import solve_soft
 from foon_asp.cli import cross_check as checking
@@ -287,7 +288,7 @@ def test_wrong_costs_and_trees_that_do_not_execute_are_found() -> None:
 def test_wrong_facts_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """What clingo adds up is held against the units: facts that say something else are no second opinion."""
     outcome = solve(gap_problem(2, 4), (Objective.INPUTS,))
-    right = bare_clingo.bare_program
+    right = bare_program
 
     def wrong(*args: object) -> object:
         program = right(*args)  # type: ignore[arg-type]
@@ -381,11 +382,9 @@ def test_nothing_of_the_working_folder_is_run(tmp_path: Path, monkeypatch: pytes
 def test_a_worse_tree_is_our_bug_with_all_that_is_needed(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    right = command.solve
-
     def worse(problem: Problem, *args: object) -> Outcome:
-        outcome = right(problem, *args)  # type: ignore[arg-type]
-        more = right(problem, (Objective.UNITS,), Settings((Path("at_least.lp"),)))
+        outcome = solve(problem, *args)  # type: ignore[arg-type]
+        more = solve(problem, (Objective.UNITS,), Settings((Path("at_least.lp"),)))
         assert more.units is not None
         return with_tree(outcome, more.units)
 

@@ -3,6 +3,7 @@
 import doctest
 import re
 import shlex
+import subprocess
 import sys
 from pathlib import Path
 
@@ -24,7 +25,8 @@ def matches(shown: str, printed: str) -> bool:
 @pytest.mark.parametrize("page", PAGES)
 def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("data").symlink_to(ROOT / "data")
+    for folder in ("data", "encodings"):
+        Path(folder).symlink_to(ROOT / folder)
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
     run = 0
     for name, body in FENCE.findall(text):
@@ -35,6 +37,11 @@ def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch
             command, _, shown = session.partition("\n")
             command, _, target = command.partition(" > ")
             program, *words = shlex.split(command)
+            if program == "python":
+                bare = command.replace("python", shlex.quote(sys.executable), 1)
+                said = subprocess.run(bare, shell=True, capture_output=True, text=True, check=False).stdout
+                assert matches(shown, said), f"{command}\n{said}"
+                continue
             assert program == "foon-asp", command
             with monkeypatch.context() as both:
                 if not target:  # in the order in which a terminal shows them
