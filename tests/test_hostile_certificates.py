@@ -94,7 +94,7 @@ def test_products_of_rates_are_not_multiplied_out_forever() -> None:
     huge = {"1/2": f"{10**60}", "1/101": f"{10**60}", "1/202": f"-{10**60}"}
     said = refusal(**SUCCESS, cuts=[[GOAL]], proof={"weights": [[0, [huge]]]})
     assert said == "products of rates are too close to be told apart in reasonable time"
-    small = {"1/2": "15000", "1/101": "15000", "1/202": "-15000"}
+    small = {"1/2": "14000", "1/101": "14000", "1/202": "-14000"}
     said = refusal(**SUCCESS, cuts=[[GOAL]], proof={"weights": [[0, [small]]]})
     assert said == "a weight is not above zero"
 
