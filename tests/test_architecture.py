@@ -17,7 +17,7 @@ MODULES = {path.relative_to(ROOT).as_posix(): path for path in sorted(PACKAGE.rg
 # foon_asp/__init__.py. Rooms that are planned and not built yet are named too.
 FACE = "the face"
 FLOORS = (
-    {"errors", "resources", "deadline"},
+    {"errors", "escapes", "resources", "deadline"},
     {"network"},
     {"text", "problem", "bounds"},
     {"reduce", "grounding"},

@@ -6,6 +6,7 @@ from pathlib import PurePath
 
 from foon_asp.asp.exact_success import RateScale
 from foon_asp.errors import BugError, UserError
+from foon_asp.escapes import encodable
 from foon_asp.network import Source
 from foon_asp.problem import Objective, Problem, multiplies
 
@@ -158,7 +159,9 @@ def _unit_atoms(problem: Problem, unit: int, scale: RateScale | None, with_sourc
         rate = problem.rate(unit)
         atoms += [f"rate({u},{_millionths(rate)})", f"risk({u},{_check(scale.weights[rate])})"]
     if with_sources:
-        atoms += [f"source({u},{quote(source)})" for source in _source_names(network.sources[unit])]
+        atoms += [
+            f"source({u},{quote(encodable(source))})" for source in _source_names(network.sources[unit])
+        ]
     return atoms
 
 
@@ -326,7 +329,16 @@ def write_distances(trees: Sequence[Collection[int]], chosen: int) -> str:
 
 
 def quote(text: str) -> str:
-    """Give a clingo string."""
+    """Give a clingo string; raises :class:`UserError` for a name that clingo would cut short or not take."""
+    if not text.isascii() or "\0" in text:
+        if "\0" in text:
+            raise UserError(f"the name {text!r} has a zero character, which the solver cannot be given")
+        try:
+            text.encode()
+        except UnicodeEncodeError:
+            raise UserError(
+                f"the name {text!r} has half a character, which the solver cannot be given"
+            ) from None
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
 
 

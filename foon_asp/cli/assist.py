@@ -7,6 +7,7 @@ import click
 
 from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.explain.assist import Assistance, assist
@@ -31,7 +32,7 @@ from foon_asp.text import read_rates
     ),
     click.option(
         "--person",
-        type=click.Path(path_type=Path),
+        type=click.Path(path_type=NamedPath),
         metavar="FILE",
         help="Success rates of the motions that the person can do; without it all, never failing.",
     ),

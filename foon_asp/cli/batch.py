@@ -21,17 +21,18 @@ from foon_asp.batch import (
 from foon_asp.cli import options
 from foon_asp.cli.batch_data import Opening, digest
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
 
 
 @click.command("batch")
-@click.argument("questions", type=click.Path(path_type=Path), metavar="QUESTIONS.jsonl")
+@click.argument("questions", type=click.Path(path_type=NamedPath), metavar="QUESTIONS.jsonl")
 @click.option(
     "--results",
     "results_file",
     required=True,
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="FILE",
     help="JSON Lines, or for a name in .parquet a folder of Parquet files; run again to go on.",
 )

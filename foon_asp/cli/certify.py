@@ -11,6 +11,7 @@ from foon_asp.asp.program import assemble
 from foon_asp.certificate import Certificate, Coverage, NotBestError, certify, certify_outcome, coverage
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
@@ -28,7 +29,7 @@ from foon_asp.text import FoonReader, summarize
 @click.option(
     "--tree",
     "tree_file",
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="TREE.txt",
     help="A task tree to prove best.",
 )
@@ -36,7 +37,7 @@ from foon_asp.text import FoonReader, summarize
     "-o",
     "--output",
     "file",
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="FILE",
     help="Where to write it; stdout by default.",
 )

@@ -6,6 +6,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.network import TaskTree, unit_at_level
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.question import ask
@@ -14,7 +15,7 @@ from foon_asp.text import FoonReader, summarize
 
 
 @click.command("check")
-@click.argument("tree_file", type=click.Path(path_type=Path), metavar="TREE.txt")
+@click.argument("tree_file", type=click.Path(path_type=NamedPath), metavar="TREE.txt")
 @options.goal_option
 @options.containers_option
 @options.format_option("text", "json")

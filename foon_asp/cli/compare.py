@@ -3,7 +3,6 @@
 import contextlib
 import hashlib
 import json
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,6 +10,8 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import console
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
 from foon_asp.cli.search_options import search_options
@@ -58,7 +59,7 @@ _CHARTED = 60  # goals that a chart has room for
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes to use.")
 @click.option(
     "--results",
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="FILE",
     help="JSON Lines, written as results come; run again to go on after an interruption.",
 )
@@ -66,7 +67,7 @@ _CHARTED = 60  # goals that a chart has room for
     "--chart",
     "charts",
     multiple=True,
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="FILE",
     help="Bar chart of units (.svg or .png); repeatable.",
 )
@@ -194,7 +195,7 @@ def _print(rows: list[Comparison], format_: str, summary_only: bool) -> None:
     elif format_ == "markdown":
         click.echo(comparisons_markdown(rows), nl=False)
     else:
-        print_comparisons(rows)
+        print_comparisons(rows, console())
 
 
 def _published(table: PublishedTable, labels: Sequence[str], rows: list[Comparison], problem: Problem) -> str:
@@ -213,4 +214,4 @@ def _write_chart(rows: list[Comparison], problem: Problem, goals: Sequence[int],
 
     labels = [problem.network.objects[goal].label for goal in goals]
     write_chart(comparison_chart(labels, rows), file)
-    click.echo(f"wrote {os.fspath(file)}", err=True)
+    click.echo(f"wrote {file}", err=True)

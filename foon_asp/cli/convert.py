@@ -8,6 +8,8 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import utf_8, write_data
 from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import write_whole
@@ -32,7 +34,7 @@ class _Task(NamedTuple):
 
 
 @click.command("convert")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE|DIR...")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
 @click.option(
     "--to",
     "target",
@@ -43,7 +45,7 @@ class _Task(NamedTuple):
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path, allow_dash=True),
+    type=click.Path(path_type=NamedPath, allow_dash=True),
     metavar="FILE|DIR",
     help="Where to write one file (stdout, if not given), or the folder for several.",
 )
@@ -103,10 +105,10 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
                 f"{task.to}: would be written over by a file without its {', '.join(lost)}; "
                 "write to another file"
             )
-    for task, result in zip(tasks, results, strict=True):
-        content = result.text.encode()
+    contents = [utf_8(result.text) for result in results]  # all of them, before one is written
+    for task, content in zip(tasks, contents, strict=True):
         if task.to is None:
-            click.echo(content, nl=False)
+            write_data(content)
         else:
             _make_folder(task.to.parent)
             write_whole(task.to, content)

@@ -10,6 +10,8 @@ from click.core import ParameterSource
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import utf_8, write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
@@ -45,14 +47,18 @@ _SUFFIXES = {
 @click.command("draw")
 @options.goal_option
 @click.option(
-    "--tree", "tree_file", type=click.Path(path_type=Path), metavar="TREE.txt", help="A task tree to draw."
+    "--tree",
+    "tree_file",
+    type=click.Path(path_type=NamedPath),
+    metavar="TREE.txt",
+    help="A task tree to draw.",
 )
 @click.option("--unit", "units", multiple=True, type=int, metavar="ID", help="A unit to draw; repeatable.")
 @click.option(
     "-o",
     "--output",
     "file",
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="FILE",
     help=f"Where to write; {' '.join(_SUFFIXES)} say in which format.",
 )
@@ -184,13 +190,13 @@ def _write(drawing: Drawing, form: _Format, file: Path | None) -> None:
     elif form is _Format.PNG:
         content = png_picture(drawing)
     elif form is _Format.DOT:
-        content = dot_text(drawing).encode()
+        content = utf_8(dot_text(drawing))
     elif file is not None and file.suffix.lower() == ".md":
-        content = mermaid_markdown(drawing).encode()
+        content = utf_8(mermaid_markdown(drawing))
     else:
-        content = mermaid_text(drawing).encode()
+        content = utf_8(mermaid_text(drawing))
     if file is None:
-        click.echo(content, nl=False)
+        write_data(content)
     else:
         write_whole(file, content)
         click.echo(f"wrote {file}", err=True)

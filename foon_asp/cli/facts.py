@@ -8,6 +8,7 @@ from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output import write_data
 from foon_asp.cli.weighted_files import weighted_files
 from foon_asp.problem import parse_objectives
 
@@ -48,5 +49,5 @@ def command(
         question.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
     )
     program = bare_program(problem, chosen, Settings(constraints, encodings), weighted_files(soft, "--soft"))
-    click.echo(program.facts, nl=False)
+    write_data(program.facts)
     return ExitCode.DONE

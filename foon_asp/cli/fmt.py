@@ -6,6 +6,8 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import write_data
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text import Change, Diagnostic, InputError, foon_files, format_text
@@ -13,14 +15,14 @@ from foon_asp.text.plain_file import read_plain_text
 
 
 @click.command("fmt")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE|DIR...")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
 @click.option(
     "--check", is_flag=True, help="Write nothing; list the files that would change, and exit with 1."
 )
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path, allow_dash=True),
+    type=click.Path(path_type=NamedPath, allow_dash=True),
     metavar="FILE",
     help="Write the one file there, or with - to stdout, and leave it as it is.",
 )
@@ -73,7 +75,7 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
 
 def _write(file: Path, content: bytes) -> None:
     if str(file) == "-":
-        click.echo(content, nl=False)
+        write_data(content)
     else:
         write_whole(file, content)
         click.echo(f"wrote {file}", err=True)

@@ -6,17 +6,18 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
 from foon_asp.store import import_files
 from foon_asp.text import find_data, summarize
 
 
 @click.command("import")
-@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|DIR]...")
+@click.argument("paths", nargs=-1, type=click.Path(path_type=NamedPath), metavar="[FILE|DIR]...")
 @click.option(
     "--store",
     required=True,
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="NAME.foon",
     help="The store to write; one that is there is replaced when all went well.",
 )

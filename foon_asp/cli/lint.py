@@ -7,6 +7,8 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import write_data
 from foon_asp.errors import UserError
 from foon_asp.lint import CATALOG, lint, mended
 from foon_asp.report.lint_annotations import lint_annotations
@@ -19,7 +21,7 @@ _CODE = click.Choice(list(CATALOG))
 
 
 @click.command("lint")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE|DIR...")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
 @click.option("--fix", is_flag=True, help="Mend what is beyond doubt, each file in its place.")
 @click.option(
     "--select", multiple=True, type=_CODE, metavar="CODE", help="Report this kind only; repeatable."
@@ -57,7 +59,7 @@ def command(
         if count:
             findings = _findings(files, wanted)
     if format_ == "github":
-        click.echo(lint_annotations(findings), nl=False)
+        write_data(lint_annotations(findings))
     else:
         render = {"text": lint_text, "json": lint_json}[format_]
         click.echo(render(findings, len(files), count), nl=False)

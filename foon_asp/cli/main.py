@@ -1,5 +1,6 @@
 """``foon-asp``: the verbs, and how every ending becomes an exit code."""
 
+import contextlib
 import gc
 import os
 import sys
@@ -9,8 +10,10 @@ import click
 
 from foon_asp import __version__
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output import drop_output, safe_streams
 from foon_asp.cli.verbs import VERBS, verb_command
 from foon_asp.errors import UserError
+from foon_asp.escapes import escaped
 
 
 class _Verbs(click.Group):
@@ -37,32 +40,61 @@ def main(arguments: list[str] | None = None) -> None:
     # Networks are many small objects that stay to the end: looking for garbage among them finds none.
     gc.set_threshold(100_000, 50, 50)
     words = sys.argv[1:] if arguments is None else arguments
-    debug = "--debug" in words
+    with safe_streams():
+        code = _run(words)
+        try:
+            sys.stdout.flush()
+        except (OSError, UserError) as error:
+            code = _ended(error, debug=False)
+        if code is not ExitCode.DONE:
+            drop_output()
+    sys.exit(int(code))
+
+
+def _run(words: list[str]) -> ExitCode:
+    """Run a verb; say what went wrong, and give the code for how it ended."""
     try:
-        code = cli.main(args=words, prog_name="foon-asp", standalone_mode=False)
-        sys.stdout.flush()
-    except click.ClickException as error:
-        error.show()
-        code = ExitCode.USAGE
-    except (click.Abort, KeyboardInterrupt):
-        click.echo("interrupted before there was an answer", err=True)
-        code = ExitCode.LIMIT
-    except UserError as error:
-        if debug:
-            traceback.print_exc()
-        text = str(error)
-        click.echo(text if ": error: " in text else f"error: {text}", err=True)
-        code = ExitCode.USAGE
-    except BrokenPipeError:  # the reader of our output went away, as `head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = ExitCode.DONE
+        ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False)
+        return ExitCode(ended or 0)
     except Exception as error:
-        if debug:
-            traceback.print_exc()
-        click.echo(
-            f"foon-asp has a bug: {type(error).__name__}: {error}\n"
-            "please report it with the command and its input; --debug shows where it happened",
-            err=True,
-        )
+        return _ended(error, "--debug" in words)
+    except KeyboardInterrupt as error:
+        return _ended(error, debug=False)
+
+
+def _ended(error: BaseException, debug: bool) -> ExitCode:
+    """Say on stderr how a command ended, and give its code."""
+    if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
+        traceback.print_exception(error)
+    if isinstance(error, BrokenPipeError):  # the reader of our output went away, as `head` does
+        drop_output()
+        return ExitCode.DONE
+    code = ExitCode.USAGE
+    if isinstance(error, click.ClickException):
+        text = _usage(error)
+    elif isinstance(error, click.Abort | KeyboardInterrupt):
+        text, code = "interrupted before there was an answer", ExitCode.LIMIT
+    elif isinstance(error, UserError):
+        text = str(error) if ": error: " in str(error) else f"error: {error}"
+    elif isinstance(error, OSError):  # the world's: a full disk, no permission, a folder in place of a file
+        name = "" if error.filename is None else f"{escaped(os.fsdecode(error.filename))}: "
+        text = f"error: {name}{error.strerror or error}"
+    else:
         code = ExitCode.BUG
-    sys.exit(int(code or 0))
+        text = (
+            f"foon-asp has a bug: {type(error).__name__}: {error}\n"
+            "please report it with the command and its input; --debug shows where it happened"
+        )
+    with contextlib.suppress(OSError, UserError):  # nobody to say it to
+        click.echo(text, err=True)
+    return code
+
+
+def _usage(error: click.ClickException) -> str:
+    """Say what click has against the words of a command, which it quotes."""
+    lines = []
+    if isinstance(error, click.UsageError) and error.ctx is not None:
+        lines = [error.ctx.get_usage()]
+        if error.ctx.command.get_help_option(error.ctx) is not None:
+            lines.append(f"Try '{error.ctx.command_path} {error.ctx.help_option_names[0]}' for help.\n")
+    return "\n".join([*lines, f"Error: {escaped(error.format_message())}"])

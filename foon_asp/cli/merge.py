@@ -7,6 +7,8 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import utf_8, write_data
 from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder
@@ -15,11 +17,11 @@ from foon_asp.text import FoonReader, merged_text, network_files, summarize
 
 
 @click.command("merge")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE|DIR...")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path, allow_dash=True),
+    type=click.Path(path_type=NamedPath, allow_dash=True),
     metavar="FILE",
     help="Where to write the merged network; stdout, if not given.",
 )
@@ -67,9 +69,9 @@ def command(paths: tuple[Path, ...], output: Path | None, lenient: bool) -> Exit
     if not len(network):
         raise UserError("there is no functional unit in these files")
     comment = f"Universal FOON: {_count(len(network), 'functional unit')} from {_count(len(files), 'file')}"
-    content = "".join(merged_text(network, comment)).encode()
+    content = utf_8("".join(merged_text(network, comment)))
     if output is None or to_stdout:
-        click.echo(content, nl=False)
+        write_data(content)
     else:
         write_whole(output, content)
     click.echo("\n".join(_summary(len(files), copies, network, reader.left_out)), err=True)

@@ -5,6 +5,7 @@ import click
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.output import console
 from foon_asp.cli.progress import Progress
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
@@ -54,7 +55,7 @@ def command(
     if format_ == "json":
         click.echo(optima_json(outcomes), nl=False)
     else:
-        print_optima(outcomes)
+        print_optima(outcomes, console())
     if any(outcome.status in {Status.FEASIBLE, Status.UNKNOWN} for outcome in outcomes):
         return of_status(Status.UNKNOWN)
     return ExitCode.DONE

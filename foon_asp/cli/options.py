@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import click
 
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.question import Question, question_files, reading
@@ -15,7 +16,7 @@ if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import Session
 
 Command = TypeVar("Command", bound=Callable[..., object])
-_PATH = click.Path(path_type=Path)
+_PATH = click.Path(path_type=NamedPath)
 
 _DATA_OPTIONS = (
     click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with all of the following."),

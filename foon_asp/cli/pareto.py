@@ -1,12 +1,12 @@
 """``foon-asp pareto``: what one objective costs by another, as the whole Pareto front."""
 
-import os
 from pathlib import Path
 
 import click
 
 from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.explain.pareto import Front, pareto_front
@@ -22,7 +22,7 @@ from foon_asp.report.pareto import front_json, front_text
         "--chart",
         "charts",
         multiple=True,
-        type=click.Path(path_type=Path),
+        type=click.Path(path_type=NamedPath),
         metavar="FILE",
         help="Draw the front (.svg or .png); repeatable.",
     ),
@@ -68,7 +68,7 @@ def _write_chart(front: Front, file: Path) -> None:
     from foon_asp.report.front_chart import write_front_chart
 
     if not front.points:
-        click.echo(f"{os.fspath(file)} is not written: there is no point to draw", err=True)
+        click.echo(f"{file} is not written: there is no point to draw", err=True)
         return
     write_front_chart(front, file)
-    click.echo(f"wrote {os.fspath(file)}", err=True)
+    click.echo(f"wrote {file}", err=True)

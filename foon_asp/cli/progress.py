@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Self
 import click
 
 from foon_asp.asp import Reporter
+from foon_asp.cli.output import console
 from foon_asp.problem import Costs, Objective, multiplies
 from foon_asp.report.answer import costs_text, success_text
 
@@ -62,9 +63,7 @@ class Progress(Reporter):
         if self._live:
             self._live.update(text)
             return
-        from rich.console import Console
-
-        self._live = Console(stderr=True).status(text)
+        self._live = console(err=True).status(text)
         self._live.start()
 
 
@@ -74,11 +73,10 @@ def bar(word: str, total: int, completed: int) -> Iterator[Callable[[], None]]:
     if total < 20 or not sys.stderr.isatty():
         yield lambda: None
         return
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
     columns = (TextColumn(word), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Bar(*columns, console=Console(stderr=True)) as progress:
+    with Bar(*columns, console=console(err=True)) as progress:
         task = progress.add_task("", total=total, completed=completed)
         yield lambda: progress.advance(task)

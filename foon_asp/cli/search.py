@@ -4,6 +4,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output import write_data
 from foon_asp.cli.search_options import search_options
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.report.retrieval import retrieval_foon, retrieval_json, retrieval_text
@@ -52,7 +53,11 @@ def command(
     if retrieval.ending is Ending.TREE:
         simulation = simulate_for(problem, problem.tree(retrieval.units))
     render = {"text": retrieval_text, "json": retrieval_json, "foon": retrieval_foon}[format_]
-    click.echo(render(problem, search, retrieval, simulation), nl=False)
+    text = render(problem, search, retrieval, simulation)
+    if format_ == "foon":
+        write_data(text)
+    else:
+        click.echo(text, nl=False)
     if retrieval.ending is Ending.UNKNOWN:
         return ExitCode.LIMIT
     executes = simulation is not None and simulation.verdict is not Verdict.NEVER

@@ -8,6 +8,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import read_files
 from foon_asp.cli.shell_session import Leave, ShellSession
 from foon_asp.errors import UserError
@@ -15,7 +16,7 @@ from foon_asp.problem import ContainerRule
 
 
 @click.command("shell")
-@click.argument("script", required=False, type=click.Path(path_type=Path), metavar="[SCRIPT]")
+@click.argument("script", required=False, type=click.Path(path_type=NamedPath), metavar="[SCRIPT]")
 @options.goal_option
 @options.objective_option
 @options.containers_option

@@ -14,6 +14,7 @@ from foon_asp.asp.encoding import read_encoding
 from foon_asp.asp.program import assemble, find_constraint
 from foon_asp.asp.session import Session
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.options import Held
 from foon_asp.cli.shell_kitchen import ShellKitchen, find_nodes
 from foon_asp.cli.shell_line import quoted, take_apart
@@ -178,7 +179,7 @@ class ShellSession:
 
     def _kitchen(self, files: list[str]) -> None:
         if files:
-            file = Path(_only(files, "kitchen"))
+            file = NamedPath(_only(files, "kitchen"))
             self.kitchen.take(file)
             self.files.append(file)
         else:
@@ -206,7 +207,7 @@ class ShellSession:
         if not words:
             raise UserError(f"name a constraint: {WORDS['constraint'].usage}; ours are {', '.join(_ours())}")
         name, *constants = words
-        self.constrain((Path(name),), constants)
+        self.constrain((NamedPath(name),), constants)
         _say(f"constraint: {' '.join(words)}")
 
     def constrain(self, constraints: Sequence[Path], constants: Sequence[str]) -> None:

@@ -7,6 +7,7 @@ import click
 from foon_asp.asp import Status
 from foon_asp.cli.asked import Asked, asking
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.progress import Progress
 from foon_asp.explain.shopping_list import priced, shopping_list
 from foon_asp.report.shopping import shopping_json, shopping_text
@@ -18,7 +19,7 @@ from foon_asp.text import read_prices
     click.option(
         "--prices",
         "price_file",
-        type=click.Path(path_type=Path),
+        type=click.Path(path_type=NamedPath),
         metavar="FILE",
         help="Buy only what has a price: lines of an object node, a tab and a price.",
     ),

@@ -10,6 +10,8 @@ from foon_asp.cli import options
 from foon_asp.cli.certify import expiry, find_certificate, write_certificate
 from foon_asp.cli.cross_check import check_across
 from foon_asp.cli.exit_code import ExitCode, of_status
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.cli.weighted_files import weighted_files
@@ -40,7 +42,7 @@ from foon_asp.report.certified import certificate_lines
 @click.option(
     "--certificate",
     "certificate_file",
-    type=click.Path(path_type=Path),
+    type=click.Path(path_type=NamedPath),
     metavar="FILE",
     help="Also write a proof of the answer that `foon-asp verify` checks without a solver.",
 )
@@ -119,9 +121,10 @@ def command(
         remarks += lines
     if format_ == "json":
         click.echo(answer.outcome_json(outcome, more), nl=False)
+    elif format_ == "foon":
+        write_data(answer.outcome_foon(outcome))
     else:
-        render = {"text": answer.outcome_text, "foon": answer.outcome_foon}[format_]
-        click.echo(render(outcome), nl=False)
+        click.echo(answer.outcome_text(outcome), nl=False)
     if format_ == "text" and outcome.status is Status.INFEASIBLE:
         for line in answer.why_infeasible(problem, reach(problem).available):
             click.echo(line)
@@ -157,7 +160,7 @@ def _solve_soft(
     elif format_ == "text":
         click.echo(soft_text(found), nl=False)
     else:
-        click.echo(answer.outcome_foon(outcome), nl=False)
+        write_data(answer.outcome_foon(outcome))
         click.echo("\n".join([answer.headline(outcome), *soft_lines(found)]), err=True)
     if outcome.status is Status.INFEASIBLE and format_ == "text":
         for line in answer.why_infeasible(problem, reach(problem).available):

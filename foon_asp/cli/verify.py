@@ -7,13 +7,14 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
 from foon_asp.proof.verify import RefusedError, load_certificate, verify
 from foon_asp.report.certified import verified_json, verified_text
 
 
 @click.command("verify")
-@click.argument("certificate", type=click.Path(path_type=Path), metavar="CERTIFICATE")
+@click.argument("certificate", type=click.Path(path_type=NamedPath), metavar="CERTIFICATE")
 @options.format_option("text", "json")
 @options.data_options
 def command(certificate: Path, format_: str, **data: object) -> ExitCode:

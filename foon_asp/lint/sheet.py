@@ -102,7 +102,7 @@ class Sheet:
     def where(self, index: int, beside: "Sheet | None" = None) -> str:
         """Name a line for a message: by its number, and by its file where that is another than ``beside``."""
         line = self.place(index).line
-        return f"line {line}" if beside is self else f"{self.file}:{line}"
+        return f"line {line}" if beside is self else str(Source(self.file, line))
 
     def place(self, index: int, column: int = 1) -> Source:
         """Give the place of a line in the file."""

@@ -16,4 +16,5 @@ class Source(NamedTuple):
     videos: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}"
+        file = self.file.replace("\n", "\\n")  # within a line, whatever a file is called
+        return f"{file}:{self.line}"

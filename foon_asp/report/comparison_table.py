@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
@@ -12,9 +13,11 @@ from rich.text import Text
 
 from foon_asp.asp import Status
 from foon_asp.compare import MEASURED, Comparison, Judgement, Optimum, Summary
+from foon_asp.escapes import escaped
 from foon_asp.problem import Objective, multiplies
 from foon_asp.proof import Verdict
 
+_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
 _HEADINGS = ("goal", "search", "units", "inputs", "success", "executes")
 _EXECUTES = {Verdict.AS_LISTED: "as listed", Verdict.REORDERED: "when reordered", Verdict.NEVER: "never"}
 _STYLES = {"as listed": "green", "when reordered": "yellow", "never": "red"}
@@ -27,9 +30,8 @@ RATIOS = "× how many times the proved optimum of that objective"
 _WIDTHS = {"search": 15, "units": 12, "inputs": 12, "success": 19, "executes": 18}
 
 
-def print_comparisons(comparisons: Sequence[Comparison], console: Console | None = None) -> None:
+def print_comparisons(comparisons: Sequence[Comparison], console: Console) -> None:
     """Print one block of rows for each goal, the proved optimum first."""
-    console = console or Console()
     console.print(f"Searches and the optimum ({comparisons[0].conditions})", style="bold")
     for place, comparison in enumerate(comparisons):
         table = Table(
@@ -44,10 +46,10 @@ def print_comparisons(comparisons: Sequence[Comparison], console: Console | None
             table.add_column(heading, justify="right" if right else "left", no_wrap=True, width=width)
         goal, *rows = _rows(comparison)
         for row in (goal, *rows):
-            verdict = Text("  " + row[5], style=_STYLES.get(row[5].removesuffix(" (cycle)"), ""))
+            verdict = Text("  " + escaped(row[5]), style=_STYLES.get(row[5].removesuffix(" (cycle)"), ""))
             table.add_row(*row[1:5], verdict, style="bold" if row is goal else "")
         console.print()
-        console.print(Text(comparison.goal, style="bold cyan"))
+        console.print(Text(escaped(comparison.goal), style="bold cyan"))
         console.print(table)
     console.print()
     for note in _notes(comparisons):
@@ -82,8 +84,14 @@ def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
                 row += ["" if measure is None else str(measure)]
                 row += ["" if optimum.value is None else str(optimum.value), optimum.status]
                 row += ["" if ratio is None else f"{float(ratio):.6g}"]
-            writer.writerow(row)
+            writer.writerow(map(_cell_text, row))
     return file.getvalue()
+
+
+def _cell_text(text: str) -> str:
+    """Give a cell that no spreadsheet takes for a formula: one that begins like it gets an apostrophe."""
+    text = escaped(text)  # of what begins a formula, tabs and line ends
+    return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _NUMBER.fullmatch(text) else text
 
 
 def summary_lines(summaries: Sequence[Summary], proved: bool) -> Iterator[str]:

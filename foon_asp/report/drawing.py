@@ -6,13 +6,13 @@ from enum import StrEnum
 from textwrap import wrap
 from typing import NamedTuple
 
+from foon_asp.escapes import UNSAFE
 from foon_asp.network import FunctionalUnit, ObjectNode
 
 _LINE = 22  # letters in a line of a box
 _HEAD_LINE = 20  # letters in a line of bold text, which is wider
 
-# What XML, and with it SVG, cannot hold.
-_UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_NO_LETTERS = re.compile("[\ufffe\uffff]")
 
 
 class Role(StrEnum):
@@ -152,4 +152,5 @@ def _lines(text: str, width: int) -> tuple[str, ...]:
 
 
 def _printable(text: str) -> str:
-    return _UNPRINTABLE.sub("\ufffd", text)
+    """Give a text without what XML, and with it SVG, cannot hold, or what is not seen as what it is."""
+    return _NO_LETTERS.sub("\ufffd", UNSAFE.sub("\ufffd", text))

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from foon_asp.escapes import UNSAFE, escaped
 from foon_asp.text import Diagnostic, Severity
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
@@ -20,7 +21,8 @@ def lint_annotations(findings: Sequence[Diagnostic]) -> str:
 
 
 def _data(text: str) -> str:
-    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    written = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return UNSAFE.sub(lambda found: escaped(found[0]), written)
 
 
 def _property(text: str) -> str:

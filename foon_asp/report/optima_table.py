@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from foon_asp.asp import Outcome, Status
+from foon_asp.escapes import escaped
 from foon_asp.problem import Objective
 from foon_asp.report.answer import outcome_dict
 
@@ -26,7 +27,7 @@ def optima_json(outcomes: Sequence[Outcome]) -> str:
     return json.dumps([outcome_dict(outcome) for outcome in outcomes], indent=2, ensure_ascii=False) + "\n"
 
 
-def print_optima(outcomes: Sequence[Outcome], console: Console | None = None) -> None:
+def print_optima(outcomes: Sequence[Outcome], console: Console) -> None:
     """Print the table; outcomes of one goal stand together, and equal trees share a row."""
     table = Table(
         title=f"The best task trees ({outcomes[0].problem.conditions})",
@@ -49,8 +50,8 @@ def print_optima(outcomes: Sequence[Outcome], console: Console | None = None) ->
     asked = list(dict.fromkeys(outcome.objectives for outcome in outcomes))
     for goal, rows in _by_goal(outcomes):
         for place, row in enumerate(rows):
-            table.add_row(goal if place == 0 else "", *_cells(row, asked))
-    (console or Console()).print(table)
+            table.add_row(Text(escaped(goal) if place == 0 else ""), *_cells(row, asked))
+    console.print(table)
 
 
 def _by_goal(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, list[list[Outcome]]]]:

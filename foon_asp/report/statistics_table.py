@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 
+from foon_asp.escapes import escaped
 from foon_asp.network import Network
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 
@@ -73,7 +74,7 @@ def statistics_text(network: Network, levels: Sequence[Statistics], from_kitchen
     ]
     if len(files) > 1:
         lines += ["", "most units: files"]
-        lines += [f"  {number:>7,}  {file}" for file, number in files.most_common(_SHOWN)]
+        lines += [f"  {number:>7,}  {escaped(file)}" for file, number in files.most_common(_SHOWN)]
         if len(files) > _SHOWN:
             lines.append(f"  ... and {_count(len(files) - _SHOWN, 'file')} more; --format json lists all")
     return "\n".join(lines) + "\n"

@@ -5,6 +5,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.escapes import escaped
 from foon_asp.network import Source
 
 _SHOWN = 40
@@ -39,7 +40,7 @@ class Diagnostic(NamedTuple):
     def __str__(self) -> str:
         """Give ``file:line:column: severity: message`` and, where known, the line with a caret."""
         file, line, column, _ = self.source
-        text = f"{file}:{line}:{column}: {self.severity}: {self.message}"
+        text = f"{escaped(file)}:{line}:{column}: {self.severity}: {escaped(self.message)}"
         if self.excerpt:
             text += "\n" + excerpt_with_caret(self.excerpt, column)
         return text

@@ -153,7 +153,7 @@ def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[
     found = names.find(entry.pattern)
     if not found:
         count, labelled = names.labelled(entry.pattern.label)
-        place = f"{entry.source.file}:{entry.source.line}:{entry.source.column}"
+        place = f"{entry.source}:{entry.source.column}"
         said = f"{place}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
             raise _unclear(f"{said}; with that label there are", names, count, labelled, _GOAL)

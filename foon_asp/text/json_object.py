@@ -154,6 +154,8 @@ def _list(value: dict[str, object], key: str, found: object) -> list[object]:
 def _name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
         raise ValueError(f'found {_shown(value)} as "{key}", expected {expected}')
+    if "\r" in value or "\n" in value:
+        raise ValueError(f'found {_shown(value)} as "{key}", expected {expected} on one line')
     return value
 
 

@@ -71,7 +71,7 @@ def _is_object(value: object) -> bool:
 def _videos(value: object) -> tuple[str, ...]:
     """The videos that were annotated: one address, or a list."""
     found = value if isinstance(value, list) else [value]
-    return tuple(video.strip() for video in found if isinstance(video, str) and video.strip())
+    return tuple(" ".join(video.split()) for video in found if isinstance(video, str) and video.strip())
 
 
 def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, list[str]]:

@@ -1,0 +1,137 @@
+"""Standard output and error, through which everything goes that a command says: what is shown is safe."""
+
+import contextlib
+import os
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, TextIO, cast
+
+from foon_asp.errors import UserError
+from foon_asp.escapes import encodable, escaped_lines
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+class SafeStream:
+    """A stream of text that escapes what a terminal or a log would not show, or take for a command.
+
+    Letters that its encoding does not have are escaped too, so that no text is too foreign to be shown.
+    ``stream`` is ``None`` where it was closed before we began. A ``styled`` one lets colours pass: who
+    writes to it escapes names first. Bytes are data, and go to ``buffer`` as they are.
+    """
+
+    errors = "strict"
+
+    def __init__(self, stream: TextIO | None, name: str, styled: bool = False) -> None:
+        self.stream = stream
+        self._name = name
+        self._styled = styled
+
+    @property
+    def encoding(self) -> str:
+        """The encoding, which only who writes styled text has to know: the rest is seen to here."""
+        return (self._styled and self.stream and self.stream.encoding) or "utf-8"
+
+    def write(self, text: str) -> int:
+        """Write a text; raises :class:`UserError` where there is no room, or nobody to write to."""
+        if not isinstance(text, str):
+            raise TypeError(f"expected text, found {type(text).__name__}")
+        with self._faults():
+            stream = self._open()
+            stream.write(encodable(escaped_lines(text, self._styled), stream.encoding or "utf-8"))
+        return len(text)
+
+    def write_data(self, content: bytes) -> None:
+        """Write bytes as they are."""
+        with self._faults():
+            stream = self._open()
+            stream.flush()
+            stream.buffer.write(content)
+            stream.buffer.flush()
+
+    def flush(self) -> None:
+        """Hand over what was written."""
+        if self.stream is not None:
+            with self._faults():
+                self.stream.flush()
+
+    def isatty(self) -> bool:
+        """Whether somebody sits in front of it."""
+        return self.stream is not None and self.stream.isatty()
+
+    def writable(self) -> bool:
+        """Say yes: others ask."""
+        return True
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.stream, name)
+
+    def _open(self) -> TextIO:
+        if self.stream is None:
+            raise UserError(f"{self._name} is closed")
+        return self.stream
+
+    @contextlib.contextmanager
+    def _faults(self) -> Iterator[None]:
+        try:
+            yield
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise UserError(f"{self._name}: cannot be written: {error.strerror or error}") from None
+
+
+@contextlib.contextmanager
+def safe_streams() -> Iterator[None]:
+    """Let everything that is printed go through :class:`SafeStream`."""
+    out, err = sys.stdout, sys.stderr
+    sys.stdout = cast(TextIO, SafeStream(out, "standard output"))
+    sys.stderr = cast(TextIO, SafeStream(err, "standard error"))
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = out, err
+
+
+def write_data(content: str | bytes) -> None:
+    """Write a file's worth of data to standard output, to the byte.
+
+    Raises :class:`UserError` for text that UTF-8 cannot hold.
+    """
+    cast(SafeStream, sys.stdout).write_data(utf_8(content) if isinstance(content, str) else content)
+
+
+def utf_8(text: str) -> bytes:
+    """Give the bytes of a text; raises :class:`UserError` for half a character, which has none."""
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        line = text.count("\n", 0, error.start) + 1
+        found = ascii(text[error.start])
+        raise UserError(
+            f"line {line} of what would be written has {found}, half a character, which UTF-8 cannot hold: "
+            "correct the name it stands in"
+        ) from None
+
+
+def console(err: bool = False) -> "Console":
+    """Give a console for tables and what moves, whose colours are let through on a terminal."""
+    from rich.console import Console
+
+    here = sys.stderr if err else sys.stdout
+    stream = here.stream if isinstance(here, SafeStream) else here
+    name = "standard error" if err else "standard output"
+    return Console(file=cast(TextIO, SafeStream(stream, name, styled=True)))
+
+
+def drop_output() -> None:
+    """Send what is still to be written nowhere: nobody can read it, and Python would try when it ends."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is None:
+            continue
+        try:
+            stream.flush()
+        except (OSError, UserError, ValueError):
+            with contextlib.suppress(OSError, ValueError):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

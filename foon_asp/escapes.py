@@ -1,0 +1,64 @@
+r"""Text that may be shown: whatever a name holds, a terminal and a log are sent nothing but letters.
+
+What is not shown as it is gets ``\uXXXX``. That is JSON's way too: a JSON text stays one, and says the same.
+"""
+
+import re
+
+# Control characters (C0 without tab and line feed, delete, C1), marks that turn the direction of writing,
+# what has no width, line and paragraph separators, halves of characters, and tags.
+_UNSAFE = (
+    "\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
+    "\ud800-\udfff\U000e0000-\U000e007f"
+)
+UNSAFE = re.compile(f"[{_UNSAFE}]")  # within a text of several lines
+_IN_A_LINE = re.compile(f"[{_UNSAFE}\n\t]")
+_UNSAFE_BUT_ESCAPE = re.compile(f"[{_UNSAFE}]".replace("\x0b-\x1f", "\x0b-\x1a\x1c-\x1f"))
+# Commands of GitHub's and Azure's logs: ``::error::`` at the beginning of a line, ``##[error]`` anywhere.
+_COMMAND = re.compile(r"^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))", re.MULTILINE)
+
+
+def escaped(name: str) -> str:
+    """Give a name as it is shown within a line, whose end and tabs are escaped too."""
+    return _IN_A_LINE.sub(_escape, name)
+
+
+def escaped_lines(text: str, styled: bool = False) -> str:
+    """Give a text of several lines as it is shown; one that is ``styled`` keeps its colours."""
+    shown = (_UNSAFE_BUT_ESCAPE if styled else UNSAFE).sub(_escape, text)
+    return _COMMAND.sub(_without_command, shown) if "::" in shown or "##" in shown else shown
+
+
+def encodable(text: str, encoding: str = "utf-8") -> str:
+    """Give a text with escapes for the letters that an encoding does not have."""
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return "".join(letter if _has(encoding, letter) else _code(letter) for letter in text)
+    except LookupError:  # no such encoding: ASCII is in all of them
+        return encodable(text, "ascii")
+    return text
+
+
+def _has(encoding: str, letter: str) -> bool:
+    try:
+        letter.encode(encoding)
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _escape(found: re.Match[str]) -> str:
+    return _code(found[0])
+
+
+def _without_command(found: re.Match[str]) -> str:
+    return f"{found[1] or ''}{_code(found[0][-1])}"
+
+
+def _code(letter: str) -> str:
+    number = ord(letter)
+    if number > 0xFFFF:  # two halves, as in JSON
+        number -= 0x10000
+        return f"\\u{0xD800 + (number >> 10):04x}\\u{0xDC00 + (number & 0x3FF):04x}"
+    return f"\\u{number:04x}"
