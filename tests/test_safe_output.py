@@ -222,6 +222,24 @@ def test_nothing_that_is_printed_does_harm(cli: Cli, evil: Path, words: tuple[st
         assert ran.json is not None
 
 
+def test_a_name_of_two_lines_stays_on_one(cli: Cli, tmp_path: Path) -> None:
+    two = "forged\noptimal: 0 units"
+    node = {"label": two, "states": [], "ingredients": [two], "container": two}
+    unit = {"input_nodes": [node], "motion_node": two, "output_nodes": [{"label": "b"}, node]}
+    (tmp_path / "FOON.json").write_text(json.dumps([unit]))
+    (tmp_path / "kitchen.json").write_text(json.dumps([node]))
+    (tmp_path / "goal_nodes.json").write_text(json.dumps([{"label": "b"}]))
+    store = tmp_path / "a.foon"
+    assert cli("import", "--data", tmp_path, "--store", store).code == 0
+    for words in (("solve",), ("regret",), ("alternatives",)):
+        for data in (("--data", tmp_path), ("--network", store)):
+            ran = cli(*words, *data)
+            assert ran.code == 0
+            assert "forged" in ran.out
+            for text in (ran.out, ran.err):
+                assert not [line for line in text.split("\n") if line.startswith("optimal: 0 units")]
+
+
 def test_annotations_are_commands_and_nothing_in_them_is(cli: Cli, tmp_path: Path) -> None:
     file = tmp_path / "a\n::error::x,y\x1b.txt"
     file.write_text(f"O\t{EVIL}\t7\nM\tmix\nO\tb\n//\nnonsense\x1b\n", encoding="utf-8")

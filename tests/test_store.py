@@ -1,5 +1,6 @@
 """The store: what comes out is what went in, a question reads its cone, and damage is said in words."""
 
+import contextlib
 import json
 import os
 import random
@@ -8,6 +9,8 @@ import sqlite3
 import subprocess
 import sys
 import time
+import zlib
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -19,9 +22,9 @@ from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.store import Store, builder, import_files
-from foon_asp.store.block import SIZES, VERSION, Table, seal
+from foon_asp.store.block import SIZES, VERSION, Table, seal, unseal
 from foon_asp.text import Data, DataFiles, InputError, find_data, find_goal, read_data, write_units
-from tests.conftest import ROOT, Cli
+from tests.conftest import ROOT, Cli, Ran
 from tests.random_problems import random_problem
 
 KITCHEN = ROOT / "data" / "kitchen"
@@ -810,3 +813,152 @@ def test_a_hundred_thousand_units(tmp_path: Path, cli: Cli) -> None:
         part = cone_problem(store, problem, own_kitchen=True)
         found, expected = solve(part), solve(problem)
         assert (found.status, found.costs) == (expected.status, expected.costs)
+
+
+# --- stores that somebody made up
+
+
+def forged(store: Path, table: Table, number: int, value: object) -> None:
+    """Put a block into a store, with a checksum that fits."""
+    with contextlib.closing(sqlite3.connect(store)) as database, database:
+        content = seal(table, number, value)
+        changed = database.execute(f"UPDATE {table} SET content = ? WHERE number = ?", (content, number))
+        assert changed.rowcount == 1
+
+
+def read_all(cli: Cli, store: Path) -> list[Ran]:
+    """Read a store in every way that there is."""
+    return [
+        cli("stats", "--network", store),
+        cli("solve", "--network", store, "--goal", "soup; cooked; in [pot]", "--objective", "success"),
+        cli("solve", "--network", store, "--goal", "soup; cooked; in [pot]", "--containers", "implied"),
+        cli("why-not", "--network", store, "--goal", "lekk"),
+        cli("solve", "--network", store, "--goal", "sou"),
+        cli("compare", "--network", store, "--search", "bfs"),
+    ]
+
+
+def blocks_of(store: Path) -> list[tuple[Table, int, Any]]:
+    with contextlib.closing(sqlite3.connect(store)) as database:
+        return [
+            (table, number, unseal(table, number, block))
+            for table in Table
+            for number, block in database.execute(f"SELECT * FROM {table}")
+        ]
+
+
+WRONG: list[Any] = [
+    None,
+    7,
+    -1,
+    2**70,
+    1.5,
+    True,
+    "x",
+    "1/0",
+    "1e99999999",
+    [],
+    [[]],
+    [7],
+    [None],
+    {},
+    {"x": 1},
+    [["x"]],
+]
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Give the way to every value within plain values."""
+    yield path
+    if isinstance(value, list):
+        for place, each in enumerate(value[:9]):
+            yield from places(each, (*path, place))
+    elif isinstance(value, dict):
+        for place, each in list(value.items())[:9]:
+            yield from places(each, (*path, place))
+
+
+def with_other(value: Any, path: tuple[Any, ...], other: Any) -> Any:
+    """Give plain values with another one in a place."""
+    if not path:
+        return other
+    new = value.copy()
+    new[path[0]] = with_other(value[path[0]], path[1:], other)
+    return new
+
+
+def test_no_block_that_is_made_up_is_a_bug(soup: tuple[DataFiles, Path], cli: Cli) -> None:
+    _, store = soup
+    original = store.read_bytes()
+    dice = random.Random(3)
+    changes = [
+        (table, number, with_other(value, path, other))
+        for table, number, value in blocks_of(store)
+        for path in places(value)
+        for other in WRONG
+    ]
+    refused = 0
+    for table, number, value in dice.sample(changes, 150):
+        store.write_bytes(original)
+        forged(store, table, number, value)
+        for ran in read_all(cli, store):
+            assert ran.code in {0, 1, 2, 3}, (table, number, value, ran.err)
+            refused += "is damaged" in ran.err
+    assert refused > 300
+    store.write_bytes(original)
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "CREATE VIEW more AS SELECT * FROM unit",
+        "CREATE TRIGGER more AFTER INSERT ON unit BEGIN DELETE FROM unit; END",
+        "CREATE TABLE more (number INTEGER PRIMARY KEY, content BLOB NOT NULL)",
+        "CREATE INDEX more ON unit (content)",
+        "ALTER TABLE unit RENAME TO node_2",
+        "DROP TABLE kitchen",
+        "DROP TABLE unit; CREATE VIEW unit AS SELECT 0 AS number, x'00' AS content",
+        "DROP TABLE unit; CREATE VIEW unit AS WITH RECURSIVE n(number) AS (SELECT 0 UNION ALL"
+        " SELECT number + 1 FROM n) SELECT number, zeroblob(1000000000) AS content FROM n",
+        "DROP TABLE unit; CREATE TABLE unit (number TEXT, content BLOB)",
+        "DROP TABLE unit; CREATE TABLE unit (number INTEGER PRIMARY KEY, content BLOB AS (zeroblob(1000)))",
+        "DROP TABLE unit; CREATE VIRTUAL TABLE unit USING fts5(number, content)",
+    ],
+)
+def test_a_database_has_our_tables_and_nothing_else(
+    soup: tuple[DataFiles, Path], cli: Cli, statement: str
+) -> None:
+    _, store = soup
+    with contextlib.closing(sqlite3.connect(store)) as database:
+        try:
+            database.executescript(statement)
+        except sqlite3.OperationalError as error:
+            pytest.skip(str(error))
+    for ran in read_all(cli, store):
+        assert ran.code == 2
+        assert "the store is damaged (its tables are not those of a store)" in ran.err
+
+
+@pytest.mark.parametrize("value", ["'text'", "7", "1.5", "zeroblob(0)", "zeroblob(100000)", "x'ff'"])
+def test_blocks_of_other_types(soup: tuple[DataFiles, Path], cli: Cli, value: str) -> None:
+    _, store = soup
+    for table in Table:
+        original = store.read_bytes()
+        with contextlib.closing(sqlite3.connect(store)) as database, database:
+            database.execute(f"UPDATE {table} SET content = {value}")
+        for ran in read_all(cli, store):
+            assert ran.code in {0, 1, 2}
+            assert ran.code != 2 or "damaged" in ran.err or "error: " in ran.err
+        store.write_bytes(original)
+
+
+def test_blocks_nested_without_end_and_numbers_without_end(soup: tuple[DataFiles, Path], cli: Cli) -> None:
+    _, store = soup
+    original = store.read_bytes()
+    for content in (b"[" * 100_000 + b"]" * 100_000, b"[" * 100_000, b"9" * 10_000, b"\xff", b"", b"NaN"):
+        with contextlib.closing(sqlite3.connect(store)) as database, database:
+            block = zlib.crc32(content, zlib.crc32(b"about 0")).to_bytes(4, "little") + content
+            database.execute("UPDATE about SET content = ? WHERE number = 0", (block,))
+        for ran in read_all(cli, store):
+            assert (ran.code, "the store is damaged" in ran.err) == (2, True)
+        store.write_bytes(original)

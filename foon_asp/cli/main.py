@@ -13,7 +13,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import drop_output, safe_streams
 from foon_asp.cli.verbs import VERBS, verb_command
 from foon_asp.errors import UserError
-from foon_asp.escapes import escaped
+from foon_asp.escapes import escaped, note_line_end
 
 
 class _Verbs(click.Group):
@@ -41,6 +41,9 @@ def main(arguments: list[str] | None = None) -> None:
     gc.set_threshold(100_000, 50, 50)
     words = sys.argv[1:] if arguments is None else arguments
     with safe_streams():
+        for word in words:
+            note_line_end(word)
+            note_line_end(word.partition("=")[2])
         code = _run(words)
         try:
             sys.stdout.flush()

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
 from foon_asp.errors import UserError
-from foon_asp.escapes import encodable, escaped_lines
+from foon_asp.escapes import encodable, escaped_lines, forget_line_ends
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -85,6 +85,7 @@ class SafeStream:
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
     """Let everything that is printed go through :class:`SafeStream`."""
+    forget_line_ends()
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out, "standard output"))
     sys.stderr = cast(TextIO, SafeStream(err, "standard error"))

@@ -4,6 +4,8 @@ import json
 from enum import StrEnum
 from zlib import crc32
 
+from foon_asp.text.json_value import read_json
+
 APPLICATION_ID = 0x464F4F4E  # "FOON", in SQLite's header
 VERSION = 1  # of what is in the tables; SQLite's user_version
 
@@ -57,9 +59,14 @@ def unseal(table: Table, number: int, block: object) -> object:
     """Give back what :func:`seal` wrote; raises :class:`ValueError` when this is not it."""
     if not isinstance(block, bytes) or block[:_CHECKSUM] != _checksum(table, number, block[_CHECKSUM:]):
         raise ValueError(f"block {number} of {table} does not agree with its checksum")
-    return json.loads(block[_CHECKSUM:])
+    return read_json(block[_CHECKSUM:].decode("ascii"))
 
 
 def _checksum(table: Table, number: int, content: bytes) -> bytes:
     # The place is in it, so that a block which turns up elsewhere is none.
     return crc32(content, crc32(f"{table} {number}".encode("ascii"))).to_bytes(_CHECKSUM, "little")
+
+
+def table_statement(table: Table) -> str:
+    """Give the statement that makes a table, to the letter."""
+    return f"CREATE TABLE {table} (number INTEGER PRIMARY KEY, content BLOB NOT NULL)"

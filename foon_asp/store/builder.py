@@ -8,7 +8,7 @@ from itertools import islice
 from typing import Any
 
 from foon_asp.network import ObjectNode, Source
-from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, unseal
+from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, table_statement, unseal
 from foon_asp.store.label_index import label_blocks, trigram_blocks
 from foon_asp.store.plain_values import entry_values, node_hashes, node_values, pattern_hash
 from foon_asp.text import ListedObject
@@ -29,7 +29,7 @@ class StoreBuilder:
         database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
         database.execute(f"PRAGMA user_version = {VERSION}")
         for table in Table:
-            database.execute(f"CREATE TABLE {table} (number INTEGER PRIMARY KEY, content BLOB NOT NULL)")
+            database.execute(table_statement(table))
         self.copies = 0  # of units, added so far
         self.units = 0  # distinct ones
         self.matched = [False] * len(kitchen or ())

@@ -59,10 +59,14 @@ def trigram_blocks(labels: Mapping[str, object]) -> list[dict[str, list[int] | i
 
 
 class LabelIndex:
-    """Looks labels up in blocks; ``read`` gives the content of a block by table and number."""
+    """Looks labels up in blocks.
 
-    def __init__(self, read: Read, labels: int, trigram_blocks: int) -> None:
+    ``read`` gives the content of a block by table and number, ``at`` what a table has under a number.
+    """
+
+    def __init__(self, read: Read, at: Read, labels: int, trigram_blocks: int) -> None:
         self._read = read
+        self._value = at
         self._labels = labels
         self._trigram_blocks = trigram_blocks
 
@@ -109,6 +113,5 @@ class LabelIndex:
         return low
 
     def _at(self, place: int) -> Labelled:
-        number, offset = divmod(place, SIZES[Table.LABEL])
-        label, count, first = self._read(Table.LABEL, number)[offset]
+        label, count, first = self._value(Table.LABEL, place)
         return Labelled(label, count, tuple(first))

@@ -10,7 +10,7 @@ from typing import Any, Self
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
 from foon_asp.network.network import UnitKey
 from foon_asp.problem import ContainerRule, needed_inputs
-from foon_asp.store.block import SIZES, Table
+from foon_asp.store.block import Table
 from foon_asp.store.label_index import LabelIndex
 from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
 from foon_asp.store.store_file import StoreFile
@@ -37,7 +37,9 @@ class Store:
         self.left_out: int = about["left_out"]
         self._kitchen: int | None = about["kitchen"]
         self._counts = about
-        self._labels = LabelIndex(self._file.block, about["labels"], about["trigram_blocks"])
+        self._labels = LabelIndex(
+            self._file.block, self._file.value, about["labels"], about["trigram_blocks"]
+        )
         self._nodes: dict[int, ObjectNode] = {}
 
     def close(self) -> None:
@@ -186,6 +188,9 @@ class Store:
         outputs: list[tuple[int, ...]] = []
         sources: list[tuple[Source, ...]] = []
         unit_ids: dict[UnitKey, int] = {}
+        named = [o for _, ins, outs, _ in units for side in (ins, outs) for o in side]
+        if isinstance(ids, range) and max(named, default=-1) >= len(ids):
+            self._file.damaged("a unit has an object node that is not there")
         for motion, ins, outs, places in units:
             motions.append(self._at(Table.MOTION, motion)[0])
             inputs.append(tuple([ids[o] for o in ins]))
@@ -193,6 +198,12 @@ class Store:
             sources.append(tuple(self._source(*places[i : i + 3]) for i in range(0, len(places), 3)))
             unit_ids[motions[-1], frozenset(inputs[-1]), frozenset(outputs[-1])] = len(unit_ids)
         object_ids = {node: place for place, node in enumerate(objects)}
+        if len(object_ids) != len(objects) or len(unit_ids) != len(units):
+            self._file.damaged("an object node or a unit is there twice")
+        if any(len(set(side)) != len(side) for side in (*inputs, *outputs)):
+            self._file.damaged("a unit has an object node twice")
+        if self.rates is not None and not self.rates.keys() >= set(motions):
+            self._file.damaged("a motion has no rate")
         return Network(
             tuple(objects),
             tuple(motions),
@@ -226,5 +237,4 @@ class Store:
         return [o for known, o in found if known == wanted and is_it(self.node(o))]
 
     def _at(self, table: Table, number: int) -> Any:
-        block, place = divmod(number, SIZES[table])
-        return self._file.block(table, block)[place]
+        return self._file.value(table, number)

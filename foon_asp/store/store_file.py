@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from foon_asp.errors import UserError
-from foon_asp.store.block import APPLICATION_ID, VERSION, Table, unseal
+from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, table_statement, unseal
+from foon_asp.store.block_shape import check_block, note_line_ends
 from foon_asp.text import STORE_MAGIC
 
 _HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where
@@ -47,6 +48,7 @@ class StoreFile:
         except sqlite3.Error as error:
             raise UserError(f"{file}: cannot be read: {error}") from None
         self._closing = weakref.finalize(self, self._database.close)
+        self._guarded(self._check_tables)
 
     def close(self) -> None:
         """Close the file; blocks that were read stay, and to read another raises :class:`UserError`."""
@@ -59,8 +61,16 @@ class StoreFile:
             row = self._guarded(lambda: self._row(table, number))
             if row is None:
                 self.damaged(f"block {number} of {table} is missing")
-            found = self._blocks[table, number] = self._guarded(lambda: unseal(table, number, row[0]))
+            found = self._blocks[table, number] = self._guarded(lambda: _opened(table, number, row[0]))
         return found
+
+    def value(self, table: Table, number: int) -> Any:
+        """Give what a table has under a number, among others in a block."""
+        block, place = divmod(number, SIZES[table])
+        values = self.block(table, block)
+        if place >= len(values):
+            self.damaged(f"number {number} of {table} is missing")
+        return values[place]
 
     def blocks(self, table: Table) -> Iterator[Any]:
         """Give all blocks of a table in order, and keep none of them."""
@@ -69,7 +79,7 @@ class StoreFile:
         while (row := self._guarded(rows.fetchone)) is not None:
             if row[0] != number:
                 self.damaged(f"block {number} of {table} is missing")
-            yield self._guarded(lambda row=row: unseal(table, row[0], row[1]))  # type: ignore[misc]
+            yield self._guarded(lambda row=row: _opened(table, row[0], row[1]))  # type: ignore[misc]
             number += 1
 
     def damaged(self, what: str) -> NoReturn:
@@ -90,6 +100,14 @@ class StoreFile:
             return read()
         except (sqlite3.Error, MemoryError, OverflowError, ValueError) as error:
             self.damaged(str(error) or type(error).__name__)
+
+    def _check_tables(self) -> None:
+        """Refuse a database with anything in it but our tables: a view or trigger runs what it likes."""
+        self._database.execute("PRAGMA trusted_schema = OFF")
+        found = self._database.execute("SELECT type, name, tbl_name, sql FROM sqlite_master").fetchall()
+        ours = {("table", table.value, table.value, table_statement(table)) for table in Table}
+        if len(found) != len(ours) or set(found) != ours:
+            raise ValueError("its tables are not those of a store")
 
     def _check_header(self) -> None:
         """Refuse what is no store of ours, before SQLite looks at it."""
@@ -121,3 +139,12 @@ class StoreFile:
         expected = (65536 if page == 1 else page) * int.from_bytes(header[28:32])
         if size != expected:
             self.damaged(f"it has {size} bytes, expected {expected}")
+
+
+def _opened(table: Table, number: int, block: object) -> object:
+    """Give what is in a block; raises :class:`ValueError` where it is not what its table holds."""
+    value = unseal(table, number, block)
+    check_block(table, number, value)
+    if isinstance(block, bytes) and b"\\n" in block:
+        note_line_ends(value)
+    return value

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from foon_asp.escapes import note_line_end
 from foon_asp.network import Contents, Relation
 from foon_asp.text.json_list import JsonNumber
 from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number, read_state
@@ -154,8 +155,7 @@ def _list(value: dict[str, object], key: str, found: object) -> list[object]:
 def _name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
         raise ValueError(f'found {_shown(value)} as "{key}", expected {expected}')
-    if "\r" in value or "\n" in value:
-        raise ValueError(f'found {_shown(value)} as "{key}", expected {expected} on one line')
+    note_line_end(value.strip(" "))
     return value
 
 

@@ -1,0 +1,127 @@
+"""What blocks of a store look like inside: one with a fitting checksum may still have been made up."""
+
+from collections.abc import Callable
+from typing import Any
+
+from foon_asp.escapes import note_line_end
+from foon_asp.store.block import SIZES, Table
+
+Shape = Callable[[Any], bool]
+
+_GREATEST = 2**53  # of numbers: no store has as many of anything
+
+
+def check_block(table: Table, number: int, value: object) -> None:
+    """Raise :class:`ValueError` for a block that holds something else than its table does."""
+    shape = _ABOUT[number] if table is Table.ABOUT and number < len(_ABOUT) else _SHAPES.get(table)
+    if shape is None or not shape(value):
+        raise ValueError(f"block {number} of {table} holds something else")
+
+
+def note_line_ends(value: object) -> None:
+    """Note the names in a block that have line ends in them."""
+    if isinstance(value, str):
+        note_line_end(value)
+    elif isinstance(value, list | dict):
+        for each in value:
+            note_line_ends(each)
+
+
+def _text(value: Any) -> bool:
+    return type(value) is str
+
+
+def _number(value: Any) -> bool:
+    return type(value) is int and 0 <= value < _GREATEST
+
+
+def _positive(value: Any) -> bool:
+    return _number(value) and value > 0
+
+
+def _flag(value: Any) -> bool:
+    return type(value) is int and value in {0, 1}
+
+
+def _numbers(value: Any) -> bool:
+    return type(value) is list and all(type(each) is int and 0 <= each < _GREATEST for each in value)
+
+
+def _maybe(shape: Shape) -> Shape:
+    return lambda value: value is None or shape(value)
+
+
+def _list(shape: Shape) -> Shape:
+    return lambda value: type(value) is list and all(map(shape, value))
+
+
+def _row(*shapes: Shape, least: int | None = None) -> Shape:
+    few = len(shapes) if least is None else least
+    return lambda value: (
+        type(value) is list
+        and few <= len(value) <= len(shapes)
+        and all(shape(each) for shape, each in zip(shapes, value, strict=False))
+    )
+
+
+def _block(table: Table, shape: Shape) -> Shape:
+    every = _list(shape)
+    return lambda value: every(value) and len(value) <= SIZES[table]
+
+
+def _places(value: Any) -> bool:
+    return _numbers(value) and len(value) % 3 == 0 and value != []
+
+
+def _pairs(value: Any) -> bool:
+    return _numbers(value) and len(value) % 2 == 0
+
+
+def _by_trigram(value: Any) -> bool:
+    return type(value) is dict and all(_numbers(each) or _number(each) for each in value.values())
+
+
+def _rates(value: Any) -> bool:
+    return type(value) is dict and all(map(_rate, value.values()))
+
+
+def _rate(value: Any) -> bool:
+    """A fraction from 0 to 1, 0 excluded, in digits."""
+    if type(value) is not str:
+        return False
+    above, slash, below = value.partition("/")
+    digits = above.isascii() and above.isdigit() and (not slash or (below.isascii() and below.isdigit()))
+    return digits and len(value) < _DIGITS and 0 < int(above) <= int(below or "1")
+
+
+def _counts(value: Any) -> bool:
+    return (
+        type(value) is dict
+        and value.keys() == {*_COUNTS, *_SPREAD, "kitchen"}
+        and all(_number(value[name]) for name in _COUNTS)
+        and all(_positive(value[name]) for name in _SPREAD)
+        and (value["kitchen"] is None or _number(value["kitchen"]))
+    )
+
+
+_DIGITS = 4000  # of a rate; Python turns no more than 4,300 into a number
+_COUNTS = ("units", "objects", "labels", "motions", "origins", "left_out")
+_SPREAD = ("hash_blocks", "trigram_blocks")
+
+_texts = _list(_text)
+_relations = _list(_row(_text, _text))
+_node = _row(_flag, _text, _texts, _relations, _list(_row(_text, _texts)), least=2)
+_entry = _row(_text, _texts, _texts, _maybe(_text), _relations, _text, _number, _number)
+
+_ABOUT: tuple[Shape, ...] = (_counts, _maybe(_rates), _maybe(_texts), _list(_entry), _numbers)
+_SHAPES: dict[Table, Shape] = {
+    Table.UNIT: _block(Table.UNIT, _row(_number, _numbers, _numbers, _places)),
+    Table.NODE: _block(Table.NODE, _node),
+    Table.PRODUCERS: _block(Table.PRODUCERS, _numbers),
+    Table.NODE_HASH: _pairs,
+    Table.LABEL: _block(Table.LABEL, _row(_text, _number, _numbers)),
+    Table.TRIGRAM: _by_trigram,
+    Table.MOTION: _block(Table.MOTION, _row(_text, _text, _number, _number)),
+    Table.ORIGIN: _block(Table.ORIGIN, _row(_text, _texts)),
+    Table.KITCHEN: _block(Table.KITCHEN, _entry),
+}
