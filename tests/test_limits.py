@@ -6,6 +6,7 @@ import pty
 import signal
 import subprocess
 import sys
+import threading
 import time
 from fractions import Fraction
 from pathlib import Path
@@ -13,6 +14,8 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.deadline import Deadline
+from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.text import write_units
@@ -149,3 +152,17 @@ def test_rules_are_found_in_the_folder_of_the_moment(tmp_path: Path, monkeypatch
         monkeypatch.chdir(tmp_path / name)
         statuses.append(solve(hard_problem(3, 3, 2, 2), settings=Settings((Path("mine.lp"),))).status)
     assert statuses == [Status.OPTIMAL, Status.OPTIMAL, Status.INFEASIBLE, Status.OPTIMAL]
+
+
+def test_a_program_may_be_dropped_while_a_process_is_taken() -> None:
+    """Memory is collected at any moment, and what is dropped there gives its process back."""
+    program = worker_process.WorkerProgram([], "use(1).", [], 0, Deadline(None))
+
+    def drop() -> None:
+        with worker_process._lock:
+            program.close()
+
+    thread = threading.Thread(target=drop, daemon=True)
+    thread.start()
+    thread.join(20)
+    assert not thread.is_alive()

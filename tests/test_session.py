@@ -201,7 +201,6 @@ def test_after_a_limit_the_session_goes_on() -> None:
         (":- N = #count { U : use(U) }, N > 3.", False),
         (":- { use(U) : unit(U) } = N, unit(N).", False),
         (":- optimize(units,P), P > 1.", False),
-        (":- not _seen(3).", False),
     ],
 )
 def test_what_cannot_be_left_open(rule: str, is_open: bool, tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """What callers write, turned into what the rooms take; faults are said in the words of Python."""
 
+import sys
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -51,7 +52,7 @@ def settings(
     time_limit: float | None = None,
 ) -> Settings:
     """Put together how to solve; ``time_limit`` is in seconds."""
-    if time_limit is not None and time_limit < 0:
+    if time_limit is not None and not 0 <= time_limit <= sys.float_info.max:
         raise UserError(f"found the time limit {time_limit}, expected a number of seconds from 0")
     return Settings(
         files(constraints),

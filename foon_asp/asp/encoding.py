@@ -2,18 +2,50 @@
 
 import difflib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 from clingo.ast import AST, ASTType, ComparisonOperator, Location, Transformer, parse_files
+from clingo.symbol import SymbolType
 
-from foon_asp.asp.facts import FACT_PREDICATES, quote
+from foon_asp.asp.encoding_file import LARGEST, excerpt, included_files
+from foon_asp.asp.facts import FACT_PREDICATES, OBJECTIVE_TERMS, quote
 from foon_asp.errors import UserError
+from foon_asp.grounding.messages import listener
 from foon_asp.network import Source
+from foon_asp.resources import encodings_folder
 from foon_asp.text import Diagnostic, InputError, Severity
 
 Signature = tuple[str, int]
+
+# Every name that begins so is ours, but for the public ones below: see encodings/README.md.
+_PREFIX = "_"
+_PUBLIC = frozenset((*FACT_PREDICATES.items(), ("use", 1), ("available", 1)))
+_EXTENDED = frozenset((("allergen", 1), ("allowed", 1)))  # to which files of the user's add facts
+_LOOKED_AT = frozenset((("_by_person", 1),))  # by constraints, under a question that has it
+_PUBLIC_NAMES = frozenset((*(name for name, _ in (*_PUBLIC, *_EXTENDED)), *OBJECTIVE_TERMS.values()))
+
+_THEORY = "no theory is part of the program, so it would have no meaning; #sum and #count add up and count"
+_REFUSED = {
+    ASTType.Minimize: "a statement that minimizes, expected only rules and constraints: what is best is said "
+    "by --objective; to change it, edit a copy of objectives.lp and pass its folder with --encodings",
+    ASTType.ShowTerm: "#show of a term, expected only rules and constraints: what is shown is the answer; "
+    "#show NAME/ARITY. may stay",
+    ASTType.ProjectAtom: "#project, expected only rules and constraints: answers are not projected",
+    ASTType.ProjectSignature: "#project, expected only rules and constraints: answers are not projected",
+    ASTType.Edge: "#edge, expected only rules and constraints: an edge would join the graph of the "
+    "encodings; say with :- what must not be",
+    ASTType.Program: "#program, expected rules: parts are not solved",
+    ASTType.External: "#external, expected rules: nothing sets such an atom, so it would never hold; a "
+    "choice rule leaves an atom open",
+    ASTType.TheoryDefinition: f"#theory, expected rules: {_THEORY}",
+    ASTType.TheoryAtom: f"a theory atom, expected rules: {_THEORY}",
+}
+# What encodings that replace ours may not hold either, since it would be lost there too.
+_LOST = (ASTType.Program, ASTType.External, ASTType.TheoryDefinition, ASTType.TheoryAtom)
+_CODES = {ASTType.Minimize: "minimize", ASTType.Program: "program-part"}
 
 # A message of clingo: file, line and column of what it is about, its kind, and its first line.
 _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)")
@@ -21,26 +53,29 @@ _STRING = re.compile(r'"([^"\\]|\\["\\n])*"')  # as clingo reads one
 _ESCAPED = re.compile(r"\\(.)")
 
 
+_WORD = re.compile(r"[a-z][A-Za-z0-9_]*")
+
+
 @dataclass
 class Encoding:
     """One ``.lp`` file, parsed: what it defines, what it looks at, and its constants.
 
-    ``defined`` holds the signatures of atoms in heads and ``used`` those in bodies, with the place
-    where each is met first, ``declared`` those under ``#defined``. ``constants`` maps the names of
-    ``#const`` statements to their values as written. ``minimizes`` are the places of ``#minimize`` and
-    weak constraints, ``parts`` those of ``#program`` statements other than ``base``, ``scripts`` those
-    of ``#script``. ``assigns`` says that a variable may get its value from an aggregate
-    (``N = #count {...}``). ``text`` is every statement as clingo understands it.
+    ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies and ``declared`` those under
+    ``#defined``, with the place where each is met first; the name of a negated atom (``-p``) begins with a
+    minus. ``names`` are those of constants and functions in terms. ``constants`` maps the names of ``#const``
+    statements to their values as written, ``constant_sources`` to their places. ``special`` are statements
+    and atoms that are no plain rules, by what they are. ``assigns`` says that a variable may get its value
+    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo understands it.
     """
 
     path: Path
     defined: dict[Signature, Source] = field(default_factory=dict)
-    declared: set[Signature] = field(default_factory=set)
+    declared: dict[Signature, Source] = field(default_factory=dict)
     used: dict[Signature, Source] = field(default_factory=dict)
+    names: dict[str, Source] = field(default_factory=dict)
     constants: dict[str, str] = field(default_factory=dict)
-    minimizes: list[Source] = field(default_factory=list)
-    parts: list[Source] = field(default_factory=list)
-    scripts: list[Source] = field(default_factory=list)
+    constant_sources: dict[str, Source] = field(default_factory=dict)
+    special: list[tuple[ASTType, Source]] = field(default_factory=list)
     assigns: bool = False
     text: str = ""
 
@@ -48,22 +83,32 @@ class Encoding:
 def read_encoding(path: Path) -> Encoding:
     """Parse an encoding, the files it includes with it; raises :class:`InputError` for a syntax error.
 
-    ``#script`` blocks are found but not run.
+    Raises what :func:`foon_asp.asp.encoding_file.included_files` does, too.
     """
     if not path.is_file():
         raise UserError(f"{path}: no such file; expected an encoding (.lp)")
+    files = {file.resolve() for file in included_files(path)}
     encoding = Encoding(path)
     collector = _Collector(encoding)
+    met: set[str] = set()
+
+    def statement(statement: AST) -> None:
+        met.add(statement.location.begin.filename)
+        collector.statement(statement)
+
     messages: list[str] = []
     try:
-        parse_files([str(path)], collector.statement, logger=lambda _, text: messages.append(text))
+        parse_files([str(path)], statement, logger=listener(messages))
     except RuntimeError as error:
         raise fault(messages, str(error)) from None
+    others = sorted(file for file in met if Path(file).resolve() not in files)
+    if others:
+        raise UserError(f"{path} includes {others[0]}, which was not looked over: leave that out")
     return encoding
 
 
 class _Collector(Transformer):
-    """Walks statements and notes signatures in heads and in bodies."""
+    """Walks statements and notes signatures in heads and in bodies, and names in terms."""
 
     def __init__(self, encoding: Encoding) -> None:
         self.encoding = encoding
@@ -73,18 +118,23 @@ class _Collector(Transformer):
         encoding = self.encoding
         encoding.text += f"{statement}\n"
         kind = statement.ast_type
-        if kind == ASTType.Script:
-            encoding.scripts.append(_source(statement.location))
-        elif kind == ASTType.Program:
+        source = _source(statement.location)
+        if kind == ASTType.Program:
             if statement.name != "base" or statement.parameters:
-                encoding.parts.append(_source(statement.location))
-        elif kind == ASTType.Definition:
+                encoding.special.append((kind, source))
+            for name in (statement.name, *(parameter.name for parameter in statement.parameters)):
+                encoding.names.setdefault(name, source)
+            return
+        if kind in _REFUSED:
+            encoding.special.append((kind, source))
+        if kind == ASTType.Definition:
             encoding.constants[statement.name] = str(statement.value)
+            encoding.constant_sources.setdefault(statement.name, source)
+            self.visit(statement.value)
         elif kind == ASTType.Defined:
-            encoding.declared.add((statement.name, statement.arity))
-        else:
-            if kind == ASTType.Minimize:
-                encoding.minimizes.append(_source(statement.location))
+            name = statement.name if statement.positive else f"-{statement.name}"
+            encoding.declared.setdefault((name, statement.arity), source)
+        elif kind != ASTType.TheoryDefinition:
             self.visit(statement)
 
     def visit_Rule(self, rule: AST) -> AST:  # noqa: N802 (the name clingo looks for)
@@ -105,15 +155,33 @@ class _Collector(Transformer):
         return literal
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802
-        symbol = atom.symbol
-        while symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
-            symbol = symbol.argument
-        if symbol.ast_type == ASTType.Function:
-            signature = symbol.name, len(symbol.arguments)
-            if self._in_head:
-                self.encoding.defined.setdefault(signature, _source(symbol.location))
-            else:
-                self.encoding.used.setdefault(signature, _source(symbol.location))
+        self._atom(atom.symbol, "")
+        return atom
+
+    def _atom(self, symbol: AST, sign: str) -> None:
+        if symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
+            self._atom(symbol.argument, "" if sign else "-")
+        elif symbol.ast_type == ASTType.Pool:  # p(1;2)
+            for one in symbol.arguments:
+                self._atom(one, sign)
+        else:
+            signature = sign + symbol.name, len(symbol.arguments)
+            noted = self.encoding.defined if self._in_head else self.encoding.used
+            noted.setdefault(signature, _source(symbol.location))
+            self.visit_sequence(symbol.arguments)
+
+    def visit_Function(self, function: AST) -> AST:  # noqa: N802
+        self.encoding.names.setdefault(function.name, _source(function.location))
+        self.visit_sequence(function.arguments)
+        return function
+
+    def visit_SymbolicTerm(self, term: AST) -> AST:  # noqa: N802
+        if term.symbol.type is SymbolType.Function:
+            self.encoding.names.setdefault(term.symbol.name, _source(term.location))
+        return term
+
+    def visit_TheoryAtom(self, atom: AST) -> AST:  # noqa: N802
+        self.encoding.special.append((ASTType.TheoryAtom, _source(atom.location)))
         return atom
 
     def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
@@ -140,50 +208,38 @@ def _source(location: Location) -> Source:
     return Source(location.begin.filename, location.begin.line, location.begin.column)
 
 
-def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Diagnostic]:
-    """Look over a user's constraint files; ``base`` are the encodings they are added to.
+def check_encodings(
+    added: Sequence[Encoding], base: Sequence[Encoding], others: Sequence[Encoding] = ()
+) -> list[Diagnostic]:
+    """Look over the files of the user's: constraints that are ``added``, and what is not ours in ``base``.
 
-    Returns warnings: atoms that nothing defines, with the nearest predicate that something does. Raises
-    :class:`InputError` for what would change which trees there are or which are best: ``#script``,
-    statements that minimize, and rules for predicates that are ours or facts.
+    ``others`` are further files of ours that are loaded. Returns warnings: atoms that nothing defines, with
+    the nearest predicate that something does. Raises :class:`InputError` for what would change which trees
+    there are or which are best, and for what would be lost without a word: rules for predicates that are
+    ours, names that are, and statements other than rules.
     """
-    refuse_scripts((*added, *base))
-    errors = [
-        located(
-            Severity.ERROR,
-            "minimize",
-            "found a statement that minimizes, expected only rules and constraints: what is best is said by "
-            "--objective; to change it, edit a copy of objectives.lp and pass its folder with --encodings",
-            source,
-        )
-        for encoding in added
-        for source in encoding.minimizes
-    ]
-    owned = set(FACT_PREDICATES.items()).union(*(encoding.defined for encoding in base))
-    errors += [
-        located(
-            Severity.ERROR,
-            "owned-predicate",
-            f"found a rule for {name}/{arity}, which is not a constraint's to define: "
-            "give it another name, or edit a copy of the encodings and pass its folder with --encodings",
-            source,
-        )
-        for encoding in added
-        for (name, arity), source in encoding.defined.items()
-        if (name, arity) in owned
-    ]
-    errors += [
-        located(
-            Severity.ERROR, "program-part", "found #program, expected rules: parts are not solved", source
-        )
-        for encoding in added
-        for source in encoding.parts
-    ]
+    errors: list[Diagnostic] = []
+    known = set(_PUBLIC)
+    for encoding in (*added, *base, *others):
+        known |= encoding.defined.keys() | encoding.declared.keys()
+    mine = [encoding for encoding in added if not _is_ours(encoding.path)]
+    replaced = [encoding for encoding in base if not _is_ours(encoding.path)]
+    for encoding in mine:
+        errors += _statements(encoding, tuple(_REFUSED))
+        errors += _definitions(encoding, _PUBLIC.union(*(each.defined for each in base)))
+        errors += _reserved_names(encoding)
+    for encoding in replaced:
+        errors += _statements(encoding, _LOST)
+        errors += _replaced_definitions(encoding)
+    settable = {name for encoding in added if _is_ours(encoding.path) for name in encoding.constants}
+    for encoding in (*mine, *replaced):
+        names = set(settable)
+        if encoding in mine:
+            for each in replaced:
+                names |= each.names.keys() | {name for name, _ in (*each.defined, *each.used)}
+        errors += _constants(encoding, names)
     if errors:
         raise InputError(errors)
-    known = set(FACT_PREDICATES.items())
-    for encoding in (*added, *base):
-        known |= encoding.defined.keys() | encoding.declared
     return [
         located(Severity.WARNING, "undefined-atom", _undefined(signature, known), source)
         for encoding in added
@@ -192,12 +248,91 @@ def check_added(added: Sequence[Encoding], base: Sequence[Encoding]) -> list[Dia
     ]
 
 
-def refuse_scripts(encodings: Iterable[Encoding]) -> None:
-    """Raise :class:`InputError` where an encoding holds a ``#script``: encodings state, they do not run."""
-    found = [source for encoding in encodings for source in encoding.scripts]
-    if found:
-        message = "found #script, expected rules: scripts in encodings are not run"
-        raise InputError([located(Severity.ERROR, "script", message, source) for source in found])
+@cache
+def _is_ours(path: Path) -> bool:
+    return path.resolve().is_relative_to(encodings_folder().resolve())
+
+
+def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnostic]:
+    return [
+        located(Severity.ERROR, _CODES.get(kind, "statement"), f"found {_REFUSED[kind]}", source)
+        for kind, source in encoding.special
+        if kind in refused
+    ]
+
+
+def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
+    """Find rules for predicates that are not a constraint's to define."""
+    return [
+        located(
+            Severity.ERROR,
+            "owned-predicate",
+            f"found a rule for {name}/{arity}, which is not a constraint's to define: "
+            "give it another name, or edit a copy of the encodings and pass its folder with --encodings",
+            source,
+        )
+        for (name, arity), source in encoding.defined.items()
+        if (name.lstrip("-"), arity) in owned or _is_reserved(name)
+    ]
+
+
+def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
+    """Find names of ours that a constraint has in it otherwise."""
+    atoms = [
+        (f"{name}/{arity}", source)
+        for noted in (encoding.used, encoding.declared)
+        for (name, arity), source in noted.items()
+        if _is_reserved(name) and (name, arity) not in _LOOKED_AT
+    ]
+    terms = [(name, source) for name, source in encoding.names.items() if _is_reserved(name)]
+    return [
+        located(
+            Severity.ERROR,
+            "reserved-name",
+            f"found {name}, but names that begin with {_PREFIX!r} are ours: give it another name",
+            source,
+        )
+        for name, source in (*atoms, *terms)
+    ]
+
+
+def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
+    """Find rules for predicates of ours in a file that replaces one that has none for them."""
+    name = encoding.path.name
+    ours = [
+        file for file in (encodings_folder() / name, encodings_folder() / "by_need" / name) if file.is_file()
+    ]
+    theirs = {signature for file in ours for signature in read_encoding(file).defined}
+    return [
+        located(
+            Severity.ERROR,
+            "owned-predicate",
+            f"found a rule for {predicate}/{arity}, but names that begin with {_PREFIX!r} are ours, and no "
+            f"{name} of ours defines this one: give it another name",
+            source,
+        )
+        for (predicate, arity), source in encoding.defined.items()
+        if _is_reserved(predicate) and (predicate, arity) not in theirs
+    ]
+
+
+def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
+    """Find constants that would take the place of a name of ours, or of another file's."""
+    return [
+        located(
+            Severity.ERROR,
+            "taken-constant",
+            f"found #const {name}, but that is a name in the facts or in other encodings, where its value "
+            "would take its place: give the constant another name",
+            source,
+        )
+        for name, source in encoding.constant_sources.items()
+        if _is_reserved(name) or name in _PUBLIC_NAMES or name in names
+    ]
+
+
+def _is_reserved(name: str) -> bool:
+    return name.lstrip("-").startswith(_PREFIX)
 
 
 def _undefined(signature: Signature, known: set[Signature]) -> str:
@@ -232,6 +367,8 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
             value = quote(string_constant(value))
         elif _is_number(defaults[name]) and not _fits(value):
             raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
+        elif not _is_number(defaults[name]) and not (_fits(value) or _WORD.fullmatch(value)):
+            raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number or a word")
         arguments += ["-c", f"{name}={value}"]
     return arguments
 
@@ -267,36 +404,52 @@ def _is_number(value: str) -> bool:
 
 
 def _fits(value: str) -> bool:
-    return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and -(2**31) <= int(value) < 2**31
+    return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and abs(int(value)) <= LARGEST
 
 
 def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
     """Turn clingo's messages about a program into one error with places and source lines."""
-    errors: list[Diagnostic] = []
+    errors: dict[Source, Diagnostic] = {}
     for message in messages:
         first, *notes = (_MESSAGE.match(line) for line in message.strip().split("\n"))
-        if first is None or first["kind"] != "error":
+        if first is None:
             continue
+        found = [first]
+        more = [line.strip() for line in message.strip().split("\n")[1:]]
         if first["text"].startswith("unsafe variables"):
-            for note in filter(None, notes):
-                text = f"the variable {note['text'].split()[0]} is unsafe: no literal of the body binds it"
-                errors.append(located(Severity.ERROR, "clingo", text, _message_source(note)))
-        else:
-            text = " ".join(line.strip() for line in [first["text"], *message.strip().split("\n")[1:]])
-            errors.append(located(Severity.ERROR, "clingo", text, _message_source(first)))
-    return InputError(errors) if errors else UserError("".join(messages).strip() or otherwise)
+            found = list(filter(None, notes))
+        for match in found:
+            if match is not first:
+                text = f"the variable {match['text'].split()[0]} is unsafe: no literal of the body binds it"
+            elif first["kind"] == "error":
+                text = " ".join([first["text"], *more])
+            else:
+                text = _left_out(first["text"].rstrip(":"), " ".join(more))
+            source = Source(match["file"], int(match["line"]), int(match["column"]))
+            errors.setdefault(source, located(Severity.ERROR, "clingo", text, source))
+    if errors:
+        return InputError(list(errors.values()))
+    if "Integer overflow" in otherwise:
+        return UserError(
+            "a sum in the encodings or of weights can be larger than clingo's numbers, which have 32 bits: "
+            "use smaller numbers"
+        )
+    return UserError("".join(messages).strip() or otherwise)
 
 
-def _message_source(match: re.Match[str]) -> Source:
-    return Source(match["file"], int(match["line"]), int(match["column"]))
+def _left_out(what: str, part: str) -> str:
+    """Say what is wrong where clingo would leave a part of a program out."""
+    reason = {
+        "operation undefined": f"{part} has no value for some of what gets here",
+        "interval undefined": f"{part} has no value for some of what gets here",
+        "tuple ignored": f"the weight in {part} is no number",
+    }.get(what, f"{what} {part}".strip())
+    return (
+        f"{reason}, and clingo would leave out what it stands in: calculate with numbers alone, by 0 divide "
+        "nothing, and call no functions of scripts"
+    )
 
 
 def located(severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
-    """Make a diagnostic with the line of the file that it is about."""
-    excerpt = ""
-    path = Path(source.file)
-    if path.is_file():
-        lines = path.read_text(encoding="utf-8", errors="replace").split("\n")
-        if 0 < source.line <= len(lines):
-            excerpt = lines[source.line - 1].rstrip("\r")
-    return Diagnostic(severity, code, message, source, excerpt)
+    """Make a diagnostic with the line of the encoding that it is about."""
+    return Diagnostic(severity, code, message, source, excerpt(source))

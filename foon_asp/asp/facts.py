@@ -62,13 +62,15 @@ FACT_PREDICATES = {
     "_exactly_alike": 2,
 }
 
-_OBJECTIVE_TERMS = {
+OBJECTIVE_TERMS = {
     Objective.UNITS: "units",
     Objective.INPUTS: "inputs",
     Objective.INPUTS_AND_INGREDIENTS: "inputs_and_ingredients",
     Objective.SUCCESS: "success",
     Objective.KITCHEN: "kitchen",
 }
+
+_Atom = tuple[str, str]  # the name of the predicate, and the arguments as text
 
 _LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
 
@@ -86,13 +88,13 @@ def write_facts(
     nodes = described(problem, units)
     lines = []
     for unit in units:
-        atoms = [_unit_atom(problem, unit), *_unit_atoms(problem, unit, scale, with_sources)]
-        lines.append(". ".join(atoms) + ".")
+        atoms = _unit_atoms(problem, unit, scale, with_sources)
+        lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
     for o in nodes:
-        atoms = [_object_atom(problem, o), *_object_atoms(problem, o)]
+        atoms = _object_atoms(problem, o)
         if o in problem.kitchen:
-            atoms.append(f"kitchen({name(o)})")
-        lines.append(". ".join(atoms) + ".")
+            atoms.append(("kitchen", f"{name(o)}"))
+        lines.append(". ".join([_object_atom(problem, o), *map(_written, atoms)]) + ".")
     labels = {problem.network.objects[o].label for o in nodes}
     lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
     lines += [f"goal({name(o)})." for o in problem.goals]
@@ -104,7 +106,7 @@ def write_open_facts(
     closed: Collection[tuple[str, int]],
     left_open: Collection[tuple[str, int]],
     scale: RateScale | None,
-    looked_at: Collection[str],
+    looked_at: Collection[tuple[str, int]],
 ) -> str:
     """Describe a question as :func:`write_facts` does, but leave open some of what is the case.
 
@@ -116,12 +118,11 @@ def write_open_facts(
     name = problem.network.object_number
     lines = []
 
-    def add(subject: str, is_open: bool, atoms: Iterable[str]) -> None:
+    def add(subject: str, is_open: bool, atoms: Iterable[_Atom]) -> None:
         lines.append(f"#external {subject}." if is_open else f"{subject}.")
-        lines.extend(
-            f"{atom} :- {subject}." if is_open and atom.partition("(")[0] in looked_at else f"{atom}."
-            for atom in atoms
-        )
+        for atom in atoms:
+            waits = is_open and (atom[0], FACT_PREDICATES[atom[0]]) in looked_at
+            lines.append(f"{_written(atom)} :- {subject}." if waits else f"{_written(atom)}.")
 
     for kind, id_ in sorted({*closed, *left_open}):
         is_open = (kind, id_) in left_open
@@ -133,35 +134,38 @@ def write_open_facts(
             atoms = _object_atoms(problem, id_)
             label = problem.network.objects[id_].label
             if label in problem.utensils:
-                atoms.append(f"utensil({quote(label)})")
+                atoms.append(("utensil", f"{quote(label)}"))
             add(_object_atom(problem, id_), is_open, atoms)
             lines.append(f"#external goal({name(id_)}).")
     return "\n".join(lines) + "\n"
+
+
+def _written(atom: _Atom) -> str:
+    return f"{atom[0]}({atom[1]})"
 
 
 def _unit_atom(problem: Problem, unit: int) -> str:
     return f"unit({_check(problem.network.unit_number(unit))})"
 
 
-def _unit_atoms(problem: Problem, unit: int, scale: RateScale | None, with_sources: bool) -> list[str]:
+def _unit_atoms(problem: Problem, unit: int, scale: RateScale | None, with_sources: bool) -> list[_Atom]:
     """Give what the facts say of a unit, beside that it is one."""
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
     ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
     u = network.unit_number(unit)
-    atoms = [f"motion({u},{quote(network.motions[unit])})"]
-    atoms += [f"input({u},{name(o)})" for o in inputs]
-    atoms += [f"needs({u},{name(o)})" for o in problem.needs[unit]]
-    atoms += [f"output({u},{name(o)})" for o in network.outputs[unit]]
-    atoms += [f"gives({u},{name(o)})" for o in problem.gives[unit]]
-    atoms += [f"inputs({u},{len(inputs)})", f"ingredients({u},{_check(ingredients)})"]
+    atoms = [("motion", f"{u},{quote(network.motions[unit])}")]
+    atoms += [("input", f"{u},{name(o)}") for o in inputs]
+    atoms += [("needs", f"{u},{name(o)}") for o in problem.needs[unit]]
+    atoms += [("output", f"{u},{name(o)}") for o in network.outputs[unit]]
+    atoms += [("gives", f"{u},{name(o)}") for o in problem.gives[unit]]
+    atoms += [("inputs", f"{u},{len(inputs)}"), ("ingredients", f"{u},{_check(ingredients)}")]
     if scale:
         rate = problem.rate(unit)
-        atoms += [f"rate({u},{_millionths(rate)})", f"risk({u},{_check(scale.weights[rate])})"]
+        atoms += [("rate", f"{u},{_millionths(rate)}"), ("risk", f"{u},{_check(scale.weights[rate])}")]
     if with_sources:
-        atoms += [
-            f"source({u},{quote(encodable(source))})" for source in _source_names(network.sources[unit])
-        ]
+        names = _source_names(network.sources[unit])
+        atoms += [("source", f"{u},{quote(encodable(source))}") for source in names]
     return atoms
 
 
@@ -169,13 +173,13 @@ def _object_atom(problem: Problem, o: int) -> str:
     return f"object({_check(problem.network.object_number(o))})"
 
 
-def _object_atoms(problem: Problem, o: int) -> list[str]:
+def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
     """Give what the facts say of an object node, beside that it is one and whether it is at hand."""
     node, i = problem.network.objects[o], problem.network.object_number(o)
-    atoms = [f"label({i},{quote(node.label)})"]
-    atoms += [f"state({i},{quote(state)})" for state in sorted(node.states)]
-    atoms += [f"located({i},{quote(word)},{quote(related)})" for word, related in sorted(node.relations)]
-    atoms += [f"ingredient({i},{quote(item)})" for item in dict.fromkeys(node.ingredients)]
+    atoms = [("label", f"{i},{quote(node.label)}")]
+    atoms += [("state", f"{i},{quote(state)}") for state in sorted(node.states)]
+    atoms += [("located", f"{i},{quote(word)},{quote(related)}") for word, related in sorted(node.relations)]
+    atoms += [("ingredient", f"{i},{quote(item)}") for item in dict.fromkeys(node.ingredients)]
     return atoms
 
 
@@ -188,9 +192,9 @@ def described(problem: Problem, units: Iterable[int]) -> list[int]:
 
 def objective_term(objective: Objective) -> str:
     """Give the name of an objective in the encodings; raises :class:`BugError` where it has none."""
-    if objective not in _OBJECTIVE_TERMS:
+    if objective not in OBJECTIVE_TERMS:
         raise BugError(f"the encodings have no criterion for the objective {str(objective)!r}")
-    return _OBJECTIVE_TERMS[objective]
+    return OBJECTIVE_TERMS[objective]
 
 
 def write_objectives(objectives: Sequence[Objective]) -> str:

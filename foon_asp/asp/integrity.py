@@ -1,17 +1,24 @@
 """Integrity constraints of the user's files, one by one, and the same relaxed."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 from clingo import Control
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
+from clingo.symbol import SymbolType
 
-from foon_asp.asp.encoding import fault, read_encoding, refuse_scripts
+from foon_asp.asp.encoding import located, read_encoding
 from foon_asp.asp.program import Relaxed, find_constraint
+from foon_asp.asp.search import refused
+from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
+from foon_asp.grounding.run import ProgramError
 from foon_asp.network import Source
 from foon_asp.resources import encodings_folder
+from foon_asp.text import Diagnostic, InputError
 
+_TEXT = "<block>"  # what clingo calls text that is in no file
 _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 
 
@@ -39,7 +46,7 @@ def relax(
     Other rules stay as they are. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
     """
     found: list[IntegrityConstraint] = []
-    rules: list[str] = []
+    rules: dict[str, Source] = {}
     paths = tuple(dict.fromkeys(find_constraint(file) for file in files))
     for path in paths:
         _look_over(path)
@@ -49,27 +56,48 @@ def relax(
             if statement.ast_type in _PASSED_OVER:
                 continue
             if not _is_constraint(statement):
-                rules.append(str(statement))
+                rules.setdefault(str(statement), _source(statement))
                 continue
             number = len(found) + 1
             names = set(_names(statement))
             given = tuple(setting for setting in constants if setting.partition("=")[0] in names)
             found.append(IntegrityConstraint(number, path, _source(statement), _text(statement), given))
-            rules.append(_broken(statement, number) if soft else _unless_dropped(statement, number))
+            rule = _broken(statement, number) if soft else _unless_dropped(statement, number)
+            rules[rule] = _source(statement)
     encoding = encodings_folder() / "questions" / ("soft.lp" if soft else "clash.lp")
-    return tuple(found), Relaxed(paths, "".join(f"{rule}\n" for rule in rules), encoding)
+    return tuple(found), Relaxed(paths, "".join(f"{rule}\n" for rule in rules), encoding, rules)
+
+
+@contextmanager
+def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
+    """Give faults in a text that holds the rules their places in the files."""
+    try:
+        yield
+    except InputError as error:
+        lines = text.split("\n")
+        found: list[Diagnostic] = []
+        for diagnostic in error.diagnostics:
+            file, line, *_ = diagnostic.source
+            place = relaxed.places.get(lines[line - 1]) if file == _TEXT and line <= len(lines) else None
+            found.append(
+                diagnostic
+                if place is None
+                else located(diagnostic.severity, diagnostic.code, diagnostic.message, place)
+            )
+        raise InputError(found) from None
 
 
 def _look_over(path: Path) -> None:
     """Raise what is wrong with a file while it still has its places: in other words it is only text."""
-    refuse_scripts([read_encoding(path)])
+    read_encoding(path)
     messages: list[str] = []
     try:
-        control = Control(logger=lambda _, text: messages.append(text), message_limit=1000)
-        control.load(str(path))
-        control.ground([("base", [])])  # without facts, for unsafe variables alone
-    except RuntimeError as error:
-        raise fault(messages, str(error)) from None
+        with refusing(messages):
+            control = Control(logger=listener(messages), message_limit=NO_LIMIT)
+            control.load(str(path))
+            control.ground([("base", [])])  # without facts, for unsafe variables alone
+    except ProgramError as error:
+        raise refused(error) from None
 
 
 def _is_constraint(statement: AST) -> bool:
@@ -114,12 +142,10 @@ def _variables(node: AST) -> Iterator[str]:
 
 
 def _names(statement: AST) -> Iterator[str]:
-    """Give the names of constants and functions in a statement; a constant has no arguments."""
+    """Give the names of what may be a constant in the terms of a statement."""
     for part in _walk(statement):
-        if part.ast_type == ASTType.Function and not part.arguments:
-            yield part.name
-        elif part.ast_type == ASTType.SymbolicTerm:
-            yield str(part.symbol)
+        if part.ast_type == ASTType.SymbolicTerm and part.symbol.type is SymbolType.Function:
+            yield part.symbol.name
 
 
 def _walk(node: AST) -> Iterator[AST]:

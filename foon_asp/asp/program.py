@@ -1,11 +1,12 @@
 """Which encodings make up the program: ours or a replacement, and what the user adds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
+from foon_asp.network import Source
 from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
 
@@ -33,22 +34,24 @@ _RESERVED = (
     "--supp-models",
     "--text",
     "--version",
+    "--warn",  # what clingo leaves out, it says so in a warning
 )
 
-# Predicates of a search and not of its question: programs that are kept have them otherwise.
-_OF_ONE_SEARCH = frozenset(("_agrees", "_exponent", "optimize", "_product", "_seen", "_wanted"))
+# A predicate of a search and not of its question: programs that are kept have it otherwise.
+_OF_ONE_SEARCH = ("optimize", 2)
 
 
 class Relaxed(NamedTuple):
     """Constraint files that are loaded in other words.
 
     ``files`` are looked over like other constraints, but ``rules`` stand in for what they say, together with
-    ``encoding``, one of ours (``encodings/questions``).
+    ``encoding``, one of ours (``encodings/questions``). ``places`` says where each rule comes from.
     """
 
     files: tuple[Path, ...]
     rules: str
     encoding: Path
+    places: Mapping[str, Source]
 
 
 class Bounded(NamedTuple):
@@ -106,8 +109,8 @@ class Program(NamedTuple):
     ``exact_success`` is loaded beside ``files`` when products of rates
     are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
     matter. ``bounded`` says that a tree of the unbounded question need not be one. ``looked_at`` are the
-    names of the predicates that rules of the user's look at. ``text`` is all that the files said when they
-    were looked over. ``open`` says that the program means the same when facts are left open
+    predicates, by name and arity, that rules of the user's look at. ``text`` is all that the files said when
+    they were looked over. ``open`` says that the program means the same when facts are left open
     (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether its grounding comes to an end.
     """
 
@@ -117,7 +120,7 @@ class Program(NamedTuple):
     own: bool
     rules: str = ""
     bounded: bool = False
-    looked_at: frozenset[str] = frozenset()
+    looked_at: frozenset[tuple[str, int]] = frozenset()
     text: str = ""
     open: bool = False
     endless: bool = False
@@ -147,7 +150,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         questions += bounded.files
         rules += bounded.rules
     constants: list[str] = []
-    looked_at: frozenset[str] = frozenset()
+    looked_at: frozenset[tuple[str, int]] = frozenset()
     text, is_open = "", False
     endless = not all(file.is_relative_to(ours) for file in (*base, *added))
     if added or settings.encodings or settings.constants:
@@ -159,20 +162,21 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
 
             prepare()  # while files are parsed
 
-        parsed = [encoding.read_encoding(file) for file in (*base, *questions)]
+        parsed = [encoding.read_encoding(file) for file in base]
+        asked = [encoding.read_encoding(file) for file in questions]
         extra = [encoding.read_encoding(file) for file in added]
-        for diagnostic in encoding.check_added(extra, parsed):
+        for diagnostic in encoding.check_encodings(extra, parsed, asked):
             warn(str(diagnostic))
         for message in encoding.unset_constants(extra, settings.constants):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
-        looked_at = frozenset(name for each in extra for name, _ in each.used)
-        text = "\n".join(each.text for each in (*parsed, *extra))
+        looked_at = frozenset(signature for each in extra for signature in each.used)
+        text = "\n".join(each.text for each in (*parsed, *asked, *extra))
         is_open = (
             settings.encodings is None
             and relaxed is None
             and bounded is None
-            and not looked_at & _OF_ONE_SEARCH
+            and _OF_ONE_SEARCH not in looked_at
             and not any(each.assigns for each in extra)
         )
     return Program(

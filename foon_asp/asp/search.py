@@ -9,6 +9,7 @@ from clingo import Control
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.grounding.grounded import Grounded
+from foon_asp.grounding.messages import listener, refusing
 from foon_asp.grounding.run import ProgramError, Run
 
 
@@ -16,9 +17,10 @@ def check(arguments: Sequence[str]) -> None:
     """Raise :class:`UserError` for options that clingo does not take."""
     messages: list[str] = []
     try:
-        Control(list(arguments), logger=lambda _, text: messages.append(text))
-    except RuntimeError as error:
-        raise refused(ProgramError(messages, str(error))) from None
+        with refusing(messages):
+            Control(list(arguments), logger=listener(messages))
+    except ProgramError as error:
+        raise refused(error) from None
 
 
 def run(
@@ -29,17 +31,17 @@ def run(
     opt_mode: str = "opt",
     on_tree: Callable[[frozenset[int]], None] | None = None,
     on_bound: Callable[[list[int]], None] | None = None,
-    predicates: Sequence[str] = (),
+    predicates: Sequence[tuple[str, int]] = (),
     products: int = 0,
     endless: bool = False,
 ) -> Run:
     """Ground the files and facts and search for the best answer.
 
     ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-    ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. ``products``
-    says how many products of rates the facts describe, ``endless`` that nobody knows whether the grounding
-    comes to an end. Stopped at a limit, or at ctrl-C, it gives what is known by then. Raises
-    what :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
+    ``predicates``, by name and arity, have atoms that are wanted beside ``use``, which begin with a number.
+    ``products`` says how many products of rates the facts describe, ``endless`` that nobody knows whether the
+    grounding comes to an end. Stopped at a limit, or at ctrl-C, it gives what is known by then. Raises what
+    :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
     """
     began = time.perf_counter()
     try:

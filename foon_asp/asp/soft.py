@@ -12,7 +12,7 @@ from foon_asp.asp.facts import (
     write_soft,
     write_tree,
 )
-from foon_asp.asp.integrity import IntegrityConstraint, relax
+from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
 from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Relaxed, Settings, assemble, find_constraint
@@ -96,10 +96,16 @@ def solve_soft(
     all_said = (facts or "") + program.rules
 
     def ask(more: str, opt_mode: str) -> Run:
-        files, arguments, broken = program.files, program.arguments, ("_broken",)
-        return run(
-            files, all_said + more, arguments, deadline, opt_mode, predicates=broken, endless=program.endless
-        )
+        with placed(relaxed, all_said):
+            return run(
+                program.files,
+                all_said + more,
+                program.arguments,
+                deadline,
+                opt_mode,
+                predicates=[("_broken", 2)],
+                endless=program.endless,
+            )
 
     def told(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
         found = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)

@@ -1,9 +1,10 @@
 """Options that several verbs share, and reading the data they name."""
 
 import functools
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
@@ -93,9 +94,20 @@ constant_option = click.option(
     "-c", "constants", multiple=True, metavar="NAME=VALUE", help="Set a #const of an encoding; repeatable."
 )
 
+
+class _Seconds(click.FloatRange):
+    """A number of seconds from 0: neither endless nor nan, which no clock ever comes to."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        seconds = float(super().convert(value, param, ctx))
+        if not math.isfinite(seconds):
+            self.fail(f"found {value!r}, expected a number of seconds", param, ctx)
+        return seconds
+
+
 time_limit_option = click.option(
     "--time-limit",
-    type=click.FloatRange(min=0),
+    type=_Seconds(min=0),
     metavar="SECONDS",
     help="Stop searching after so long, with the best tree and its bound.",
 )

@@ -1,5 +1,6 @@
 """What stands in a session (goals, kitchen, rule, constraints, objectives) and the words that change it."""
 
+import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from difflib import get_close_matches
@@ -244,7 +245,7 @@ class ShellSession:
             seconds = None if limit == "none" else float(limit)
         except ValueError:
             seconds = -1
-        if seconds is not None and not seconds >= 0:
+        if seconds is not None and not 0 <= seconds <= sys.float_info.max:
             raise UserError(f"found the time limit {limit!r}, expected seconds, or none")
         self.time_limit = seconds
         _say(f"time-limit: {limit}")

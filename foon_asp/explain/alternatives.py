@@ -103,7 +103,7 @@ def most_different(
         write_distances([tree.units for tree in pool.trees], count),
         CLINGO_OPTIONS,
         settings.begun,
-        predicates=("_chosen",),
+        predicates=[("_chosen", 1)],
     )
     if ended.exhausted and not ended.atoms:
         raise BugError("no trees could be chosen")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
-from foon_asp.asp.integrity import IntegrityConstraint, relax
+from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
 from foon_asp.asp.program import CLINGO_OPTIONS, assemble, find_constraint
 from foon_asp.asp.search import run
 from foon_asp.errors import BugError
@@ -106,21 +106,22 @@ def find_clash(
     blamed: tuple[int, ...] = ()
     while True:
         question = facts + dropping + write_constraints(weights, blamed)
-        ended = run(
-            program.files,
-            question,
-            program.arguments,
-            deadline,
-            predicates=("_dropped",),
-            endless=program.endless,
-        )
+        with placed(relaxed, question):
+            ended = run(
+                program.files,
+                question,
+                program.arguments,
+                deadline,
+                predicates=[("_dropped", 1)],
+                endless=program.endless,
+            )
         if ended.units is None or not ended.exhausted:
             break
         corrections.append(tuple(sorted(ended.atoms["_dropped"])))
         if not corrections[-1]:
             break
         hit = write_constraints(weights, ()) + write_corrections(corrections)
-        hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=("_blamed",))
+        hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
         if hitting.units is None or not hitting.exhausted:
             break
         blamed = tuple(sorted(hitting.atoms["_blamed"]))

@@ -175,7 +175,9 @@ def _lists(
     files = (*program.files, encodings_folder() / "questions" / "shopping_list.lp")
     lists: list[ShoppingList] = []
     while len(lists) < most:
-        ended = run(files, facts, program.arguments, deadline, predicates=("_buy",), endless=program.endless)
+        ended = run(
+            files, facts, program.arguments, deadline, predicates=[("_buy", 1)], endless=program.endless
+        )
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((wares[o] for o in items), Fraction(0))

@@ -10,36 +10,32 @@ from clingo import Control, Model, SolveHandle, parse_term
 from clingo.symbol import Number, SymbolType
 
 from foon_asp.errors import UserError
-from foon_asp.grounding.run import Ended, Heard, ProgramError
+from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
+from foon_asp.grounding.run import Ended, Heard
 
 
 class GroundProgram:
     """Files and text, grounded; raises :class:`ProgramError` for what clingo refuses.
 
-    ``products`` says how many products of rates the text describes. ``messages`` are clingo's so far.
+    It raises that, too, for what clingo would leave out with no more than a message. ``products`` says how
+    many products of rates the text describes.
     """
 
     def __init__(self, files: Sequence[str], text: str, arguments: Sequence[str], products: int = 0) -> None:
-        self.messages: list[str] = []
-        try:
-            self._control = Control(
-                list(arguments), logger=lambda _, text: self.messages.append(text), message_limit=1000
-            )
+        self._messages: list[str] = []
+        with refusing(self._messages):
+            self._control = Control(list(arguments), logger=listener(self._messages), message_limit=NO_LIMIT)
             for file in files:
                 self._control.load(file)
             self._control.add("base", [], text)
             parts = [("_product", [Number(number)]) for number in range(products)]
             self._control.ground([("base", []), *parts])
-        except RuntimeError as error:
-            raise ProgramError(self.messages, str(error)) from None
 
     def add(self, part: str, text: str, product: int) -> None:
         """Ground more text, and what there is to say about a product of rates."""
-        try:
+        with refusing(self._messages):
             self._control.add(part, [], text)
             self._control.ground([(part, []), ("_product", [Number(product)])])
-        except RuntimeError as error:
-            raise ProgramError(self.messages, str(error)) from None
 
     def assign(self, atoms: Mapping[str, bool]) -> None:
         """Say of external atoms whether they hold from now on."""
@@ -49,7 +45,7 @@ class GroundProgram:
     def search(
         self,
         opt_mode: str,
-        predicates: Sequence[str],
+        predicates: Sequence[tuple[str, int]],
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
         wait: Callable[[SolveHandle], None] | None = None,
@@ -57,9 +53,9 @@ class GroundProgram:
         """Search for the best answer; what is heard of on the way is heard in any thread.
 
         ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-        ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. ``wait``
-        waits for the end, or cancels the search. Raises :class:`UserError` for an option that clasp does not
-        take, for answers that are none, and what ``on_tree`` raises.
+        ``predicates``, by name and arity, have atoms that are wanted beside ``use``, which begin with a
+        number. ``wait`` waits for the end, or cancels the search. Raises :class:`UserError` for an option
+        that clasp does not take, for answers that are none, and what ``on_tree`` raises.
         """
         models = 1 if opt_mode == "ignore" else 0
         try:
@@ -70,7 +66,7 @@ class GroundProgram:
 
         def model(model: Model) -> bool:
             try:
-                atoms = {name: _numbers(model, name) for name in predicates}
+                atoms = {name: _numbers(model, name, arity) for name, arity in predicates}
                 on_tree(Heard(_used(model), tuple(model.cost), atoms))
             except Exception as error:
                 faults.append(error)
@@ -105,6 +101,6 @@ def _used(model: Model) -> frozenset[int]:
     return frozenset(units)
 
 
-def _numbers(model: Model, name: str) -> Counter[int]:
-    atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.name == name and symbol.positive)
+def _numbers(model: Model, name: str, arity: int) -> Counter[int]:
+    atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return Counter(symbol.arguments[0].number for symbol in atoms)

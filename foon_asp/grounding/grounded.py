@@ -46,12 +46,6 @@ class Grounded:
         else:
             self._here = GroundProgram(names, text, arguments, products)
 
-    @property
-    def messages(self) -> list[str]:
-        """What clingo said while grounding."""
-        program = self._there or self._here
-        return [] if program is None else program.messages
-
     def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
         """Ground more text, and what there is to say about a product of rates; raises as the class does."""
         deadline.doing = "grounding"
@@ -74,12 +68,13 @@ class Grounded:
         opt_mode: str,
         on_tree: Callable[[frozenset[int]], None] | None = None,
         on_bound: Callable[[list[int]], None] | None = None,
-        predicates: Sequence[str] = (),
+        predicates: Sequence[tuple[str, int]] = (),
     ) -> Run:
         """Search for the best answer; at a limit, or at ctrl-C, what was found before.
 
         ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-        ``predicates`` are names of atoms that are wanted beside ``use``; they begin with a number. Raises
+        ``predicates``, by name and arity, have atoms that are wanted beside ``use``, which begin with a
+        number. Raises
         what ``on_tree`` raises, and :class:`UserError` for answers that are none.
         """
         result = Run()

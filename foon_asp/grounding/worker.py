@@ -37,14 +37,14 @@ def serve() -> None:
                 os.chdir(folder)
             _bound_memory(memory)
             program = GroundProgram(*described)
-            return program.messages
+            return None
         if command == "forget":
             program = None
             return None
         assert program is not None
         if command == "add":
             program.add(*given)
-            return program.messages
+            return None
         if command == "assign":
             program.assign(*given)
             return None

@@ -47,11 +47,11 @@ class WorkerProgram:
         if deadline.memory is not None:
             memory = max(1, deadline.memory - deadline.memory_in_use())
         command = "ground", _folder(), list(files), text, list(arguments), products, memory
-        self.messages: list[str] = self._worker.ask(deadline, *command)
+        self._worker.ask(deadline, *command)
 
     def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
         """Ground more text, and what there is to say about a product of rates."""
-        self.messages = self._worker.ask(deadline, "add", part, text, product)
+        self._worker.ask(deadline, "add", part, text, product)
 
     def assign(self, atoms: Mapping[str, bool], deadline: Deadline) -> None:
         """Say of external atoms whether they hold from now on."""
@@ -61,7 +61,7 @@ class WorkerProgram:
     def search(
         self,
         opt_mode: str,
-        predicates: Sequence[str],
+        predicates: Sequence[tuple[str, int]],
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
         deadline: Deadline,
@@ -225,7 +225,7 @@ _OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
 _MOST_IDLE = 1
 _idle: list[_Worker] = []
 _all: "weakref.WeakSet[_Worker]" = weakref.WeakSet()
-_lock = threading.Lock()
+_lock = threading.RLock()  # a program that is dropped gives its process back in the middle of anything
 
 
 def prepare() -> None:
@@ -270,7 +270,7 @@ def _end_all() -> None:
 def _forget_all() -> None:
     """Know of no process after a fork: those there are belong to the other."""
     global _lock  # noqa: PLW0603 (another thread may have held it)
-    _lock = threading.Lock()
+    _lock = threading.RLock()
     for worker in list(_all):
         worker.abandon()
     _idle.clear()

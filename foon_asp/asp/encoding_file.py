@@ -1,0 +1,157 @@
+"""The text of an encoding, looked over before clingo reads it: files included, letters and numbers.
+
+clingo opens any file that an ``#include`` names, takes a number that is too large modulo 2^32, and ends the
+whole process where its message about an odd letter is not UTF-8. So none of that may get to it.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.errors import UserError
+from foon_asp.network import Source
+from foon_asp.text import Diagnostic, InputError, Severity
+
+# The tokens of clingo's own lexer, as far as they matter here.
+_TOKEN = re.compile(
+    r"""
+      (?P<block>%\*)
+    | (?P<comment>(?:%|\#!)[^\n]*)
+    | (?P<string>"(?:[^\\"\n]|\\["\\n])*")
+    | (?P<number>0x[0-9A-Fa-f]+|0o[1-7]+|0b[01]+|0|[1-9][0-9]*)
+    | (?P<word>[_']*[A-Za-z]['A-Za-z0-9_]*)
+    | (?P<keyword>\#[A-Za-z0-9_]*)
+    | (?P<blank>[\t\r\n ]+)
+    | (?P<sign>.)
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+_IN_BLOCK = re.compile(r"\*%|%\*|%[^\n]*")
+_ESCAPED = re.compile(r"\\(.)")
+LARGEST = 2**31 - 2  # clingo adds 1 to a bound: with 2^31 - 1 a condition would be dropped
+_SUFFIX = ".lp"
+
+
+def included_files(path: Path) -> list[Path]:
+    """Give an encoding and the files that it includes, theirs too, each once.
+
+    A file may include those in its own folder, and below. Raises :class:`InputError` for other files, for a
+    ``#script``, for letters that clingo does not know, and for numbers that it has not.
+    """
+    found: dict[Path, Path] = {}  # by what they are
+    pending = [path]
+    errors: list[Diagnostic] = []
+    while pending:
+        file = pending.pop()
+        if file.resolve() not in found:
+            found[file.resolve()] = file
+            pending += _look_over(file, errors)
+    if errors:
+        raise InputError(errors)
+    return list(found.values())
+
+
+def excerpt(source: Source) -> str:
+    """Give the line of an encoding that a place is in; of any other file nothing is ever quoted."""
+    path = Path(source.file)
+    if path.suffix != _SUFFIX or not path.is_file():
+        return ""
+    lines = path.read_text(encoding="utf-8", errors="replace").split("\n")
+    return lines[source.line - 1].rstrip("\r") if 0 < source.line <= len(lines) else ""
+
+
+class _Token(NamedTuple):
+    """A token, the kind of it, and where in the text it begins."""
+
+    kind: str
+    text: str
+    start: int
+
+
+def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
+    """Note what is wrong with a file, and give the files that it includes."""
+    if file.suffix != _SUFFIX:
+        raise UserError(f"{file}: expected an encoding, a file whose name ends in {_SUFFIX}")
+    content = file.read_bytes()
+    lines = content.split(b"\n")
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as fault:
+        line = content.count(b"\n", 0, fault.start) + 1
+        column = fault.start - content.rfind(b"\n", 0, fault.start)
+        message = f"found the byte {content[fault.start]:#04x}, expected text in UTF-8"
+        shown = lines[line - 1].decode("utf-8", "replace").rstrip("\r")
+        source = Source(str(file), line, column)
+        errors.append(Diagnostic(Severity.ERROR, "not-utf-8", message, source, shown))
+        return []
+
+    def error(code: str, message: str, start: int) -> None:
+        line = text.count("\n", 0, start) + 1
+        column = start - text.rfind("\n", 0, start)
+        shown = lines[line - 1].decode("utf-8").rstrip("\r")
+        errors.append(Diagnostic(Severity.ERROR, code, message, Source(str(file), line, column), shown))
+
+    included: list[Path] = []
+    tokens = _tokens(text)
+    for token in tokens:
+        if token.kind == "number" and int(token.text, 0) > LARGEST:
+            error("large-number", f"found the number {token.text}, expected at most {LARGEST}", token.start)
+        elif token.kind == "sign" and not (token.text.isascii() and token.text.isprintable()):
+            letter = f"U+{ord(token.text):04X}"
+            shown = f"{token.text!r} ({letter})" if token.text.isprintable() else letter
+            advice = "; clingo's quotation mark is \"" if token.text in "“”„«»‘’" else ""
+            error("letter", f"found {shown}, which no rule can have outside of quotes{advice}", token.start)
+        elif token.text == "#script":
+            error("script", "found #script, expected rules: scripts in encodings are not run", token.start)
+            break
+        elif token.text == "#include":
+            named = next(tokens, None)
+            if named is not None and named.kind == "string":
+                target = _ESCAPED.sub(lambda match: "\n" if match[1] == "n" else match[1], named.text[1:-1])
+                problem = _refused(file, target)
+                if problem:
+                    error("include", f"found #include of {named.text}, {problem}", token.start)
+                else:
+                    included.append(file.parent / target)
+            elif named is not None and named.text == "<":
+                error(
+                    "include", "found #include <...>, expected a file: nothing else is included", token.start
+                )
+    return included
+
+
+def _refused(file: Path, target: str) -> str:
+    """Say why a file may not include another, named as it is named there; nothing where it may."""
+    folder = file.parent.resolve()
+    path = file.parent / target
+    if "\0" in target or not path.resolve().is_relative_to(folder) or ".." in Path(target).parts:
+        return "expected a file in the folder of the file that includes it, or below"
+    if path.suffix != _SUFFIX or path.resolve().suffix != _SUFFIX:
+        return f"expected an encoding, a file whose name ends in {_SUFFIX}"
+    if not path.is_file():
+        return f"expected a file that is there: there is none in {folder}"
+    here = Path(target)  # clingo looks there first
+    if here.is_file() and not here.samefile(path):
+        return (
+            "but there is a file of this name in the folder that foon-asp was started in too, which clingo "
+            "would take: give the file another name, or start foon-asp elsewhere"
+        )
+    return ""
+
+
+def _tokens(text: str) -> Iterator[_Token]:
+    """Give the tokens of a program but blanks and comments."""
+    place = 0
+    while match := _TOKEN.match(text, place):
+        kind = str(match.lastgroup)
+        place = match.end()
+        if kind == "block":
+            depth = 1
+            while depth and (part := _IN_BLOCK.search(text, place)):
+                depth += {"%*": 1, "*%": -1}.get(part[0], 0)
+                place = part.end()
+            if depth:  # clingo says so
+                return
+        elif kind not in {"comment", "blank"}:
+            yield _Token(kind, match[0], match.start())
