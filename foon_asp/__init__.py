@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from foon_asp.api.check import Checked, check
     from foon_asp.api.clash import Clash, clash
     from foon_asp.api.comparison import Compared, compare_searches
+    from foon_asp.api.cross_check import CrossChecked, cross_check
     from foon_asp.api.difference import Difference, diff
     from foon_asp.api.explanation import Explanation, why_not
     from foon_asp.api.foon import Foon, load
@@ -50,6 +51,7 @@ _ROOMS = {
     "api.check": ("Checked", "check"),
     "api.clash": ("Clash", "clash"),
     "api.comparison": ("Compared", "compare_searches"),
+    "api.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),
     "api.explanation": ("Explanation", "why_not"),
     "api.foon": ("Foon", "load"),
@@ -80,6 +82,7 @@ __all__ = [
     "Compared",
     "ContainerRule",
     "Costs",
+    "CrossChecked",
     "Difference",
     "Explanation",
     "Foon",
@@ -114,6 +117,7 @@ __all__ = [
     "check",
     "clash",
     "compare_searches",
+    "cross_check",
     "diff",
     "load",
     "menu",

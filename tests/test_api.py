@@ -18,6 +18,7 @@ import pytest
 
 import foon_asp
 from foon_asp import Foon, FoonWarning, Problem, UserError
+from foon_asp.engines import DisagreementError, EngineAnswer
 from foon_asp.problem import Problem as PlainProblem
 from foon_asp.report import picture
 from foon_asp.resources import bundled_kitchen
@@ -284,6 +285,41 @@ def test_a_tree_with_units_of_no_network(source: Path) -> None:
     without = foon_asp.check(problem, others)
     assert not without.executes
     assert without.in_order is None
+
+
+def test_other_engines(source: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    foon = foon_asp.load(source)
+    rules = {"constraints": ["at_most_utensils"], "constants": {"max_utensils": 3}}
+    checked = foon_asp.cross_check(foon.problem("tea"), "success", **rules)  # type: ignore[arg-type]
+    clingo, *others = checked.checks
+    assert (clingo.engine, clingo.objectives, clingo.reason) == ("clingo", ("success", "units"), None)
+    assert all(other.reason for other in others)
+    assert "cross-check: clingo agrees by success, units (" in str(checked)
+    words = (
+        "--constraint",
+        "at_most_utensils",
+        "-c",
+        "max_utensils=3",
+        "--objective",
+        "success",
+        "--cross-check",
+    )
+    shown = cli("solve", "--goal", "tea", *data_words(source), *words, "--format", "json").json
+    assert timeless(checked.json()) == timeless(shown)
+    soft = foon_asp.cross_check(
+        foon.problem("ice"), soft={"forbid_motion": 3}, constants={"forbidden_motion": "crush"}
+    )
+    assert isinstance(soft.answer, foon_asp.SoftAnswer)
+    assert soft.checks[0].reason is None
+    assert "cross-check: clingo agrees by penalty, units (" in str(soft)
+    assert soft.json()["cross_check"][0]["agrees_by"] == ["units"]
+
+    def disagrees(*args: object) -> None:
+        raise DisagreementError("no", EngineAnswer("clingo", (), None, True, 0.0))
+
+    monkeypatch.setattr("foon_asp.engines.bare_clingo.check_with_bare_clingo", disagrees)
+    with pytest.raises(foon_asp.BugError, match="no"):
+        foon_asp.cross_check(foon.problem("tea"))
 
 
 def test_certificates(source: Path, cli: Cli, tmp_path: Path) -> None:

@@ -216,8 +216,8 @@ def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     ) -> EngineAnswer:
         return EngineAnswer("Liar", objectives, None, True, seconds)
 
-    def with_liar(asked: Asked, seconds: float) -> list[Check]:
-        return cross_check(asked, seconds, (Engine("Liar", lambda: True, liar),))
+    def with_liar(asked: Asked) -> list[Check]:
+        return cross_check(asked, 60.0, (Engine("Liar", lambda: True, liar),))
 
     monkeypatch.setattr(command, "cross_check", with_liar)
     monkeypatch.chdir(tmp_path)

@@ -451,8 +451,8 @@ def test_a_tree_that_is_denied_is_our_bug(cli: Cli, tmp_path: Path, monkeypatch:
 def test_what_is_found_is_said_where_no_file_can_be_written(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def wrong(asked: Asked, seconds: float) -> list[Check]:
-        check_with_bare_clingo(asked._replace(outcome=without_tree(asked.outcome)), seconds)
+    def wrong(asked: Asked) -> list[Check]:
+        check_with_bare_clingo(asked._replace(outcome=without_tree(asked.outcome)), PATIENCE)
         return []
 
     monkeypatch.setattr(checking, "cross_check", wrong)

@@ -8,8 +8,6 @@ from foon_asp.report.cross_check import check_lines, checked_dict
 from foon_asp.report.disagreement import disagreement_files, disagreement_name
 from foon_asp.report.whole_file import write_whole
 
-_PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
-
 
 def check_across(asked: Asked) -> tuple[list[str], dict[str, object]]:
     """Ask the other engines; give what they say in lines, and as a key of JSON.
@@ -17,9 +15,8 @@ def check_across(asked: Asked) -> tuple[list[str], dict[str, object]]:
     Where one disagrees, writes all that is needed to look into it to a new folder and raises
     :class:`BugError`.
     """
-    limit = asked.settings.time_limit
     try:
-        checks = cross_check(asked, _PATIENCE if limit is None else limit)
+        checks = cross_check(asked)
     except DisagreementError as found:
         folder = Path(disagreement_name(asked.outcome))
         try:

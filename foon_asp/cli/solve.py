@@ -89,8 +89,8 @@ def command(
     chosen = parse_objectives(objectives)
     check_outputs()
     question = options.read_question(**data)  # type: ignore[arg-type]
-    # What is asked by rules of the user's, and what a certificate speaks about, is the whole network.
-    everything = bool(constraints or encodings or soft) or certificate_file is not None
+    # What is asked by rules of the user's, and what is proved or asked again, is about the whole network.
+    everything = bool(constraints or encodings or soft) or cross_check or certificate_file is not None
     problem = question.problem(question.goals(goals_named), containers, everything)
     settings = Settings(
         constraints,

@@ -15,6 +15,7 @@ Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], Engine
 
 # Engines compute logarithms of rates in floats or in millionths: closer than this for each unit is equal.
 _CLOSE = 2e-6
+PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
 _EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
 
 
@@ -45,13 +46,19 @@ class Check(NamedTuple):
     seconds: float
 
 
-def cross_check(asked: Asked, seconds: float, engines: tuple[Engine, ...] = ENGINES) -> list[Check]:
+def cross_check(
+    asked: Asked, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
+) -> list[Check]:
     """Ask every engine what an answer says, each for at most so many seconds.
 
+    Without ``seconds``, each has the time limit of the question, or a minute.
     Bare clingo is asked under whatever rules there are; ``engines`` where all rules are ours, or rule units
     out one by one. Raises :class:`DisagreementError` at the first that says otherwise. From ctrl-C on nothing
     else is checked.
     """
+    if seconds is None:
+        limit = asked.settings.time_limit
+        seconds = PATIENCE if limit is None else limit
     checks: list[Check] = []
     interrupted = False
     for name, ask in _engines(asked, seconds, engines):
