@@ -32,6 +32,8 @@ def bare_program(
     :func:`foon_asp.asp.solve`.
     """
     penalty = ""
+    # how long and how we would search is nothing to bare clingo
+    settings = settings._replace(time_limit=None, memory_limit=None, deadline=None, session=None)
     if soft:
         from foon_asp.asp.soft import soft_rules  # noqa: PLC0415 (takes clingo along)
 

@@ -36,6 +36,7 @@ OPTIONS = ("--opt-strategy=usc,pmres,disjoint,stratify",)  # ended most often of
 MOST_KINDS = 10_000  # of trees within the bound
 _MEMORY = 4 * 2**30  # bytes, where no memory limit says otherwise
 _ENDED = {0, 10, 20, 30}  # the program and the Python module end otherwise where there was no fault
+_OUT_OF_MEMORY = (b"bad_alloc", b"MemoryError", b"cannot allocate memory")
 _SECOND_OPINION = "second_opinion.lp"
 _STRING_OR_RISK = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])risk\((\d+),(\d+)\)')
 _SHOWN = re.compile(r"use\((\d+)\)")
@@ -130,7 +131,7 @@ class _Clingo:
             found: dict[str, Any] = json.loads(out.decode("utf-8", "replace"), strict=False)
         except ValueError:
             found = {}
-        if process.returncode == 33 or b"bad_alloc" in err:
+        if process.returncode == 33 or any(words in err for words in _OUT_OF_MEMORY):
             raise NotCheckedError("clingo ran out of memory")
         if process.returncode not in _ENDED or found.get("Result", "UNKNOWN") == "UNKNOWN":
             said = err.decode("utf-8", "replace").strip().split("\n")
