@@ -410,6 +410,12 @@ def test_bytes_that_are_no_letters(cli: Cli, tmp_path: Path) -> None:
     assert "mine.lp:2:3: error: found the byte 0xfc, expected text in UTF-8" in ran.err
 
 
+def test_a_name_that_is_no_text(cli: Cli, tmp_path: Path) -> None:
+    ran = cli(*ICE, "--constraint", written(tmp_path, ":- use(3).\n", "\udcff.lp"))
+    assert (ran.code, ran.out) == (2, "")
+    assert "expected an encoding with a name in UTF-8" in ran.err
+
+
 def test_any_letters_in_strings_and_comments(cli: Cli, tmp_path: Path) -> None:
     mine = written(tmp_path, '% über “x”\n%* ü %* ö *% ä % ß *%\n *% #! é\n:- use(U), motion(U,"“frÿ”").\n')
     assert cli(*ICE, "--constraint", mine).code == 0

@@ -73,6 +73,8 @@ def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
     """Note what is wrong with a file, and give the files that it includes."""
     if file.suffix != _SUFFIX:
         raise UserError(f"{file}: expected an encoding, a file whose name ends in {_SUFFIX}")
+    if any("\ud800" <= letter <= "\udfff" for letter in str(file)):  # what clingo cannot be given
+        raise UserError(f"{file}: expected an encoding with a name in UTF-8")
     content = file.read_bytes()
     lines = content.split(b"\n")
     try:
