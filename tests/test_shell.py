@@ -7,6 +7,7 @@ import os
 import pty
 import re
 import select
+import shutil
 import subprocess
 import sys
 import termios
@@ -495,3 +496,106 @@ def test_scripts_do_not_load_the_prompt(tmp_path: Path) -> None:
         check=True,
     )
     assert ran.stdout == "False\n"
+
+
+ALLERGY = ':- use(U), input(U,O), label(O,"nut").\n'
+NUTS = """\
+O\tnut
+M\tcrush
+O\tcake
+//
+O\tflour
+M\tbake
+O\tdough
+//
+O\tdough
+M\tbake
+O\tcake
+//
+"""
+
+
+@pytest.fixture
+def nuts(shell: Cli) -> Cli:
+    """Run lines in a session in which an allergy stands; the best cake by far is one with nuts."""
+    Path("FOON.txt").write_text(NUTS)
+    Path("kitchen.txt").write_text("O\tnut\nO\tflour\n")
+    Path("allergy.lp").write_text(ALLERGY)
+    Path("other.lp").write_text(':- use(U), motion(U,"fry").\n')
+    Path("motion.txt").write_text("crush\t0.9\nbake\t0.8\n")
+
+    def run(*lines: str | Path, words: tuple[str | Path, ...] = ()) -> Ran:
+        return shell("goal cake", "constraint allergy.lp", *lines, words=("--data", ".", *words))
+
+    return run
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "solve",
+        "solve --constraint other.lp",
+        "solve --constraint forbid_motion -c forbidden_motion=fry",
+        "solve --constraint allergy.lp --constraint other.lp",
+        "solve --soft other.lp=3",
+        "solve --reduce none --constraint other.lp",
+        "alternatives --constraint other.lp",
+        "certify --constraint other.lp",
+        "pareto --trees --constraint other.lp",
+        "regret --constraint other.lp",
+        "menu --goal cake --goal dough --constraint other.lp",
+        "diff 'solve --constraint other.lp' 'solve'",
+        "diff solve 'solve --constraint other.lp -c max_units=9 --constraint at_most_units'",
+    ],
+)
+def test_a_rule_that_stands_still_holds_when_a_line_adds_another(nuts: Cli, line: str) -> None:
+    ran = nuts(line)
+    assert ran.code in {0, 3}, ran.err
+    shown = {"diff": "2 units, 2 inputs", "certify": "allergy.lp"}.get(line.split(maxsplit=1)[0], "bake")
+    assert shown in ran.out
+    assert "crush" not in ran.out
+
+
+def test_without_the_rule_there_are_nuts(nuts: Cli) -> None:
+    assert "crush" in nuts("drop allergy.lp", "solve --constraint other.lp").out
+
+
+def test_rules_of_the_command_line_stand_too(nuts: Cli) -> None:
+    ran = nuts(
+        "drop allergy.lp",
+        "solve --constraint other.lp",
+        words=("--constraint", "forbid_motion", "-c", "forbidden_motion=crush"),
+    )
+    assert ran.code == 0
+    assert "crush" not in ran.out
+
+
+def test_a_constant_that_stands_is_replaced_by_a_word_alone(nuts: Cli) -> None:
+    stands = "constraint forbid_motion forbidden_motion=crush"
+    ran = nuts(stands, "solve -c forbidden_motion=bake")
+    assert ran.code == 2
+    assert "forbidden_motion=crush stands" in ran.err
+    assert nuts(stands, "solve -c forbidden_motion=crush").code == 0
+    ran = nuts(stands, "constraint forbid_motion forbidden_motion=bake", "solve")
+    assert "replaced: forbidden_motion=crush" in ran.err
+    assert ran.code == 1
+    ran = nuts(stands, "constraint other.lp", "solve")
+    assert "replaced" not in ran.err
+
+
+@pytest.mark.parametrize("line", ["optima", "search bfs", "compare", "draw", "check tree.txt"])
+def test_what_knows_of_no_rules_is_not_asked_while_some_stand(nuts: Cli, line: str) -> None:
+    ran = nuts(line)
+    verb = line.split(maxsplit=1)[0]
+    assert (ran.code, ran.out) == (2, "")
+    assert f"{verb} knows of no constraints, and here stand allergy.lp: drop them first" in ran.err
+    assert nuts(f"{verb} --help").code == 0
+
+
+def test_encodings_that_stand_are_not_replaced_by_a_line(nuts: Cli, tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "encodings", tmp_path / "mine")
+    shutil.copytree(ROOT / "encodings", tmp_path / "others")
+    ran = nuts("solve --encodings others", words=("--encodings", "mine"))
+    assert ran.code == 2
+    assert "the encodings of mine stand in this session" in ran.err
+    assert nuts("solve", "solve --encodings mine", words=("--encodings", "mine")).code == 0

@@ -100,11 +100,11 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     words, name = shlex.split(question_text)[1:], f"diff '{question_text}'"
     context = click.get_current_context()
     beside = {option: value for option, value in context.params.items() if _is_given(context, option)}
-    own = solve_command.make_context(name, list(words))
+    own = solve_command.make_context(name, list(words), obj=context.obj)
     if any(_is_given(own, option) for option in _DATA):
         beside = {option: value for option, value in beside.items() if option not in _DATA}
     defaults = {**(context.default_map or {}), **beside}  # a session has something to say, too
-    asked = dict(solve_command.make_context(name, words, default_map=defaults).params)
+    asked = dict(solve_command.make_context(name, words, default_map=defaults, obj=context.obj).params)
     if any(asked.pop(name) for name in ("certificate_file", "cross_check", "soft")):
         raise UserError(
             f"found {question_text!r}, expected a question without --certificate, --cross-check, --soft"

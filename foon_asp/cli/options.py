@@ -19,6 +19,60 @@ if TYPE_CHECKING:  # clingo, which often is not needed
 Command = TypeVar("Command", bound=Callable[..., object])
 _PATH = click.Path(path_type=NamedPath)
 
+
+class Held(NamedTuple):
+    """What a session has read, for the verbs that are asked within it, and how it was read.
+
+    ``session`` keeps what was grounded; ``files`` are those that were read. ``constraints``, ``constants``
+    and ``encodings`` are the rules that stand: a line of the session adds to them, and takes none away.
+    """
+
+    question: Question
+    lenient: bool
+    level: int
+    session: "Session"
+    files: tuple[Path, ...]
+    constraints: tuple[Path, ...]
+    constants: tuple[str, ...]
+    encodings: Path | None
+
+
+def _with_rules_that_stand(
+    context: click.Context, _: click.Parameter, value: tuple[Path, ...]
+) -> tuple[Path, ...]:
+    here = context.find_object(Held)
+    standing = () if here is None else here.constraints
+    return tuple(dict.fromkeys((*standing, *value)))
+
+
+def _with_constants_that_stand(
+    context: click.Context, _: click.Parameter, value: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Add constants to those that stand; another value for one of these would change a rule that stands."""
+    here = context.find_object(Held)
+    standing = () if here is None else here.constants
+    values = dict(setting.split("=", 1) for setting in standing)
+    for setting in value:
+        name = setting.partition("=")[0]
+        if name in values and setting not in standing:
+            raise UserError(
+                f"{name}={values[name]} stands, and {setting!r} on this line would change that rule: "
+                "constraint NAME CONSTANT=VALUE replaces it, and drop takes it away"
+            )
+    return (*standing, *(setting for setting in value if setting not in standing))
+
+
+def _encodings_that_stand(context: click.Context, _: click.Parameter, value: Path | None) -> Path | None:
+    here = context.find_object(Held)
+    if here is None or here.encodings is None:
+        return value
+    if value not in {None, here.encodings}:
+        raise UserError(
+            f"the encodings of {here.encodings} stand in this session; those of {value} need one of their own"
+        )
+    return here.encodings
+
+
 _DATA_OPTIONS = (
     click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with all of the following."),
     click.option(
@@ -50,10 +104,15 @@ _CONSTRAINT_OPTIONS = (
         multiple=True,
         type=_PATH,
         metavar="FILE.lp",
+        callback=_with_rules_that_stand,
         help="Add an encoding of yours, or one of ours by name; repeatable.",
     ),
     click.option(
-        "--encodings", type=_PATH, metavar="DIR", help="Use the encodings of a folder instead of ours."
+        "--encodings",
+        type=_PATH,
+        metavar="DIR",
+        callback=_encodings_that_stand,
+        help="Use the encodings of a folder instead of ours.",
     ),
 )
 
@@ -91,7 +150,12 @@ soft_option = click.option(
 )
 
 constant_option = click.option(
-    "-c", "constants", multiple=True, metavar="NAME=VALUE", help="Set a #const of an encoding; repeatable."
+    "-c",
+    "constants",
+    multiple=True,
+    metavar="NAME=VALUE",
+    callback=_with_constants_that_stand,
+    help="Set a #const of an encoding; repeatable.",
 )
 
 
@@ -137,19 +201,6 @@ def data_options(command: Command) -> Command:
 def constraint_options(command: Command) -> Command:
     """Add the options that add or replace encodings."""
     return functools.reduce(lambda f, option: option(f), reversed(_CONSTRAINT_OPTIONS), command)
-
-
-class Held(NamedTuple):
-    """What a session has read, for the verbs that are asked within it, and how it was read.
-
-    ``session`` keeps what was grounded; ``files`` are those that were read.
-    """
-
-    question: Question
-    lenient: bool
-    level: int
-    session: "Session"
-    files: tuple[Path, ...] = ()
 
 
 def held() -> Held | None:

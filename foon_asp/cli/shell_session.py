@@ -48,6 +48,9 @@ QUESTIONS = (
     "constraints",
 )
 
+# Those that ask for no tree under rules: diff asks by solve, which has them.
+_WITHOUT_RULES = {"diff", "verify", "constraints"}
+
 _GOAL = Wording("goal", "", "goal")
 
 
@@ -137,14 +140,12 @@ class ShellSession:
 
     def _ask(self, verb: str, words: list[str]) -> None:
         """Ask a question by its verb; what stands counts for all options that are not given."""
+        self._refuse_without_rules(verb, words)
         question = self.kitchen.question
         given: dict[str, object] = {
             "goals_named": self.goals,
             "objectives": self._objectives_for(verb),
             "containers": str(self.containers),
-            "constraints": tuple(self.constraints),
-            "constants": _settings(self.constants),
-            "encodings": self._encodings,
             "time_limit": self.time_limit,
             "lenient": self._lenient,
             "level": self._level,
@@ -154,10 +155,30 @@ class ShellSession:
             prog_name=verb,
             standalone_mode=False,
             default_map={name: value for name, value in given.items() if value not in {None, ()}},
-            obj=Held(question, self._lenient, self._level, self._session, (*self.files, *self.constraints)),
+            obj=Held(
+                question,
+                self._lenient,
+                self._level,
+                self._session,
+                (*self.files, *self.constraints),
+                tuple(self.constraints),
+                _settings(self.constants),
+                self._encodings,
+            ),
             help_option_names=["-h", "--help"],
         )
         self.code = ExitCode(ended or 0)
+
+    def _refuse_without_rules(self, verb: str, words: list[str]) -> None:
+        """Raise :class:`UserError` where rules stand that a verb knows nothing of."""
+        standing = [*map(str, self.constraints), *(["--encodings"] if self._encodings else [])]
+        knows = any(parameter.name == "constraints" for parameter in verb_command(verb).params)
+        shown = verb == "draw" and any(word.startswith(("--tree", "--unit")) for word in words)
+        if standing and not knows and not shown and verb not in _WITHOUT_RULES and not _asks_for_help(words):
+            raise UserError(
+                f"{verb} knows of no constraints, and here stand {', '.join(standing)}: drop them first, "
+                "or ask in a session without them"
+            )
 
     def _objectives_for(self, verb: str) -> tuple[str, ...]:
         """Give what stands as best, or nothing where a verb cannot ask by it and has its own."""
@@ -208,7 +229,11 @@ class ShellSession:
         if not words:
             raise UserError(f"name a constraint: {WORDS['constraint'].usage}; ours are {', '.join(_ours())}")
         name, *constants = words
+        before = dict(self.constants)
         self.constrain((NamedPath(name),), constants)
+        for constant, value in before.items():
+            if self.constants[constant] != value:
+                _say(f"replaced: {constant}={value}")
         _say(f"constraint: {' '.join(words)}")
 
     def constrain(self, constraints: Sequence[Path], constants: Sequence[str]) -> None:
@@ -282,13 +307,18 @@ class ShellSession:
         questions = textwrap.fill(", ".join(QUESTIONS), 76, initial_indent="  ", subsequent_indent="  ")
         click.echo(f"\nQuestions, with the options they have on the command line:\n{questions}")
         click.echo(
-            "\nOptions on a line count for that line. A NAME is a label, a node in one-line notation, or\n"
-            "the beginning of one; names with blanks are in quotes: goal 'greek salad'"
+            "\nOptions on a line count for that line. Its --constraint and -c are added to the rules that\n"
+            "stand, which constraint and drop alone change. A NAME is a label, a node in one-line\n"
+            "notation, or the beginning of one; names with blanks are in quotes: goal 'greek salad'"
         )
 
     def _quit(self, words: list[str]) -> None:
         _none(words, "quit")
         raise Leave
+
+
+def _asks_for_help(words: Sequence[str]) -> bool:
+    return bool({"-h", "--help"} & {*words})
 
 
 def _settings(constants: Mapping[str, str]) -> tuple[str, ...]:
