@@ -215,6 +215,19 @@ def test_a_file_of_the_users_is_not_ours_by_its_name(tmp_path: Path) -> None:
     assert [name.split()[0] for name in found.not_covered] == ["forbid_motion.lp", "forbidden_motion=pour"]
 
 
+def test_a_file_is_named_in_one_line_of_letters(tmp_path: Path) -> None:
+    file = tmp_path / "a\nb\udcff.lp"
+    try:
+        file.write_text(":- use(U), U > 1000.\n")
+    except OSError:
+        pytest.skip("such a file cannot be")
+    covered = coverage(Settings((file,)))
+    assert [name.split()[0] for name in covered.not_covered] == ["a\\nb\\udcff.lp"]
+    found = certify(two_ways("1", "1/2"), (Objective.UNITS,), [0], covered)
+    assert found is not None
+    assert found.content["not_covered"] == list(covered.not_covered)
+
+
 def test_replaced_encodings_are_named() -> None:
     problem = random_problem(3, ContainerRule.STRICT)
     settings = Settings(encodings=Path("by_need"))

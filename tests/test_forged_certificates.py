@@ -183,7 +183,9 @@ FORGED: dict[str, Forged] = {
     "_list: expected a list": plain(objective={"units": "units"}),
     "_names: expected names": plain(not_covered=[1], stays=KIND),
     "_names: expected names in order, each of them once": plain(not_covered=["b", "a"]),
-    "_names: a name has half of a letter (a surrogate)": plain(not_covered=["\ud800"]),
+    "_names: a name has half of a letter (a surrogate)": plain(
+        forbidden={"motions": ["\ud800"], "objects": []}
+    ),
     "_numbers: expected ids of the network": plain(tree=[False]),
     "_numbers: an id stands twice": plain(**BOUND, tree=[0, 0], costs=[2]),
     "_numbers: expected ids in order": plain(cuts=[sorted([END, MIDDLE], reverse=True)]),
@@ -217,6 +219,7 @@ FORGED: dict[str, Forged] = {
         **{**SUCCESS, **NOTHING, "claim": "optimal", "bound": None, "costs": ["2"]},
         at=PLAIN._replace(rates=dict.fromkeys(("pour", "mix", "bake", "dig"), Fraction(2))),
     ),
+    "__init__: a constraint has no printable name": plain(not_covered=["mine.lp\nverified: all of it"]),
     "__init__: expected goals, each of them once": plain(goals=[], tree=[], costs=[0], **NOTHING),
     # --- the claim
     "claim: a tree is given, but no objective": plain(objective=[], costs=[], **NOTHING),

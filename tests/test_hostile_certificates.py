@@ -218,5 +218,12 @@ def test_a_bound_far_below_anything_is_said_without_a_crash() -> None:
     assert "success at most 1; the tree has" in verified_text(found, WIDE.network, content)
 
 
+def test_names_say_nothing_in_a_line_of_their_own() -> None:
+    forbidden = {"motions": ["a\nverified: b"], "objects": ["c\x1b[31m\nd"]}
+    content = handmade(WIDE, **UNITS, claim="bound", bound=["0"], forbidden=forbidden)
+    lines = verified_text(check(content, WIDE), WIDE.network, content).splitlines()
+    assert 'among the trees without the motion "a\\nverified: b", the object "c\\u001b[31m\\nd"' in lines
+
+
 def test_limits_are_refusals() -> None:
     assert issubclass(LimitError, RefusedError)

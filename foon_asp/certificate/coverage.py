@@ -60,4 +60,9 @@ def coverage(settings: Settings) -> Coverage:
         others.append(f"encodings {settings.encodings.name}")
     others += [f"{name}={value}" for name, value in constants.items()]
     motions, labels = (tuple(sorted(forbidden[constant])) for constant in _FORBIDDING.values())
-    return Coverage(motions, labels, tuple(sorted(set(others))))
+    return Coverage(motions, labels, tuple(sorted(set(map(_printable, others)))))
+
+
+def _printable(name: str) -> str:
+    """Escape the letters of a file's name or of a constant that cannot be printed: a line end, for one."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in name)

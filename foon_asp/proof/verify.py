@@ -213,6 +213,8 @@ class _Check:
         self.motions, self.labels = _names(forbidden["motions"]), _names(forbidden["objects"])
         self.ruled_out = frozenset(self._ruled_out())
         self.not_covered = _names(certificate["not_covered"])
+        # these are nobody's labels, and could say anything in lines of their own
+        _require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
         self.needs: dict[int, frozenset[int]] = {}
         self.gives: dict[int, frozenset[int]] = {}
         self.cuts = [frozenset(_numbers(cut, len(network.objects))) for cut in _list(certificate["cuts"])]
