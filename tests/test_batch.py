@@ -376,6 +376,9 @@ def test_no_scheduler_is_said(
     ran = cli("batch", questions, "--results", tmp_path / "a.jsonl", "--scheduler", "tcp://127.0.0.1:9")
     assert ran.code == 2
     assert "no scheduler at tcp://127.0.0.1:9" in ran.err
+    secure = cli("batch", questions, "--results", tmp_path / "c.jsonl", "--scheduler", "tls://127.0.0.1:9")
+    assert secure.code == 2
+    assert "no scheduler at tls://127.0.0.1:9: TLS expects" in secure.err
 
 
 def test_a_worker_opens_equal_data_once() -> None:

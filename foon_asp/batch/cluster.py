@@ -30,7 +30,7 @@ def answer_on_cluster(
         raise UserError("--scheduler needs Dask; install it with: pip install 'foon-asp[cluster]'") from None
     try:
         client = Client(address, timeout=_PATIENCE)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, TypeError) as error:  # TypeError: an address of TLS without certificates
         raise UserError(f"no scheduler at {address}: {error}") from None
     with client:
         waiting = iter(questions)
