@@ -222,7 +222,7 @@ def test_names_say_nothing_in_a_line_of_their_own() -> None:
     forbidden = {"motions": ["a\nverified: b"], "objects": ["c\x1b[31m\nd"]}
     content = handmade(WIDE, **UNITS, claim="bound", bound=["0"], forbidden=forbidden)
     lines = verified_text(check(content, WIDE), WIDE.network, content).splitlines()
-    assert 'among the trees without the motion "a\\nverified: b", the object "c\\u001b[31m\\nd"' in lines
+    assert "among the trees without the motion a\\u000averified: b, the object c\\u001b[31m\\u000ad" in lines
 
 
 def test_limits_are_refusals() -> None:

@@ -1,11 +1,11 @@
 """Certificates in words: what one that was just written proves, and what one that was verified does."""
 
-import json
 from collections.abc import Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from foon_asp.escapes import escaped
 from foon_asp.network import Network
 from foon_asp.proof.verify import Verified
 
@@ -73,8 +73,9 @@ def verified_text(verified: Verified, network: Network, content: dict[str, Any])
             f"verified: no task tree is better by {', then '.join(verified.objectives)} ({rule}): {figures}"
         )
     if verified.motions or verified.labels:
-        ruled_out = [*(f"the motion {_in_a_line(motion)}" for motion in verified.motions)]
-        ruled_out += [f"the object {_in_a_line(label)}" for label in verified.labels]
+        # a line end in a name could say what was verified
+        ruled_out = [*(f"the motion {escaped(motion)}" for motion in verified.motions)]
+        ruled_out += [f"the object {escaped(label)}" for label in verified.labels]
         lines.append(f"among the trees without {', '.join(ruled_out)}")
     lines += [f"not covered, so among all trees: {name}" for name in verified.not_covered]
     lines.append(f"proof: {_cuts(verified.cuts)}, checked without a solver")
@@ -101,11 +102,6 @@ def verified_json(verified: Verified, network: Network) -> dict[str, object]:
         "tree": None if verified.tree is None else list(verified.tree),
         "cuts": verified.cuts,
     }
-
-
-def _in_a_line(name: str) -> str:
-    """Give a name that a certificate states: with a line end in it, it could say what was verified."""
-    return name if name.isprintable() else json.dumps(name)
 
 
 def _figure(objective: str, cost: int | Fraction) -> str:
