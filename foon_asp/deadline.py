@@ -58,7 +58,7 @@ class Deadline:
                 "leave it out, and set the limit by means of the system"
             )
         self.seconds, self.memory = seconds, memory
-        self.doing = "reading"
+        self._doing = "reading"
         self._end = None if seconds is None else (time.monotonic() if began is None else began) + seconds
         self._within = within
         if within is not None:
@@ -70,6 +70,17 @@ class Deadline:
         self._workers: set[int] = set()
         self._looked = 0.0
         self._by: str | None = None
+
+    @property
+    def doing(self) -> str:
+        """What is being done, or was when it stopped."""
+        return self._doing
+
+    @doing.setter
+    def doing(self, what: str) -> None:
+        """Note what is being done, unless it has stopped before."""
+        if self._by is None:
+            self._doing = what
 
     @property
     def passed(self) -> bool:
@@ -94,6 +105,11 @@ class Deadline:
     def interrupted(self) -> bool:
         """Whether ctrl-C was pressed."""
         return self._by == "ctrl-C"
+
+    @property
+    def left(self) -> float | None:
+        """The seconds that are left, ``None`` where time is not limited."""
+        return None if self._end is None else max(0.0, self._end - time.monotonic())
 
     @property
     def limited(self) -> bool:
@@ -122,12 +138,12 @@ class Deadline:
     @property
     def stopped(self) -> str | None:
         """At what it was stopped, and while doing what, in words; ``None`` before."""
-        return None if self._by is None else f"{self._by} while {self.doing}"
+        return None if self._by is None else f"{self._by} while {self._doing}"
 
     @property
     def advice(self) -> str:
         """What to do about it, in words."""
-        return _ADVICE.get(self.doing, "give it more")
+        return _ADVICE.get(self._doing, "give it more")
 
     def check(self) -> None:
         """Raise :class:`LimitError` where it is time to stop."""
@@ -138,7 +154,8 @@ class Deadline:
         """Give how long to wait before looking again."""
         if self.memory is not None:
             longest = min(longest, 2 * _LOOKS)
-        return longest if self._end is None else max(0.0, min(longest, self._end - time.monotonic()))
+        left = self.left
+        return longest if left is None else min(longest, left)
 
     def memory_in_use(self) -> int:
         """Give how many bytes this process and those that work for it have in memory."""
@@ -246,7 +263,7 @@ def seconds(given: float | str, what: str = "the time limit") -> float:
     except (TypeError, ValueError, OverflowError):
         value = math.nan
     if isinstance(given, bool) or not 0 <= value < math.inf:
-        raise UserError(f"found {given!r} for {what}, expected a number of seconds from 0")
+        raise UserError(f"found {what} {given!r}, expected a number of seconds from 0")
     return value
 
 
@@ -257,7 +274,7 @@ def memory_size(given: int | str, what: str = "the memory limit") -> int:
     found = re.fullmatch(r"(\d{1,15}(?:\.\d{1,6})?)\s*([KMGT]?)(?:i?B)?", str(given).strip(), re.I | re.ASCII)
     size = int(float(found[1]) * _UNITS[found[2].upper()]) if found and isinstance(given, str) else 0
     if size <= 0:
-        raise UserError(f"found {given!r} for {what}, expected a size such as 500M or 2G, or bytes")
+        raise UserError(f"found {what} {given!r}, expected a size such as 500M or 2G, or bytes")
     return size
 
 

@@ -76,6 +76,7 @@ def alternatives(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Alternatives:
     """Find all optimal trees; or with ``best`` so many of the best; or with ``different`` so unlike ones.
 
@@ -90,7 +91,7 @@ def alternatives(
     worse = Fraction(at_least(within, 0, "within"), 100)
     at_least(limit, 1, "limit")
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     asked = asked_with(problem, how)
     if best is not None:
         found = explain.best_trees(asked, chosen, how, at_least(best, 1, "best"), Warner())

@@ -100,6 +100,7 @@ def solve(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
     reductions: str = "all",
     clingo_options: Sequence[str] = (),
     reporter: Reporter | None = None,
@@ -115,7 +116,7 @@ def solve(
     constraints that stop nothing are warned of (:class:`FoonWarning`). Raises :class:`UserError`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)._replace(
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
     return Answer._make(find(asked_with(problem, how), chosen, how, reporter or Warner()))
@@ -130,6 +131,7 @@ def solve_soft(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> SoftAnswer:
     """Find the tree that pays least for the constraints it breaks, and the best among those.
 
@@ -137,7 +139,7 @@ def solve_soft(
     breaking a rule costs that much. Otherwise as :func:`solve`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     return SoftAnswer._make(find_soft(whole(problem), chosen, how, file_weights(soft), Warner()))
 
 

@@ -1,6 +1,5 @@
 """What callers write, turned into what the rooms take; faults are said in the words of Python."""
 
-import sys
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -10,6 +9,7 @@ from pathlib import Path
 from foon_asp.asp import Settings
 from foon_asp.asp.program import find_constraint
 from foon_asp.asp.soft import GREATEST_WEIGHT
+from foon_asp.deadline import memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 
@@ -50,15 +50,15 @@ def settings(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Settings:
-    """Put together how to solve; ``time_limit`` is in seconds."""
-    if time_limit is not None and not 0 <= time_limit <= sys.float_info.max:
-        raise UserError(f"found the time limit {time_limit}, expected a number of seconds from 0")
+    """Put together how to solve; ``time_limit`` is in seconds, ``memory_limit`` in bytes or as ``"2G"``."""
     return Settings(
         files(constraints),
         None if encodings is None else Path(encodings),
         tuple(f"{name}={value}" for name, value in (constants or {}).items()),
-        time_limit=time_limit,
+        time_limit=None if time_limit is None else seconds(time_limit),
+        memory_limit=None if memory_limit is None else memory_size(memory_limit),
     )
 
 

@@ -62,6 +62,7 @@ def assist(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Assistance:
     """Find the best success when a person does at most 0, 1, 2, ... of the units, and which.
 
@@ -72,7 +73,7 @@ def assist(
     """
     if problem.rates is None:
         raise UserError("help needs the success rates of the motions: load(..., rates=FILE)")
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     wanted = None if reach is None else success_rate(reach, "the success to reach")
     rates: dict[str, Fraction] | None = None
     if isinstance(person, str | PathLike):

@@ -1,5 +1,6 @@
 """Answers with proofs that are checked without a solver."""
 
+import contextlib
 import json
 from collections.abc import Mapping
 from os import PathLike
@@ -14,7 +15,6 @@ from foon_asp.api.shown import Shown
 from foon_asp.api.warning import Warner
 from foon_asp.asp.solver import solve as find
 from foon_asp.certificate import Certificate, certify_outcome
-from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import problem as plain
@@ -79,6 +79,7 @@ def certify(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Certified:
     """Solve a problem, and find a certificate of the answer: a proof that :func:`verify` checks.
 
@@ -86,10 +87,11 @@ def certify(
     :func:`foon_asp.solve`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
-    deadline = Deadline(time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
     outcome = find(whole(problem), chosen, how, Warner())
-    outcome, certificate = certify_outcome(outcome, how, lambda: deadline.passed)
+    certificate = None
+    with contextlib.suppress(KeyboardInterrupt), how.begun.watched("looking for a certificate"):
+        outcome, certificate = certify_outcome(outcome, how, lambda: how.begun.passed)
     return Certified(Answer._make(outcome), certificate)
 
 

@@ -59,6 +59,7 @@ def clash(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Clash:
     """Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.
 
@@ -67,7 +68,7 @@ def clash(
     :func:`foon_asp.solve`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if not how.constraints:
         raise UserError("name constraints; why_not explains other reasons")
     found = explain.find_clash(whole(problem), chosen, how, file_weights(weights or {}), Warner())

@@ -57,11 +57,12 @@ def compare_searches(
     depth_limit: int | None = None,
     published: bool = False,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Compared:
     """Run searches for each goal of a problem, a question of its own each, and prove the optima beside them.
 
-    ``time_limit`` is in seconds for each optimum and each search. Otherwise as :func:`foon_asp.retrieve`.
+    The limits are for each optimum and each search. Otherwise as :func:`foon_asp.retrieve`.
     """
     names = [search.name for search in searched(list(searches))]
-    how = search_settings(ties, count, depth_limit, published, time_limit)
+    how = search_settings(ties, count, depth_limit, published, time_limit, memory_limit)
     return Compared(tuple(compare_goals(problem, problem.goals, names, how, how.time_limit)))

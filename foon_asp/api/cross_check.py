@@ -62,6 +62,7 @@ def cross_check(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> CrossChecked:
     """Solve a problem, and ask other engines the same question.
 
@@ -71,7 +72,7 @@ def cross_check(
     :func:`foon_asp.solve`.
     """
     problem = whole(problem)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if soft:
         found = solve_soft(
             problem,
@@ -81,6 +82,7 @@ def cross_check(
             constants=constants,
             encodings=encodings,
             time_limit=time_limit,
+            memory_limit=memory_limit,
         )
         asked = Asked(found.outcome, how, file_weights(soft), found.penalty)
         return CrossChecked(found, _checks(asked))
@@ -91,6 +93,7 @@ def cross_check(
         constants=constants,
         encodings=encodings,
         time_limit=time_limit,
+        memory_limit=memory_limit,
     )
     return CrossChecked(answer, _checks(Asked(answer, how)))
 

@@ -55,6 +55,7 @@ def menu(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Menu:
     """Solve a problem with several goals by one tree, and goal by goal.
 
@@ -63,5 +64,5 @@ def menu(
     if len(problem.goals) < 2:
         raise UserError("a menu has several goals: foon.problem(FIRST, SECOND, ...)")
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     return Menu._make(explain.menu(asked_with(problem, how), chosen, how, Warner()))

@@ -67,11 +67,12 @@ def pareto(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Front:
     """Find the whole Pareto front of two or three objectives, with a tree for every point.
 
     ``time_limit`` is for all of it. Otherwise as :func:`foon_asp.solve`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     return Front._make(explain.pareto_front(asked_with(problem, how), chosen, how, Warner()))

@@ -49,6 +49,7 @@ def regret(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Regrets:
     """Find the optimum without each unit of the best tree, and without each kitchen item it takes.
 
@@ -56,7 +57,7 @@ def regret(
     Otherwise as :func:`foon_asp.solve`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     numbers = tuple(units)
     asked = whole(problem) if numbers else asked_with(problem, how)
     found = [asked.network.unit_of_number(number) for number in numbers]

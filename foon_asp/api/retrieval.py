@@ -74,16 +74,17 @@ def retrieve(
     depth_limit: int | None = None,
     published: bool = False,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Retrieved:
     """Retrieve a tree as the literature does, and say whether it executes.
 
     ``search`` is ``bfs``, ``dfs``, ``ids``, ``greedy-success`` or ``greedy-inputs``. ``ties`` says which of
     equally good units is taken, the ``first`` or the ``last``; ``count`` what greedy-inputs counts,
     ``ingredients`` or ``nodes``; ``depth_limit`` how deep ids looks; ``published`` makes ids the published
-    one. ``time_limit`` is in seconds. Raises :class:`UserError` for other names.
+    one. The limits are as for :func:`foon_asp.solve`. Raises :class:`UserError` for other names.
     """
     searches = searched([search])
-    how = search_settings(ties, count, depth_limit, published, time_limit)
+    how = search_settings(ties, count, depth_limit, published, time_limit, memory_limit)
     found = searches[0].run(problem, how)
     simulation = None
     if found.ending is Ending.TREE:
@@ -100,7 +101,12 @@ def searched(names: list[str]) -> list[Search]:
 
 
 def search_settings(
-    ties: str, count: str, depth_limit: int | None, published: bool, time_limit: float | None
+    ties: str,
+    count: str,
+    depth_limit: int | None,
+    published: bool,
+    time_limit: float | None,
+    memory_limit: int | str | None,
 ) -> SearchSettings:
     """Put together how to search."""
     for name, given, known in (("ties", ties, [*map(str, Ties)]), ("count", count, [*map(str, Count)])):
@@ -108,5 +114,7 @@ def search_settings(
             raise UserError(f"found {name}={given!r}, expected one of {', '.join(known)}")
     if depth_limit is not None:
         at_least(depth_limit, 0, "depth_limit")
-    limit = settings(time_limit=time_limit).time_limit
-    return SearchSettings(Ties(ties), Count(count), published, depth_limit, limit)
+    limits = settings(time_limit=time_limit, memory_limit=memory_limit)
+    return SearchSettings(
+        Ties(ties), Count(count), published, depth_limit, limits.time_limit, limits.memory_limit
+    )

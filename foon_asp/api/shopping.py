@@ -72,6 +72,7 @@ def shopping_list(
     constants: Constants | None = None,
     encodings: File | None = None,
     time_limit: float | None = None,
+    memory_limit: int | str | None = None,
 ) -> Shopping:
     """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
 
@@ -80,7 +81,7 @@ def shopping_list(
     Of a store, the whole network is read. Otherwise as :func:`foon_asp.solve`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     asked = whole(problem)
     by_id = None
     if prices is not None:

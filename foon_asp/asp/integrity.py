@@ -5,15 +5,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from clingo import Control
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 from clingo.symbol import SymbolType
 
 from foon_asp.asp.encoding import located, read_encoding
 from foon_asp.asp.program import Relaxed, find_constraint
-from foon_asp.asp.search import refused
-from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
-from foon_asp.grounding.run import ProgramError
+from foon_asp.asp.search import ground
+from foon_asp.deadline import Deadline
 from foon_asp.network import Source
 from foon_asp.resources import encodings_folder
 from foon_asp.text import Diagnostic, InputError
@@ -36,7 +34,7 @@ class IntegrityConstraint(NamedTuple):
 
 
 def relax(
-    files: Sequence[Path], constants: Sequence[str], soft: bool
+    files: Sequence[Path], constants: Sequence[str], soft: bool, deadline: Deadline | None = None
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
     """Number the integrity constraints of some files, from 1, and put all that they say in other words.
 
@@ -49,7 +47,7 @@ def relax(
     rules: dict[str, Source] = {}
     paths = tuple(dict.fromkeys(find_constraint(file) for file in files))
     for path in paths:
-        _look_over(path)
+        _look_over(path, deadline or Deadline())
         statements: list[AST] = []
         parse_files([str(path)], statements.append)
         for statement in statements:
@@ -87,17 +85,13 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
         raise InputError(found) from None
 
 
-def _look_over(path: Path) -> None:
+def _look_over(path: Path, deadline: Deadline) -> None:
     """Raise what is wrong with a file while it still has its places: in other words it is only text."""
     read_encoding(path)
-    messages: list[str] = []
-    try:
-        with refusing(messages):
-            control = Control(logger=listener(messages), message_limit=NO_LIMIT)
-            control.load(str(path))
-            control.ground([("base", [])])  # without facts, for unsafe variables alone
-    except ProgramError as error:
-        raise refused(error) from None
+    try:  # without facts, for unsafe variables alone
+        ground((path,), "", (), deadline, endless=True).close()
+    except KeyboardInterrupt:  # a limit: then nobody comes to look at what was not seen
+        deadline.interrupt()
 
 
 def _is_constraint(statement: AST) -> bool:

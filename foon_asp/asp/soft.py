@@ -57,7 +57,7 @@ def soft_rules(
     both = set(map(find_constraint, settings.constraints)) & set(map(find_constraint, weights))
     if both:
         raise UserError(f"{min(both)} is named as a constraint and as a soft one; leave one of them out")
-    constraints, relaxed = relax(tuple(weights), settings.constants, soft=True)
+    constraints, relaxed = relax(tuple(weights), settings.constants, soft=True, deadline=settings.begun)
     of_file = {find_constraint(path): weight for path, weight in weights.items()}
     by_number = {c.number: of_file[c.file] for c in constraints}
     return constraints, by_number, relaxed._replace(rules=relaxed.rules + write_soft(by_number))

@@ -4,6 +4,7 @@ import time
 
 from foon_asp.asp import Outcome, Settings, solve
 from foon_asp.batch.asked import Asked, Asker
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
 from foon_asp.report.answer import bounds_json, costs_json
@@ -11,17 +12,21 @@ from foon_asp.report.answer import bounds_json, costs_json
 Row = dict[str, object]
 
 
-def answer_row(asker: Asker, asked: Asked) -> Row:
+def answer_row(asker: Asker, asked: Asked, memory_limit: int | None = None) -> Row:
     """Answer a question; an error, of the user's or ours, is a row too.
 
     Trees in rows were simulated, and are given by unit ids in an order that executes. docs/batch.md
-    describes the keys.
+    describes the keys. ``memory_limit`` is in bytes; where a limit leaves no tree, ``error`` says which one.
     """
     began = time.perf_counter()
     try:
-        problem = asker.problem(asked)
-        settings = Settings(time_limit=asked.time_limit)
+        deadline = Deadline(asked.time_limit, memory_limit)
+        with deadline.watched("reading"):
+            problem = asker.problem(asked)
+        settings = Settings(deadline=deadline)
         row = _answered(asked, solve(problem, parse_objectives([asked.objective]), settings))
+    except LimitError as limit:
+        row = {**failed_row(asked, f"stopped at {limit.stopped}"), "status": "unknown"}
     except UserError as error:
         row = failed_row(asked, str(error))
     except Exception as error:
@@ -49,7 +54,7 @@ def _answered(asked: Asked, outcome: Outcome) -> Row:
     return {
         **asked.shown(),
         "status": str(outcome.status),
-        "error": None,
+        "error": None if outcome.units or not outcome.stopped else f"stopped at {outcome.stopped}",
         "proof": None if outcome.proof is None else str(outcome.proof),
         "costs": costs_json(outcome.costs),
         "lower_bound": bounds_json(outcome),

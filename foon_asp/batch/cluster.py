@@ -16,7 +16,7 @@ _AHEAD = 4  # questions on their way for each thread of the cluster, so that non
 
 
 def answer_on_cluster(
-    opener: Opener, questions: Iterable[Asked], address: str
+    opener: Opener, questions: Iterable[Asked], address: str, memory_limit: int | None = None
 ) -> Iterator[tuple[Asked, Row]]:
     """Answer questions on the workers of a scheduler, and give rows as they come.
 
@@ -37,7 +37,7 @@ def answer_on_cluster(
         asked_of: dict[str, Asked] = {}
 
         def submit(asked: Asked) -> Any:
-            future = client.submit(_answer, opener, asked, pure=False)
+            future = client.submit(_answer, opener, asked, memory_limit, pure=False)
             asked_of[future.key] = asked
             return future
 
@@ -68,8 +68,8 @@ def _threads(client: "Client") -> int:
     return sum(threads.values())
 
 
-def _answer(opener: Opener, asked: Asked) -> Row:
-    return answer_row(_open(opener), asked)
+def _answer(opener: Opener, asked: Asked, memory_limit: int | None) -> Row:
+    return answer_row(_open(opener), asked, memory_limit)
 
 
 @functools.lru_cache(maxsize=1)

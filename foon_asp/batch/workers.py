@@ -12,13 +12,17 @@ from typing import NamedTuple
 from foon_asp.batch.answer_row import Row, answer_row, failed_row
 from foon_asp.batch.asked import Asked, Opener
 
-_GRACE = 30.0  # seconds beyond its time limit that a question gets: grounding, for one, is not interrupted
+_GRACE = 10.0  # seconds beyond its time limit after which a process that does not answer is ended
 
 
 class Work(NamedTuple):
-    """What a worker does: open the data once, then answer. ``grace`` is in seconds beyond time limits."""
+    """What a worker does: open the data once, then answer.
+
+    ``memory_limit`` is in bytes, for each worker, ``grace`` in seconds beyond time limits.
+    """
 
     opener: Opener
+    memory_limit: int | None = None
     grace: float = _GRACE
 
 
@@ -61,9 +65,15 @@ def _next(
 
 def _ready(workers: "dict[Connection, _Worker]") -> list[Connection]:
     """Wait until some have answered, died or gone beyond their limit."""
-    ends = [worker.end_by for worker in workers.values() if worker.end_by is not None]
-    patience = None if not ends else max(0.0, min(ends) - time.monotonic())
-    answered = [c for c in wait(list(workers), patience) if isinstance(c, Connection)]
+    while True:
+        ends = [worker.end_by for worker in workers.values() if worker.end_by is not None]
+        patience = None if not ends else max(0.0, min(ends) - time.monotonic())
+        answered = [c for c in wait(list(workers), patience) if isinstance(c, Connection)]
+        opened = [c for c in answered if not workers[c].opened]
+        for connection in opened:
+            workers[connection].hear_of_opening()
+        if not opened:
+            break
     now = time.monotonic()
     return answered or [c for c, w in workers.items() if w.end_by is not None and now >= w.end_by]
 
@@ -73,20 +83,32 @@ class _Worker:
         context = multiprocessing.get_context("spawn")
         self.connection, theirs = context.Pipe()
         self._grace = work.grace
-        self._process: BaseProcess = context.Process(target=_serve, args=(theirs, work.opener), daemon=True)
+        self._process: BaseProcess = context.Process(target=_serve, args=(theirs, work), daemon=True)
         self._process.start()
         theirs.close()
         self.alive = True
+        self.opened = False
         self.end_by: float | None = None
         self._asked: Asked | None = None
 
     def ask(self, asked: Asked) -> None:
         self._asked = asked
         self.end_by = None
-        if asked.time_limit is not None:
-            self.end_by = time.monotonic() + asked.time_limit + self._grace
+        if self.opened:
+            self._begin()
         with contextlib.suppress(OSError):  # if it died meanwhile, that is seen when its answer is waited for
             self.connection.send(asked)
+
+    def hear_of_opening(self) -> None:
+        """Take note that the data is open; the question at hand begins now. A death is seen later."""
+        with contextlib.suppress(EOFError, OSError):
+            self.connection.recv()
+            self._begin()
+        self.opened = True
+
+    def _begin(self) -> None:
+        if self._asked is not None and self._asked.time_limit is not None:
+            self.end_by = time.monotonic() + self._asked.time_limit + self._grace
 
     def result(self) -> tuple[Asked, Row]:
         """Give the row of the question at hand; what did not answer is not alive any more."""
@@ -114,13 +136,14 @@ def _death(code: int | None) -> str:
     return f"the process that worked on it ended with exit code {code}"
 
 
-def _serve(connection: Connection, opener: Opener) -> None:
+def _serve(connection: Connection, work: Work) -> None:
     """Answer questions until there are no more; ctrl-C is for the process that asks them."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    asker = opener()
+    asker = work.opener()
+    connection.send(None)  # from now on the time counts
     while True:
         try:
             asked = connection.recv()
         except EOFError:
             return
-        connection.send(answer_row(asker, asked))
+        connection.send(answer_row(asker, asked, work.memory_limit))

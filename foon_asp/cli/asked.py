@@ -8,11 +8,12 @@ from pathlib import Path
 from foon_asp.asp import Settings
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, parse_objectives
 from foon_asp.question import Question
 
 Option = Callable[[Callable[..., ExitCode]], Callable[..., ExitCode]]
-_HOW = ("goals_named", "objectives", "containers", "constraints", "encodings", "constants", "time_limit")
+_HOW = ("goals_named", "objectives", "containers", "constraints", "encodings", "constants", "deadline")
 _DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "lenient", "level")
 _SHARED = {*_HOW, "format_", *_DATA}
 
@@ -30,7 +31,7 @@ class Asked:
         constraints: tuple[Path, ...],
         encodings: Path | None,
         constants: tuple[str, ...],
-        time_limit: float | None,
+        deadline: Deadline,
         format_: str,
         objectives: tuple[str, ...] = ("units",),
         **data: object,
@@ -38,7 +39,7 @@ class Asked:
         self.format_ = format_
         self.objectives: tuple[Objective, ...] = parse_objectives(objectives)
         self.settings = Settings(
-            constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
+            constraints, encodings, constants, session=options.session_here(), deadline=deadline
         )
         self._names, self._containers = goals_named, containers
         self._data = data
@@ -60,7 +61,9 @@ class Asked:
 
     def problem(self, everything: bool = False) -> Problem:
         """Ask for the goals; with ``everything``, and under rules of the user's, all units are there."""
-        return self.question.problem(self.goals, self._containers, everything or self.by_users_rules)
+        question = self.question
+        with options.reading():
+            return question.problem(self.goals, self._containers, everything or self.by_users_rules)
 
 
 def asking(*own: Option, objective: Option | None = options.objective_option) -> Option:
@@ -84,7 +87,7 @@ def asking(*own: Option, objective: Option | None = options.objective_option) ->
             *own,
             options.constraint_options,
             options.constant_option,
-            options.time_limit_option,
+            options.limit_options,
             options.format_option("text", "json"),
             options.data_options,
         )

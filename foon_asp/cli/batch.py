@@ -38,7 +38,7 @@ from foon_asp.cli.progress import bar
 )
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes to use.")
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of a Dask cluster: tcp://HOST:PORT.")
-@options.time_limit_option
+@options.each_limit_options
 @options.format_option("text", "json")
 @options.data_options
 def command(
@@ -47,6 +47,7 @@ def command(
     jobs: int,
     scheduler: str | None,
     time_limit: float | None,
+    memory_limit: int | None,
     format_: str,
     **data: object,
 ) -> ExitCode:
@@ -64,7 +65,8 @@ def command(
     {"goal": [["ice", "macaroni"]], "time_limit": 10}
 
     @goals is the goals file, @makeable all that can be made; a list within the list is one tree for several
-    goals; kitchens are files beside the questions. --time-limit is for each question that names none.
+    goals; kitchens are files beside the questions. --time-limit is for each question that names none,
+    --memory-limit for each process that answers.
 
     What was answered is not asked again when the same command is run again. A question that fails is a row
     that says why. Exits with 0 when every answer is proved, 1 when some failed, and with 3 when a limit
@@ -82,7 +84,7 @@ def command(
         tally = Tally(results.done[one.key] for one in asked if one.key in results.done)
         with bar("answering", len(asked), len(asked) - len(left)) as advance:
             try:
-                for one, row in _rows(opening, left, jobs, scheduler):
+                for one, row in _rows(opening, left, jobs, scheduler, memory_limit):
                     results.add(one, row)
                     tally.add(row)
                     advance()
@@ -105,11 +107,11 @@ def command(
 
 
 def _rows(
-    opening: Opening, asked: Sequence[Asked], jobs: int, scheduler: str | None
+    opening: Opening, asked: Sequence[Asked], jobs: int, scheduler: str | None, memory_limit: int | None
 ) -> Iterator[tuple[Asked, Row]]:
     if scheduler is not None:
-        return answer_on_cluster(opening, asked, scheduler)
-    return answer_all(Work(opening), asked, min(jobs, max(1, len(asked))))
+        return answer_on_cluster(opening, asked, scheduler, memory_limit)
+    return answer_all(Work(opening, memory_limit), asked, min(jobs, max(1, len(asked))))
 
 
 def _in_words(summary: dict[str, object], tally: Tally) -> Iterator[str]:

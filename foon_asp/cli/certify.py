@@ -1,7 +1,5 @@
 """``foon-asp certify``: a certificate for a question, or for a tree that some program wrote."""
 
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -14,6 +12,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels, parse_objectives
@@ -45,7 +44,7 @@ from foon_asp.text import FoonReader, summarize
 @options.containers_option
 @options.constraint_options
 @options.constant_option
-@options.time_limit_option
+@options.limit_options
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
@@ -56,7 +55,7 @@ def command(
     constraints: tuple[Path, ...],
     encodings: Path | None,
     constants: tuple[str, ...],
-    time_limit: float | None,
+    deadline: Deadline,
     lenient: bool,
     **data: object,
 ) -> ExitCode:
@@ -74,17 +73,15 @@ def command(
     check_outputs()
     question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
     # a certificate speaks about the whole network, by its digest
-    problem = question.problem(question.goals(goals_named), containers, everything=True)
-    settings = Settings(
-        constraints, encodings, constants, time_limit=time_limit, session=options.session_here()
-    )
-    expired = expiry(time_limit)
+    with options.reading():
+        problem = question.problem(question.goals(goals_named), containers, everything=True)
+    settings = Settings(constraints, encodings, constants, session=options.session_here(), deadline=deadline)
     name = "standard output" if file is None else str(file)
     if tree_file is not None:
-        return _certify_tree(problem, chosen, tree_file, settings, expired, file, lenient)
+        return _certify_tree(problem, chosen, tree_file, settings, deadline, file, lenient)
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
-    outcome, certificate = find_certificate(outcome, settings, expired)
+    outcome, certificate = find_certificate(outcome, settings, deadline)
     for line in (headline(outcome), *certificate_lines(outcome, certificate, name)):
         click.echo(line, err=True)
     write_certificate(certificate, file)
@@ -95,18 +92,13 @@ def command(
     return ExitCode.DONE
 
 
-def expiry(time_limit: float | None) -> Callable[[], bool]:
-    """Give what says whether a time limit that begins now is over."""
-    end = None if time_limit is None else time.monotonic() + time_limit
-    return lambda: end is not None and time.monotonic() >= end
-
-
 def find_certificate(
-    outcome: Outcome, settings: Settings, expired: Callable[[], bool]
+    outcome: Outcome, settings: Settings, deadline: Deadline
 ) -> tuple[Outcome, Certificate | None]:
-    """Look for a certificate; at ctrl-C the answer stands without one."""
+    """Look for a certificate; at a limit, and at ctrl-C, the answer stands without one."""
     try:
-        return certify_outcome(outcome, settings, expired)
+        with deadline.watched("looking for a certificate"):
+            return certify_outcome(outcome, settings, lambda: deadline.passed)
     except KeyboardInterrupt:
         return outcome, None
 
@@ -126,7 +118,7 @@ def _certify_tree(
     chosen: tuple[Objective, ...],
     tree_file: Path,
     settings: Settings,
-    expired: Callable[[], bool],
+    deadline: Deadline,
     file: Path | None,
     lenient: bool,
 ) -> ExitCode:
@@ -138,12 +130,14 @@ def _certify_tree(
     # no solver looks at the rules and constants here, so a fault in them would go by without a word
     assemble(settings, lambda message: click.echo(message, err=True))
     covered = coverage(settings)
-    ordered = _given_tree(problem, tree_file, covered, lenient)
+    with options.reading():
+        ordered = _given_tree(problem, tree_file, covered, lenient)
     if ordered is None:
         return ExitCode.NEGATIVE
     wanted = levels(chosen)
     try:
-        certificate = certify(problem, wanted, ordered, covered, expired)
+        with deadline.watched("looking for a certificate"):
+            certificate = certify(problem, wanted, ordered, covered, lambda: deadline.passed)
     except NotBestError as better:
         click.echo(
             f"no certificate: the tree is not the best by {', then '.join(wanted)}: it has "

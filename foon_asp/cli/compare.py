@@ -55,7 +55,7 @@ _CHARTED = 60  # goals that a chart has room for
 @search_options
 @click.option("--published", is_flag=True, help="Lay the published table beside what is measured.")
 @options.containers_option
-@options.time_limit_option
+@options.each_limit_options
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes to use.")
 @click.option(
     "--results",
@@ -83,6 +83,7 @@ def command(
     published: bool,
     containers: str,
     time_limit: float | None,
+    memory_limit: int | None,
     jobs: int,
     results: Path | None,
     charts: tuple[Path, ...],
@@ -96,8 +97,8 @@ def command(
     foon-asp compare --goal macaroni --containers implied
     foon-asp compare --all-makeable --jobs 2 --results makeable.jsonl
 
-    Each goal is a question of its own. Exits with 0 when every optimum is proved, and with 3 when one was
-    stopped at the time limit.
+    Each goal is a question of its own, and the limits are for each of its answers. Exits with 0 when every
+    optimum is proved, and with 3 when one was stopped at a limit.
     """
     check_outputs()
     question = options.read_question(**data)  # type: ignore[arg-type]
@@ -115,7 +116,7 @@ def command(
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     if charts and len(goals) > _CHARTED:
         raise UserError(f"a chart of {len(goals)} goals could not be read; name up to {_CHARTED} with --goal")
-    settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit)
+    settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit, memory_limit)
     # Results are kept with a digest of all the data.
     everything = all_makeable or results is not None
     problem = question.problem(goals, containers, everything)
@@ -180,6 +181,7 @@ def _question(problem: Problem, searches: Sequence[str], settings: SearchSetting
         "published": settings.published,
         "depth_limit": settings.depth_limit,
         "time_limit": settings.time_limit,
+        **({} if settings.memory_limit is None else {"memory_limit": settings.memory_limit}),
     }
 
 

@@ -113,11 +113,14 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     goals, objectives = asked.pop("goals_named"), parse_objectives(asked.pop("objectives"))
     containers = asked.pop("containers")
     names = ("constraints", "encodings", "constants", "clingo_options", "time_limit")
+    memory_limit = asked.pop("memory_limit")
     reductions = parse_reductions(asked.pop("reductions"))
-    settings = Settings(*map(asked.pop, names))._replace(reductions=reductions)
-    question = read_question(**asked)
+    settings = Settings(*map(asked.pop, names))._replace(reductions=reductions, memory_limit=memory_limit)
+    settings = settings.limited()
+    with settings.begun.watched("reading"):
+        question = read_question(**asked)
+        problem = question.problem(question.goals(goals), containers, everything=True)
     settings = settings._replace(session=options.session_here())
-    problem = question.problem(question.goals(goals), containers, everything=True)
     with Progress() as progress:
         outcome = solve(problem, objectives, settings, progress)
     code = of_status(outcome.status)

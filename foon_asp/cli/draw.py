@@ -14,6 +14,7 @@ from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import utf_8, write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import TaskTree, unit_at_level
 from foon_asp.problem import ContainerRule, parse_objectives
@@ -70,7 +71,7 @@ _SUFFIXES = {
 )
 @options.objective_option
 @options.containers_option
-@options.time_limit_option
+@options.limit_options
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
@@ -80,7 +81,7 @@ def command(
     format_: str | None,
     objectives: tuple[str, ...],
     containers: str,
-    time_limit: float | None,
+    deadline: Deadline,
     lenient: bool,
     **data: object,
 ) -> ExitCode:
@@ -109,9 +110,9 @@ def command(
     code = ExitCode.DONE
     if to_solve:
         with Progress() as progress:
-            outcome = solve(
-                question.problem(goals, containers), chosen, Settings(time_limit=time_limit), progress
-            )
+            with options.reading():
+                problem = question.problem(goals, containers)
+            outcome = solve(problem, chosen, Settings(deadline=deadline), progress)
         code = of_status(outcome.status)
         if outcome.status is not Status.OPTIMAL:
             click.echo(headline(outcome), err=True)

@@ -12,6 +12,7 @@ from foon_asp import __version__
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import drop_output, safe_streams
 from foon_asp.cli.verbs import VERBS, verb_command
+from foon_asp.deadline import LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped, note_line_end
 
@@ -76,7 +77,14 @@ def _ended(error: BaseException, debug: bool) -> ExitCode:
     if isinstance(error, click.ClickException):
         text = _usage(error)
     elif isinstance(error, click.Abort | KeyboardInterrupt):
+        limit = error.__cause__ if isinstance(error, click.Abort) else error
         text, code = "interrupted before there was an answer", ExitCode.LIMIT
+        if isinstance(limit, LimitError):
+            text = (
+                f"unknown: stopped at {limit.stopped}, before there was an answer\nwhat to do: {limit.advice}"
+            )
+    elif isinstance(error, MemoryError):
+        text, code = "unknown: there is no more memory; --memory-limit stops in time", ExitCode.LIMIT
     elif isinstance(error, UserError):
         text = str(error) if ": error: " in str(error) else f"error: {error}"
     elif isinstance(error, OSError):  # the world's: a full disk, no permission, a folder in place of a file

@@ -20,7 +20,7 @@ def command(asked: Asked) -> ExitCode:
     foon-asp menu --goal macaroni --goal omelet
     foon-asp menu --goal macaroni --goal omelet --objective success
 
-    --time-limit is for each answer. Exits with 0 when all are proved, 1 when no tree makes all goals, 3 when
+    Exits with 0 when all are proved, 1 when no tree makes all goals, 3 when
     a limit came first.
     """
     if len(asked.goals) < 2:

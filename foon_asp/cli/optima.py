@@ -24,7 +24,7 @@ from foon_asp.report.optima_table import optima_json, print_optima
     help="An objective, or a list by commas of which the first counts most; one row each.",
 )
 @options.containers_option
-@options.time_limit_option
+@options.each_limit_options
 @options.format_option("text", "json")
 @options.data_options
 def command(
@@ -32,12 +32,13 @@ def command(
     objectives: tuple[str, ...],
     containers: str,
     time_limit: float | None,
+    memory_limit: int | None,
     format_: str,
     **data: object,
 ) -> ExitCode:
     """Solve every goal of the goals file under several objectives and compare the optimal trees.
 
-    --time-limit is for each answer. Exits with 0 when every answer is proved, a goal without a tree
+    The limits are for each answer. Exits with 0 when every answer is proved, a goal without a tree
     included, and with 3 when one was stopped at the limit.
     """
     lists = [parse_objectives([text]) for text in objectives]
@@ -46,11 +47,12 @@ def command(
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     outcomes: list[Outcome] = []
+    settings = Settings(time_limit=time_limit, memory_limit=memory_limit)
     with Progress() as progress:
         for goal in goals:
             problem = question.problem((goal,), containers)
             for chosen in lists:
-                outcome = solve(problem, chosen, Settings(time_limit=time_limit), progress)
+                outcome = solve(problem, chosen, settings, progress)
                 outcomes.append(outcome)
     if format_ == "json":
         click.echo(optima_json(outcomes), nl=False)

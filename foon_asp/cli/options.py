@@ -1,22 +1,25 @@
 """Options that several verbs share, and reading the data they name."""
 
 import functools
-import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import click
 
+from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
+from foon_asp.deadline import Deadline, Watch, memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.question import Question, question_files, reading
+from foon_asp.question import Question, question_files
+from foon_asp.question.reading import read_question as read_data
 
 if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import Session
 
 Command = TypeVar("Command", bound=Callable[..., object])
+_DEADLINE = "foon_asp.deadline"
 _PATH = click.Path(path_type=NamedPath)
 
 
@@ -159,21 +162,19 @@ constant_option = click.option(
 )
 
 
-class _Seconds(click.FloatRange):
-    """A number of seconds from 0: neither endless nor nan, which no clock ever comes to."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        seconds = float(super().convert(value, param, ctx))
-        if not math.isfinite(seconds):
-            self.fail(f"found {value!r}, expected a number of seconds", param, ctx)
-        return seconds
-
-
-time_limit_option = click.option(
-    "--time-limit",
-    type=_Seconds(min=0),
-    metavar="SECONDS",
-    help="Stop searching after so long, with the best tree and its bound.",
+_LIMIT_OPTIONS = (
+    click.option(
+        "--time-limit",
+        type=seconds,
+        metavar="SECONDS",
+        help="Stop after so long, with the best known and its bound.",
+    ),
+    click.option(
+        "--memory-limit",
+        type=memory_size,
+        metavar="SIZE",
+        help="Stop likewise at so much memory: 500M, 2G. On Linux only.",
+    ),
 )
 
 debug_option = click.option(
@@ -201,6 +202,33 @@ def data_options(command: Command) -> Command:
 def constraint_options(command: Command) -> Command:
     """Add the options that add or replace encodings."""
     return functools.reduce(lambda f, option: option(f), reversed(_CONSTRAINT_OPTIONS), command)
+
+
+def each_limit_options(command: Command) -> Command:
+    """Add the limits of each answer that a command gives: ``time_limit`` and ``memory_limit``."""
+    return functools.reduce(lambda f, option: option(f), reversed(_LIMIT_OPTIONS), command)
+
+
+def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
+    """Add the limits of a whole command, from reading on: ``deadline``. At the end it says what to do."""
+
+    @functools.wraps(command)
+    def limited(time_limit: float | None, memory_limit: int | None, **given: object) -> ExitCode:
+        deadline = Deadline(time_limit, memory_limit)
+        click.get_current_context().meta[_DEADLINE] = deadline
+        code = command(deadline=deadline, **given)
+        if code is ExitCode.LIMIT and deadline.stopped and not deadline.interrupted:
+            click.echo(f"stopped at {deadline.stopped}: {deadline.advice}", err=True)
+        return code
+
+    return each_limit_options(limited)
+
+
+def reading() -> Watch:
+    """Stop what is read in a ``with`` block at the limits of the command, if it has any."""
+    context = click.get_current_context(silent=True)
+    deadline: Deadline | None = context.meta.get(_DEADLINE) if context else None
+    return (deadline or Deadline()).watched("reading")
 
 
 def held() -> Held | None:
@@ -234,8 +262,9 @@ def read_question(
                 "the data of a session is what it was started with; another kitchen is given by: kitchen FILE"
             )
         return here.question
-    files = question_files(folder, network, kitchen, rates, utensils, goals)
-    question = reading.read_question(files, lenient, level)
+    with reading():
+        files = question_files(folder, network, kitchen, rates, utensils, goals)
+        question = read_data(files, lenient, level)
     context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
     if context:
         context.call_on_close(question.close)

@@ -24,7 +24,7 @@ def command(asked: Asked, units: tuple[int, ...]) -> ExitCode:
     foon-asp regret --goal macaroni
     foon-asp regret --goal macaroni --objective success --unit 17
 
-    What is missed most comes first. --time-limit is for each answer. Exits with 0 when every answer is
+    What is missed most comes first. Exits with 0 when every answer is
     proved, 1 when there is no tree at all, 3 when a limit came first.
     """
     problem = asked.problem(everything=bool(units))

@@ -6,6 +6,7 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.cli.search_options import search_options
+from foon_asp.deadline import Deadline
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.report.retrieval import retrieval_foon, retrieval_json, retrieval_text
 from foon_asp.search import SEARCHES, Count, Ending, SearchSettings, Ties
@@ -17,7 +18,7 @@ from foon_asp.search import SEARCHES, Count, Ending, SearchSettings, Ties
 @search_options
 @click.option("--published", is_flag=True, help="ids as published: the first unit everywhere, as bfs.")
 @options.containers_option
-@options.time_limit_option
+@options.limit_options
 @options.format_option("text", "json", "foon")
 @options.data_options
 def command(
@@ -28,7 +29,7 @@ def command(
     depth_limit: int | None,
     published: bool,
     containers: str,
-    time_limit: float | None,
+    deadline: Deadline,
     format_: str,
     **data: object,
 ) -> ExitCode:
@@ -45,8 +46,11 @@ def command(
     none; 3 when stopped at a limit.
     """
     question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(question.goals(goals_named), containers)
-    settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit)
+    with options.reading():
+        problem = question.problem(question.goals(goals_named), containers)
+    settings = SearchSettings(
+        Ties(ties), Count(count), published, depth_limit, deadline.left, deadline.memory
+    )
     search = SEARCHES[name]
     retrieval = search.run(problem, settings)
     simulation = None

@@ -22,7 +22,7 @@ from foon_asp.problem import ContainerRule
 @options.containers_option
 @options.constraint_options
 @options.constant_option
-@options.time_limit_option
+@options.each_limit_options
 @options.data_options
 def command(
     script: Path | None,
@@ -33,6 +33,7 @@ def command(
     encodings: Path | None,
     constants: tuple[str, ...],
     time_limit: float | None,
+    memory_limit: int | None,
     lenient: bool,
     level: int,
     **data: object,
@@ -63,7 +64,7 @@ def command(
     session = ShellSession(question, lenient, level, encodings)
     session.files += read_files()
     session.containers = ContainerRule(containers)
-    session.time_limit = time_limit
+    session.time_limit, session.memory_limit = time_limit, memory_limit
     session.choose(objectives)
     if constraints or constants or encodings:
         session.constrain(constraints, constants)

@@ -1,6 +1,5 @@
 """What stands in a session (goals, kitchen, rule, constraints, objectives) and the words that change it."""
 
-import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from difflib import get_close_matches
@@ -20,6 +19,7 @@ from foon_asp.cli.options import Held
 from foon_asp.cli.shell_kitchen import ShellKitchen, find_nodes
 from foon_asp.cli.shell_line import quoted, take_apart
 from foon_asp.cli.verbs import verb_command
+from foon_asp.deadline import Deadline, memory_size, seconds, size_text
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
 from foon_asp.question import Question
@@ -72,7 +72,8 @@ WORDS = {
         "constraint NAME|FILE.lp [CONSTANT=VALUE...]", "add a constraint, or set its constants"
     ),
     "drop": Usage("drop NAME|FILE.lp...", "take constraints away"),
-    "time-limit": Usage("time-limit SECONDS|none", "stop each search after so long"),
+    "time-limit": Usage("time-limit SECONDS|none", "stop each question after so long"),
+    "memory-limit": Usage("memory-limit SIZE|none", "stop each question at so much memory: 500M, 2G"),
     "show": Usage("show", "say what stands"),
     "help": Usage("help [WORD]", "list the words, or explain one"),
     "quit": Usage("quit", "leave, as ctrl-D does"),
@@ -99,6 +100,7 @@ class ShellSession:
         self.constraints: dict[Path, frozenset[str]] = {}  # with the names of their constants
         self.constants: dict[str, str] = {}
         self.time_limit: float | None = None
+        self.memory_limit: int | None = None
         self.kitchen = ShellKitchen(question)
         self.files: list[Path] = []  # what was read, which no question writes over
         self._encodings = encodings
@@ -114,6 +116,7 @@ class ShellSession:
             "constraint": self._constraint,
             "drop": self._drop,
             "time-limit": self._time_limit,
+            "memory-limit": self._memory_limit,
             "show": self._show,
             "help": self._help,
             "quit": self._quit,
@@ -147,6 +150,7 @@ class ShellSession:
             "objectives": self._objectives_for(verb),
             "containers": str(self.containers),
             "time_limit": self.time_limit,
+            "memory_limit": self.memory_limit,
             "lenient": self._lenient,
             "level": self._level,
         }
@@ -267,13 +271,17 @@ class ShellSession:
     def _time_limit(self, limits: list[str]) -> None:
         limit = _only(limits, "time-limit")
         try:
-            seconds = None if limit == "none" else float(limit)
-        except ValueError:
-            seconds = -1
-        if seconds is not None and not 0 <= seconds <= sys.float_info.max:
-            raise UserError(f"found the time limit {limit!r}, expected seconds, or none")
-        self.time_limit = seconds
+            self.time_limit = None if limit == "none" else seconds(limit)
+        except UserError:
+            raise UserError(f"found the time limit {limit!r}, expected seconds, or none") from None
         _say(f"time-limit: {limit}")
+
+    def _memory_limit(self, limits: list[str]) -> None:
+        limit = _only(limits, "memory-limit")
+        size = None if limit == "none" else memory_size(limit)
+        Deadline(None, size)  # where it cannot be held that is said now
+        self.memory_limit = size
+        _say(f"memory-limit: {limit}")
 
     def _show(self, words: list[str]) -> None:
         _none(words, "show")
@@ -287,6 +295,8 @@ class ShellSession:
         if self._encodings:
             click.echo(f"encodings: {self._encodings}")
         click.echo(f"time-limit: {'none' if self.time_limit is None else f'{self.time_limit:g}'}")
+        if self.memory_limit is not None:
+            click.echo(f"memory-limit: {size_text(self.memory_limit)}")
         click.echo(f"kitchen: {self.kitchen.size}")
         for change in self.kitchen.changes():
             click.echo(f"  {change}")

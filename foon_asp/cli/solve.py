@@ -7,7 +7,7 @@ import click
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
-from foon_asp.cli.certify import expiry, find_certificate, write_certificate
+from foon_asp.cli.certify import find_certificate, write_certificate
 from foon_asp.cli.cross_check import check_across
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.named_path import NamedPath
@@ -15,6 +15,7 @@ from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.cli.weighted_files import weighted_files
+from foon_asp.deadline import Deadline
 from foon_asp.engines import Asked
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, parse_objectives, reach
@@ -30,7 +31,7 @@ from foon_asp.report.certified import certificate_lines
 @options.constraint_options
 @options.constant_option
 @options.soft_option
-@options.time_limit_option
+@options.limit_options
 @click.option(
     "--reduce",
     "reductions",
@@ -62,7 +63,7 @@ def command(
     encodings: Path | None,
     constants: tuple[str, ...],
     soft: tuple[str, ...],
-    time_limit: float | None,
+    deadline: Deadline,
     reductions: str,
     certificate_file: Path | None,
     cross_check: bool,
@@ -91,28 +92,28 @@ def command(
     question = options.read_question(**data)  # type: ignore[arg-type]
     # What is asked by rules of the user's, and what is proved or asked again, is about the whole network.
     everything = bool(constraints or encodings or soft) or cross_check or certificate_file is not None
-    problem = question.problem(question.goals(goals_named), containers, everything)
+    with options.reading():
+        problem = question.problem(question.goals(goals_named), containers, everything)
     settings = Settings(
         constraints,
         encodings,
         constants,
         clingo_options,
-        time_limit,
-        parse_reductions(reductions),
+        reductions=parse_reductions(reductions),
         session=options.session_here(),
+        deadline=deadline,
     )
     if soft:
         if certificate_file is not None:
             raise UserError("soft constraints have no certificates; leave one of them out")
         weights = weighted_files(soft, "--soft")
         return _solve_soft(problem, chosen, settings, weights, question.read_seconds, cross_check, format_)
-    expired = expiry(time_limit)
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
     outcome.seconds["read"] = question.read_seconds
     remarks: list[str] = []
     if certificate_file is not None:
-        outcome, certificate = find_certificate(outcome, settings, expired)
+        outcome, certificate = find_certificate(outcome, settings, deadline)
         write_certificate(certificate, certificate_file)
         remarks = certificate_lines(outcome, certificate, str(certificate_file))
     more: dict[str, object] = {}

@@ -82,7 +82,9 @@ def compare(
     for objective in MEASURED:
         if multiplies(objective) and problem.rates is None:
             continue
-        outcome = solve(problem, (objective,), Settings(time_limit=time_limit))
+        outcome = solve(
+            problem, (objective,), Settings(time_limit=time_limit, memory_limit=settings.memory_limit)
+        )
         value = None if outcome.costs is None else Fraction(outcome.costs.measure(objective))
         optima[objective] = Optimum(str(outcome.status), value)
     comparison = Comparison(

@@ -51,13 +51,16 @@ def cross_check(
 ) -> list[Check]:
     """Ask every engine what an answer says, each for at most so many seconds.
 
-    Without ``seconds``, each has the time limit of the question, or a minute.
+    Without ``seconds``, each has the time limit of the question, or a minute; where the question has a
+    deadline, its part of what is left.
     Bare clingo is asked under whatever rules there are; ``engines`` where all rules are ours, or rule units
     out one by one. Raises :class:`DisagreementError` at the first that says otherwise. From ctrl-C on nothing
     else is checked.
     """
     if seconds is None:
         limit = asked.settings.time_limit
+        if asked.settings.deadline is not None and asked.settings.deadline.left is not None:
+            limit = asked.settings.deadline.left / (1 + len(engines))  # bare clingo is one more
         seconds = PATIENCE if limit is None else limit
     checks: list[Check] = []
     interrupted = False

@@ -55,7 +55,7 @@ def check_with_bare_clingo(asked: Asked, seconds: float) -> None:
     """
     outcome = asked.outcome
     program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
-    _Check(asked, program, _Clingo(program, seconds, asked.settings.memory_limit)).check()
+    _Check(asked, program, _Clingo(program, seconds, asked.settings.begun.memory)).check()
 
 
 def printed_command(asked: Asked) -> tuple[list[str], str]:

@@ -57,7 +57,7 @@ def find_clash(
     reporter = reporter or Reporter()
     settings = settings.limited()
     deadline = settings.begun
-    constraints, relaxed = relax(settings.constraints, settings.constants, soft=False)
+    constraints, relaxed = relax(settings.constraints, settings.constants, soft=False, deadline=deadline)
     by_number = {constraint.number: constraint for constraint in constraints}
     of_file = {find_constraint(path): weight for path, weight in (file_weights or {}).items()}
     weights = {number: of_file.get(c.file, 1) for number, c in by_number.items()}

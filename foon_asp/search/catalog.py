@@ -18,7 +18,8 @@ class SearchSettings:
     """What can be set of the searches; each looks at what concerns it.
 
     ``published`` makes ``ids`` the published iterative deepening, which takes the first unit everywhere
-    and so is breadth-first retrieval. ``time_limit`` is in seconds.
+    and so is breadth-first retrieval. ``time_limit`` is in seconds, ``memory_limit``
+    in bytes.
     """
 
     ties: Ties = Ties.FIRST
@@ -26,6 +27,7 @@ class SearchSettings:
     published: bool = False
     depth_limit: int | None = None
     time_limit: float | None = None
+    memory_limit: int | None = None
 
 
 class Search(NamedTuple):
@@ -40,7 +42,7 @@ class Search(NamedTuple):
 def _deepen(problem: Problem, settings: SearchSettings) -> Retrieval:
     if settings.published:
         return breadth_first(problem, settings.ties)
-    return iterative_deepening(problem, settings.depth_limit, settings.time_limit)
+    return iterative_deepening(problem, settings.depth_limit, settings.time_limit, settings.memory_limit)
 
 
 _NOTHING = (

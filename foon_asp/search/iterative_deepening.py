@@ -1,13 +1,15 @@
 """Iterative deepening: depth-limited depth-first search with backtracking, deeper and deeper."""
 
-import time
-
+from foon_asp.deadline import Deadline
 from foon_asp.problem import Problem
 from foon_asp.search.retrieval import Ending, Retrieval
 
 
 def iterative_deepening(
-    problem: Problem, depth_limit: int | None = None, time_limit: float | None = None
+    problem: Problem,
+    depth_limit: int | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | None = None,
 ) -> Retrieval:
     """Find a tree that executes, of least depth, or show that there is none.
 
@@ -17,9 +19,10 @@ def iterative_deepening(
     one. What failed at which limit, and what was found, is remembered, so a limit costs at most one pass
     over the units that can matter. When no object gets within reach by one more level, none ever will.
 
-    Reaching ``depth_limit`` (levels) or ``time_limit`` (seconds) ends in ``unknown``.
+    Reaching ``depth_limit`` (levels), ``time_limit`` (seconds) or ``memory_limit`` (bytes) ends in
+    ``unknown``.
     """
-    search = _DepthLimited(problem, None if time_limit is None else time.monotonic() + time_limit)
+    search = _DepthLimited(problem, Deadline(time_limit, memory_limit))
     limit = 0
     while True:
         try:
@@ -42,9 +45,9 @@ class _DepthLimited:
     within smaller limits, so following the units never runs in a circle.
     """
 
-    def __init__(self, problem: Problem, end: float | None) -> None:
+    def __init__(self, problem: Problem, deadline: Deadline) -> None:
         self.problem = problem
-        self.end = end
+        self.deadline = deadline
         self.failed: dict[int, int] = {}
         self.found: dict[int, tuple[int, int]] = {}
         self.objects = self._relevant()
@@ -58,7 +61,7 @@ class _DepthLimited:
         # a frame: object, limit, number of the unit being tried, number of the input being looked at
         stack = [[goal, limit, 0, 0]]
         while stack:
-            if self.end is not None and time.monotonic() >= self.end:
+            if self.deadline.passed:
                 raise TimeoutError
             frame = stack[-1]
             o, bound, tried, looked = frame
