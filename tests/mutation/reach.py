@@ -26,6 +26,7 @@ class Recorder:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._seconds: dict[str, float] = defaultdict(float)
+        self._failed: set[str] = set()
         self._fixtures: dict[str, list[str]] = {}
         self._coverage = coverage.Coverage(
             data_file=None, include=[str(Path(file).resolve()) for file in texts()], config_file=False
@@ -47,6 +48,11 @@ class Recorder:
                 for definitions in item._fixtureinfo.name2fixturedefs.values()  # type: ignore[attr-defined]
                 if definitions[-1].scope != "function"
             ]
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note a test that fails: it says nothing about changes."""
+        if report.failed:
+            self._failed.add(report.nodeid)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(
@@ -76,6 +82,8 @@ class Recorder:
                     lines[context].setdefault(file, []).append(line)
         reached = {}
         for test, seconds in self._seconds.items():
+            if test in self._failed:
+                continue
             own: dict[str, set[int]] = defaultdict(set)
             for context in (test, *self._fixtures[test]):
                 for file, found in lines.get(context, {}).items():
