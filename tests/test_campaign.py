@@ -53,5 +53,4 @@ def test_wrong_answers_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(campaign, "solve", lie)
     wrong: list[str] = []
     tally = campaign.campaign(range(8), wrong)
-    assert tally["wrong"] == lies > 2
-    assert any("the tree has" in said for said in wrong)
+    assert tally["wrong"] == lies > 2, wrong
