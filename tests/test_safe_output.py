@@ -96,14 +96,15 @@ def test_letters_that_an_encoding_has_not() -> None:
 
 def test_a_stream_escapes_text_and_leaves_bytes() -> None:
     raw = io.BytesIO()
-    stream = SafeStream(io.TextIOWrapper(raw, encoding="ascii"), "standard output")
+    stream = SafeStream(io.TextIOWrapper(raw, encoding="ascii"))
     stream.write("\x1b[31m→\n")
     stream.write_data(b"\x1b::\n")
     assert raw.getvalue() == b"\\u001b[31m\\u2192\n\x1b::\n"
     with pytest.raises(TypeError):
         stream.write(b"")  # type: ignore[arg-type]
-    with pytest.raises(UserError, match="standard output is closed"):
-        SafeStream(None, "standard output").write("x")
+    with pytest.raises(UserError, match="standard output: cannot be written: it is closed"):
+        SafeStream(None).write("x")
+    SafeStream(None, remarks=True).write("x")
 
 
 # --- the verbs

@@ -17,15 +17,16 @@ class SafeStream:
     """A stream of text that escapes what a terminal or a log would not show, or take for a command.
 
     Letters that its encoding does not have are escaped too, so that no text is too foreign to be shown.
-    ``stream`` is ``None`` where it was closed before we began. A ``styled`` one lets colours pass: who
-    writes to it escapes names first. Bytes are data, and go to ``buffer`` as they are.
+    ``stream`` is ``None`` where it was closed before we began. What cannot be written is a fault, but for
+    ``remarks``, without which an answer is one. A ``styled`` stream lets colours pass: who writes to it
+    escapes names first.
     """
 
     errors = "strict"
 
-    def __init__(self, stream: TextIO | None, name: str, styled: bool = False) -> None:
+    def __init__(self, stream: TextIO | None, remarks: bool = False, styled: bool = False) -> None:
         self.stream = stream
-        self._name = name
+        self._remarks = remarks
         self._styled = styled
 
     @property
@@ -69,7 +70,7 @@ class SafeStream:
 
     def _open(self) -> TextIO:
         if self.stream is None:
-            raise UserError(f"{self._name} is closed")
+            raise OSError("it is closed")
         return self.stream
 
     @contextlib.contextmanager
@@ -79,7 +80,8 @@ class SafeStream:
         except BrokenPipeError:
             raise
         except OSError as error:
-            raise UserError(f"{self._name}: cannot be written: {error.strerror or error}") from None
+            if not self._remarks:
+                raise UserError(f"standard output: cannot be written: {error.strerror or error}") from None
 
 
 @contextlib.contextmanager
@@ -87,8 +89,8 @@ def safe_streams() -> Iterator[None]:
     """Let everything that is printed go through :class:`SafeStream`."""
     forget_line_ends()
     out, err = sys.stdout, sys.stderr
-    sys.stdout = cast(TextIO, SafeStream(out, "standard output"))
-    sys.stderr = cast(TextIO, SafeStream(err, "standard error"))
+    sys.stdout = cast(TextIO, SafeStream(out))
+    sys.stderr = cast(TextIO, SafeStream(err, remarks=True))
     try:
         yield
     finally:
@@ -122,8 +124,7 @@ def console(err: bool = False) -> "Console":
 
     here = sys.stderr if err else sys.stdout
     stream = here.stream if isinstance(here, SafeStream) else here
-    name = "standard error" if err else "standard output"
-    return Console(file=cast(TextIO, SafeStream(stream, name, styled=True)))
+    return Console(file=cast(TextIO, SafeStream(stream, remarks=err, styled=True)))
 
 
 def drop_output() -> None:

@@ -1,11 +1,11 @@
 """Task trees in files: FOON text, FOON units in JSON, or an answer of foon-asp in JSON."""
 
-import json
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.text.json_value import read_json
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
@@ -46,7 +46,7 @@ def _answer(file: Path) -> dict[str, Any] | None:
     if not text.lstrip().startswith("{"):
         return None
     try:
-        value = json.loads(text)
+        value = read_json(text)
     except ValueError:
         return None  # the reader of FOON text in JSON says where the fault is
     if isinstance(value, dict) and isinstance(value.get("answer"), dict):
