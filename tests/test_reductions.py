@@ -1,7 +1,9 @@
 """Reductions: each alone and all together leave the optimum as it is."""
 
 import sys
-from itertools import combinations
+from collections.abc import Collection
+from dataclasses import replace
+from itertools import combinations, pairwise
 from typing import Any
 
 import pytest
@@ -9,7 +11,9 @@ import pytest
 from foon_asp.asp import Proof, Settings, solve
 from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce, reduction
+from foon_asp.reduce import ALL, NONE, SAFE, Listener, Reduction, reduce, reduction
+from foon_asp.reduce.exact_costs import ExactCosts
+from tests.gap_problem import gap_problem
 from tests.oracle import best, key, trees
 from tests.random_problems import random_problem
 
@@ -156,3 +160,74 @@ def test_an_interrupted_search_for_cuts_leaves_a_bound_that_holds() -> None:
             assert 0 < found.costs.first(found.bound) <= expected[0]
             met += 1
     assert met > 5
+
+
+class Heard(Listener):
+    """Keeps what it hears."""
+
+    def __init__(self) -> None:
+        self.trees: list[frozenset[int]] = []
+        self.bounds: list[int] = []
+
+    def tree(self, units: frozenset[int]) -> None:
+        self.trees.append(units)
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        self.bounds.append(bound)
+
+
+@pytest.mark.parametrize("looked_for", [True, False])
+@pytest.mark.parametrize("seed", some(45))
+def test_trees_get_better_and_bounds_rise_and_the_optimum_is_between(
+    seed: int, looked_for: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So it is, too, where better trees are not looked for, and the one in hand is no good."""
+    if not looked_for:
+        monkeypatch.setattr(reduction, "improved", lambda graph, actions, tree, *_: tree)
+        monkeypatch.setattr(reduction, "_EASY", 0)
+    problem = gap_problem(seed, corners=4 + seed % 4)
+    names = LISTS[seed % len(LISTS)] if seed % 3 else ["units"]
+    objectives = tuple(map(Objective, names))
+    heard = Heard()
+    found = reduce(problem, levels(objectives), ALL, listener=heard)
+    best_tree = solve(problem, objectives, Settings(reductions=NONE)).units
+    assert best_tree is not None
+
+    def measure(units: Collection[int]) -> Any:
+        return key(problem, tuple(problem.network.unit(u) for u in units), names)
+
+    optimum = measure(best_tree)
+    measures = [measure(tree) for tree in heard.trees]
+    assert all(later < earlier for earlier, later in pairwise(measures))
+    assert measures[-1] >= optimum
+    assert found.tree == heard.trees[-1]
+    assert all(earlier < later for earlier, later in pairwise([0, *heard.bounds]))
+    assert heard.bounds[-1:] == ([found.bound] if found.bound else [])
+    assert found.costs is not None
+    first = found.costs.first(found.bound)
+    assert (-first if names[0] == "success" else first) <= optimum[0]
+    assert not found.settled or measures[-1] == optimum
+    answer = solve(problem, objectives, Settings(reductions=ALL)).units
+    assert answer is not None
+    assert measure(answer) == optimum
+
+
+def test_goals_at_hand_take_no_unit() -> None:
+    problem = random_problem(0, ContainerRule.STRICT)
+    problem = replace(problem, goals=tuple(sorted(problem.kitchen))[:1])
+    for names in LISTS:
+        heard = Heard()
+        found = reduce(problem, levels(tuple(map(Objective, names))), ALL, listener=heard)
+        assert (found.tree, found.units, found.settled, found.bound) == (frozenset(), (), True, 0), names
+        assert heard.bounds == []
+
+
+def test_what_is_only_as_good_as_the_tree_in_hand_is_left_out_too() -> None:
+    left = {}
+    for reductions in (frozenset({Reduction.DEAR}), frozenset({Reduction.DEAR, Reduction.BOUNDS})):
+        found = [reduce(gap_problem(seed), (Objective.UNITS,), reductions) for seed in range(12)]
+        left[reductions] = [len(each.units) for each in found if not each.settled]
+        # what is left is never less than the tree in hand, which may be the only one
+        assert all(each.tree is not None and each.tree <= set(each.units) for each in found)
+    fewer, more = left[frozenset({Reduction.DEAR, Reduction.BOUNDS})], left[frozenset({Reduction.DEAR})]
+    assert sum(fewer) < sum(more)
