@@ -17,6 +17,7 @@ from foon_asp.explain.pareto import Front, pareto_front
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.report.front_chart import write_front_chart
+from foon_asp.report.answer import success_text
 from foon_asp.report.pareto import front_text, success_texts
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import find_data, find_goal, read_data
@@ -219,6 +220,13 @@ def drawing(front: Front, file: Path) -> tuple[list[str], int, int]:
     ]
     lines = sum("clip-path" in path.attrib for path in colored)
     return texts, markers, lines
+
+
+def test_rates_next_to_1_and_next_to_0_are_not_shown_as_either() -> None:
+    assert success_text(Fraction(1)) == "1"
+    assert success_text(1 - Fraction(1, 10**11)) == "≈ 1 - 1e-11"
+    assert success_text(Fraction(1, 10**400)) == "1e-400"
+    assert success_text(Fraction(782, 1000)) == "0.782"
 
 
 def test_a_chart_has_all_points_and_lines_only_where_the_front_is_whole(tmp_path: Path) -> None:

@@ -439,14 +439,15 @@ def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
 
 def _left_out(what: str, part: str) -> str:
     """Say what is wrong where clingo would leave a part of a program out."""
+    no_value = f"a term has no value here: {part.removeprefix('(').removesuffix(')')}"
     reason = {
-        "operation undefined": f"{part} has no value for some of what gets here",
-        "interval undefined": f"{part} has no value for some of what gets here",
+        "operation undefined": no_value,
+        "interval undefined": no_value,
         "tuple ignored": f"the weight in {part} is no number",
     }.get(what, f"{what} {part}".strip())
     return (
-        f"{reason}, and clingo would leave out what it stands in: calculate with numbers alone, by 0 divide "
-        "nothing, and call no functions of scripts"
+        f"{reason}; clingo would leave this out without a word: calculate with whole numbers only, do not "
+        "divide by 0, and call no functions with @"
     )
 
 

@@ -168,9 +168,20 @@ def costs_text(costs: Costs) -> str:
 
 
 def success_text(success: Fraction) -> str:
-    """Give a success rate to four significant digits, with ``≈`` where that is rounded."""
-    shown = f"{float(success):.4g}"
+    """Give a success rate to four significant digits, with ``≈`` where that is rounded.
+
+    A rate that is rounded to 1 is shown by what it lacks of 1.
+    """
+    shown = _four_digits(success)
+    if success < 1 and Fraction(shown) == 1:
+        return f"≈ 1 - {_four_digits(1 - success)}"
     return shown if Fraction(shown) == success else f"≈ {shown}"
+
+
+def _four_digits(value: Fraction) -> str:
+    if value and not float(value):  # the product of many rates can be below the least float above 0
+        return f"{Decimal(value.numerator) / Decimal(value.denominator):.4g}"
+    return f"{float(value):.4g}"
 
 
 def counted(number: int, noun: str) -> str:
