@@ -1,5 +1,6 @@
 """Cuts, exact comparisons, exact optima and proofs on plain arrays."""
 
+import math
 import random
 from fractions import Fraction
 from itertools import combinations
@@ -234,3 +235,31 @@ def test_what_is_forbidden_is_out_of_every_proof() -> None:
     lost = Prover(KITCHEN, [4], ones(KITCHEN), COUNT, frozenset({1, 3})).hopeless()
     assert lost is not None
     assert lost.members == ()
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_costs_are_ordered_as_products_of_fractions_are(seed: int) -> None:
+    """Among rates whose products collide, and for powers that are fractions."""
+    rng = random.Random(seed)
+    pool = ["0.5", "0.25", "0.7", "0.49", "0.9", "0.81", "0.3", "0.999999999", "0.000000001"]
+    rates = list(map(Fraction, rng.sample(pool, 3)))
+    first = rng.random() < 0.5
+    order = Lexicographic([rates, None] if first else [None, rates])
+    assert order.width == 4
+    share = Fraction(1, rng.choice([1, 2, 3]))
+    for _ in range(20):
+        powers = [rng.randint(-3, 3) for _ in rates]
+        count = rng.choice([-1, 0, 0, 1])
+        product = math.prod(rate**power for rate, power in zip(rates, powers, strict=True))
+        by_rates = (product < 1) - (product > 1)
+        parts = [share * power for power in powers]
+        vector = (*parts, share * count) if first else (share * count, *parts)
+        expected = by_rates or count if first else count or by_rates
+        assert order.sign(vector) == expected
+        assert order.sign([-part for part in vector]) == -expected
+        one, other = order.approximate(vector)
+        logarithm, figure = (one, other) if first else (other, one)
+        assert figure == float(share * count)
+        assert logarithm == pytest.approx(-float(share) * math.log(product), abs=1e-12)
+        assert order.total([vector, vector]) == tuple(2 * part for part in vector)
+    assert order.total([]) == order.zero == (0, 0, 0, 0)

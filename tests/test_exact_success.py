@@ -1,7 +1,7 @@
 """The success objective is exact: rates built to collide, scales too coarse to tell trees apart."""
 
 import math
-from decimal import Decimal
+from decimal import Context, Decimal
 from fractions import Fraction
 from pathlib import Path
 
@@ -170,6 +170,24 @@ def test_weights_next_to_1_are_exact(lost: int, zeros: int, scale: int) -> None:
     weight = exact_success._weight(1 - part, 10**scale)
     assert weight <= 10**scale * (part + part**2)
     assert weight + 1 > 10**scale * (part + part**2 / 2)
+
+
+@pytest.mark.parametrize("scale", [1, 2, 3, 10, 1000, 10**8])
+@pytest.mark.parametrize("rate", ["1", "0.99", "0.9", "1/3", "0.37", "0.36", "1/1000000000", "0.999999999"])
+def test_weights_of_every_scale_are_rounded_down(rate: str, scale: int) -> None:
+    """Half a hundred digits of the logarithm are enough to know the whole part."""
+    exact = Fraction(rate)
+    context = Context(prec=50)
+    logarithm = -context.ln(context.divide(exact.numerator, exact.denominator))
+    assert exact_success._weight(exact, scale) == math.floor(Fraction(logarithm) * scale)
+
+
+def test_a_scale_is_as_fine_as_the_dearest_rate_lets_it_be() -> None:
+    for digits in (1, 9, 10, 90, 100, 900, 9_000):
+        scale = rate_scale({Fraction(1, 10**digits), Fraction(1, 2)})
+        most = scale.scale * digits * math.log(10)
+        assert most < 2**31 <= max(10 * most, 10**8 * most / scale.scale)
+        assert scale.scale in {10**k for k in range(9)}
 
 
 def test_a_scale_is_finer_next_to_1_alone() -> None:
