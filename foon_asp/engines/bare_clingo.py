@@ -164,7 +164,7 @@ class _Check:
             return
         if outcome.status is Status.INFEASIBLE or outcome.units is None:
             raise self._disagreement("we say no tree exists, clingo says a tree exists", theirs)
-        ours = self._ours()
+        ours = self._ours(theirs)
         usual = self._usual(theirs) and self._usual(ours)
         if not usual:
             self._by_replaced_objectives(ours, theirs)
@@ -173,16 +173,19 @@ class _Check:
         else:
             self._compare(theirs, self.levels)
 
-    def _ours(self) -> Found:
-        """Ask clingo whether our tree is one under the rules, and what it costs."""
+    def _ours(self, theirs: Found) -> Found:
+        """Ask clingo whether our tree is one under the rules, and what it costs.
+
+        ``theirs`` is shown beside it where it is none.
+        """
         assert self.outcome.units is not None
         network = self.problem.network
         units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True, 0.0))
         if self.problem.costs(units) != self.outcome.costs:
-            raise self._disagreement("the costs of our tree are not those of its units", None)
+            raise self._disagreement("the costs of our tree are not those of its units", theirs)
         given = self.clingo.best(write_given([network.unit_number(unit) for unit in self.outcome.units]))
         if given is None:
-            raise self._disagreement("clingo says that our tree breaks the rules", None)
+            raise self._disagreement("clingo says that our tree breaks the rules", theirs)
         penalty = given.costs[0] if self.asked.soft else None
         if penalty != self.asked.penalty:
             raise self._disagreement(
@@ -197,7 +200,7 @@ class _Check:
         """
         costs = self.problem.costs(self._tree(found))
         figures = [
-            sum(self.weights[number] for number in found.units)
+            sum(self.weights.get(number, 0) for number in found.units)
             if multiplies(objective)
             else costs.measure(objective)
             for objective in self.levels
@@ -272,11 +275,11 @@ class _Check:
             if success is None or success > (outcome.costs.success or 0):
                 self._compare(found, [Objective.SUCCESS])
             elif success == outcome.costs.success:
-                counted = Counter(rates[number] for number in found.units)
+                counted = Counter(map(problem.rate, units))
                 equal.append([counted[rate] for rate in different])
         counted = Counter(own)
         if [counted[rate] for rate in different] not in equal:  # it is within the bound itself
-            raise self._disagreement("our tree is not among those that clingo finds within the bound", None)
+            raise self._disagreement("our tree is not among those that clingo finds within the bound", theirs)
         if before == self.levels[:-1]:
             return
         best: Found | None = None
