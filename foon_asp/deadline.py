@@ -169,20 +169,20 @@ class Deadline:
         """Leave a process out again."""
         self._workers.discard(process)
 
-    def watched(self, doing: str) -> "Watch":
+    def watched(self, doing: str, late: bool = False) -> "Watch":
         """Stop what is in a ``with`` block at the limits: for work that does not look at them itself.
 
         Raises :class:`LimitError` in the middle of it. So there may be nothing to lose in the block, and
-        nothing that goes on after ctrl-C.
+        nothing that goes on after ctrl-C. With ``late`` it is stopped where it is overdue.
         """
-        return Watch(self, doing)
+        return Watch(self, doing, late)
 
 
 class Watch:
     """A thread that looks at a deadline while another one works, and interrupts it as ctrl-C does."""
 
-    def __init__(self, deadline: Deadline, doing: str) -> None:
-        self._deadline, self._doing = deadline, doing
+    def __init__(self, deadline: Deadline, doing: str, late: bool) -> None:
+        self._deadline, self._doing, self._late = deadline, doing, late
         self._of = threading.get_ident()
         self._over = threading.Event()
         self._lock = threading.Lock()
@@ -192,7 +192,8 @@ class Watch:
     def __enter__(self) -> Self:
         deadline = self._deadline
         deadline.doing = self._doing
-        deadline.check()
+        if self._is_over():
+            raise LimitError(deadline)
         if deadline.limited:
             self._thread = threading.Thread(target=self._watch, daemon=True, name="foon-asp limits")
             self._thread.start()
@@ -222,8 +223,8 @@ class Watch:
                 raise KeyboardInterrupt
 
     def _watch(self) -> None:
-        while not self._over.wait(self._deadline.slice()):
-            if self._deadline.passed:
+        while not self._over.wait(max(_LOOKS, self._deadline.slice())):
+            if self._is_over():
                 break
         while True:  # again and again: an interrupt in a destructor is lost
             with self._lock:
@@ -233,6 +234,9 @@ class Watch:
                 self._interrupt()
             if self._over.wait(0.5):
                 return
+
+    def _is_over(self) -> bool:
+        return self._deadline.overdue if self._late else self._deadline.passed
 
     def _interrupt(self) -> None:
         if (

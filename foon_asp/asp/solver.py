@@ -173,6 +173,7 @@ class _Solver:
                 NONE if self.program.bounded else self.settings.reductions,
                 lambda: self.deadline.passed,
                 _Heard(self),
+                lambda: self.deadline.watched("cutting the network", late=True),
             )
             if self.reduced.interrupted:
                 self.deadline.interrupt()

@@ -3,6 +3,7 @@
 import gc
 import sys
 from collections.abc import Callable, Collection, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from typing import NamedTuple
 
 from foon_asp.bounds import Cuts, landmark_cuts
@@ -59,17 +60,22 @@ def reduce(
     reductions: Collection[Reduction] = ALL,
     expired: Callable[[], bool] = lambda: False,
     listener: Listener | None = None,
+    guard: Callable[[], AbstractContextManager[object]] = nullcontext,
 ) -> Reduced:
     """Leave of a problem what a search for the best tree still has to look at.
 
     ``objectives`` is the list as it is optimized, ``units`` being in it, so that every unit costs
     something. Without reductions that is what can be made from the kitchen and the goals can need.
+    ``expired`` is asked now and then; what takes longer is interrupted, as by ctrl-C, by the ``guard``.
     """
-    reducer = _Reducer(problem, tuple(objectives), frozenset(reductions), expired, listener or Listener())
     collecting = gc.isenabled()
     gc.disable()  # nothing here is circular, and a collection walks over the whole network
     try:
-        return reducer.reduce()
+        with guard():
+            reducer = _Reducer(
+                problem, tuple(objectives), frozenset(reductions), expired, listener or Listener()
+            )
+        return reducer.reduce(guard)
     finally:
         if collecting:
             gc.enable()
@@ -94,21 +100,24 @@ class _Reducer:
         self.bound = 0
         self.cuts: Cuts | None = None
 
-    def reduce(self) -> Reduced:
+    def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
+        ended = settled = hopeless = False
         try:
-            guide = self._near_goals() or self._whole()
-            if guide is None:
-                return Reduced(None, (), False, None, 0, None)
-            if not self.reductions:
-                return self._result(settled=False)
-            self.tree = without_spare(self.graph, self.tree, self.coarse)
-            self.listener.tree(self._units(self.tree))
-            settled = self._narrow(guide)
+            with guard():
+                guide = self._near_goals() or self._whole()
+                hopeless = guide is None
+                if guide is not None and self.reductions:
+                    self.tree = without_spare(self.graph, self.tree, self.coarse)
+                    self.listener.tree(self._units(self.tree))
+                    settled = self._narrow(guide)
+                ended = True
         except KeyboardInterrupt:
-            if not self.tree:
+            if not (self.tree or hopeless):
                 raise
-            return self._result(settled=False)._replace(interrupted=True)
-        return self._result(settled)
+        if hopeless:
+            return Reduced(None, (), False, None, 0, None)
+        result = self._result(settled)
+        return result if ended else result._replace(interrupted=True)
 
     def _near_goals(self) -> dict[int, int] | None:
         """Find a tree among the actions nearest to the goals, with all others still to be counted in.
@@ -160,6 +169,8 @@ class _Reducer:
             if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
                 if self._bound(costs, guide or {}, thorough):
                     return True
+                if self.expired():
+                    break
                 self._drop_dear(costs)
             if self.expired():
                 break
@@ -199,6 +210,8 @@ class _Reducer:
             raise KeyboardInterrupt
         if searched and (cuts.hopeless or costs.met(cuts, self.tree)):
             return True
+        if self.expired():
+            return False
 
         def rest(action: int) -> int:
             return cuts.left[action] if action in cuts.left else costs(action)
@@ -232,7 +245,7 @@ class _Reducer:
         if Reduction.BOUNDS in self.reductions and not costs.doubt:
             limit -= 1
         left = near(self.graph, self.left, rest, limit)
-        while True:
+        while not self.expired():
             made = derive(self.graph, left, rest, added=False)
             nearer = near(self.graph, left, rest, limit, made.before)
             if len(nearer) == len(left):
