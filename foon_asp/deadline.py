@@ -20,6 +20,8 @@ _ADVICE = {
     "look at them, or give it more",
 }
 _LATE = 0.5  # seconds
+_STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
+_WAITS = 50  # looks until an interrupt is taken for lost
 _LOOKS = 0.02  # seconds between two looks at the memory
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
@@ -179,77 +181,95 @@ class Deadline:
 
 
 class Watch:
-    """A thread that looks at a deadline while another one works, and interrupts it as ctrl-C does."""
+    """A thread that looks at a deadline while another one works, and interrupts it as ctrl-C does.
+
+    An interrupt that strikes in the very moment in which the block ends leaves it as ``KeyboardInterrupt``.
+    """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool) -> None:
-        self._deadline, self._doing, self._late = deadline, doing, late
-        self._of = threading.get_ident()
-        self._over = threading.Event()
-        self._lock = threading.Lock()
-        self._fired = False
-        self._thread: threading.Thread | None = None
+        self._deadline, self._doing = deadline, doing
+        self._striker = _Striker(deadline, late)
 
     def __enter__(self) -> Self:
         deadline = self._deadline
         deadline.doing = self._doing
-        if self._is_over():
+        if self._striker.due:
             raise LimitError(deadline)
         if deadline.limited:
-            self._thread = threading.Thread(target=self._watch, daemon=True, name="foon-asp limits")
-            self._thread.start()
+            threading.Thread(target=self._striker.watch, daemon=True, name="foon-asp limits").start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         came = kind is not None and issubclass(kind, KeyboardInterrupt)
-        if self._thread is None:
-            if came:
-                self._deadline.interrupt()
-            return
-        try:
-            self._over.set()
-            with self._lock:  # whoever interrupts has done so
-                fired = self._fired
-            if fired and not came:
-                time.sleep(1)  # it is on its way, and must not strike later
-        except KeyboardInterrupt:
-            came = True
-        if self._fired:
+        struck: bool | None = None
+        while struck is None:  # an interrupt may strike in the middle of this
+            try:
+                struck = self._striker.end(came)
+            except KeyboardInterrupt:
+                came = True
+        if struck:
             raise LimitError(self._deadline) from None
         if came:
             self._deadline.interrupt()
             if kind is None:
                 raise KeyboardInterrupt
 
-    def _watch(self) -> None:
-        while not self._over.wait(max(_LOOKS, self._deadline.slice())):
-            if self._is_over():
-                break
-        while True:  # again and again: an interrupt in a destructor is lost
-            with self._lock:
-                if self._over.is_set():
-                    return
-                self._fired = True
-                self._interrupt()
-            if self._over.wait(0.5):
-                return
+    def __del__(self) -> None:
+        self._striker.over.set()
 
-    def _is_over(self) -> bool:
+
+class _Striker:
+    """What watches, until its watch is over."""
+
+    def __init__(self, deadline: Deadline, late: bool) -> None:
+        self._deadline, self._late = deadline, late
+        self._thread = threading.get_ident()
+        self._lock = threading.Lock()
+        self._struck = False
+        self.over = threading.Event()
+
+    @property
+    def due(self) -> bool:
         return self._deadline.overdue if self._late else self._deadline.passed
 
-    def _interrupt(self) -> None:
+    def watch(self) -> None:
+        """Interrupt the other thread when it is time; again and again, for one in a destructor is lost."""
+        while not self.over.wait(max(_LOOKS, self._deadline.slice())):
+            if self.due:
+                break
+        for _ in range(_STRIKES):
+            with self._lock:
+                if self.over.is_set():
+                    return
+                self._struck = True
+                self._strike()
+            if self.over.wait(_BETWEEN):
+                return
+
+    def end(self, came: bool) -> bool:
+        """End it, and say whether it has struck; waits for an interrupt that is still on its way."""
+        self.over.set()
+        with self._lock:  # who is about to strike does so now
+            struck = self._struck
+        if struck and not came:
+            for _ in range(_WAITS):
+                time.sleep(_LOOKS)
+        return struck
+
+    def _strike(self) -> None:
         if (
-            self._of == threading.main_thread().ident
+            self._thread == threading.main_thread().ident
             and hasattr(signal, "pthread_kill")
             and signal.getsignal(signal.SIGINT) is signal.default_int_handler
         ):
-            signal.pthread_kill(self._of, signal.SIGINT)  # wakes it from waiting for a file, too
+            signal.pthread_kill(self._thread, signal.SIGINT)  # wakes it from waiting for a file, too
             return
         import ctypes  # noqa: PLC0415 (seldom needed)
 
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
-            ctypes.c_ulong(self._of), ctypes.py_object(KeyboardInterrupt)
+            ctypes.c_ulong(self._thread), ctypes.py_object(KeyboardInterrupt)
         )
 
 

@@ -400,3 +400,17 @@ def test_a_store_gives_the_same_rows(cli: Cli, questions: Path, tmp_path: Path) 
         for name in ("a.jsonl", "b.jsonl")
     )
     assert ours == theirs
+
+
+def test_a_limit_is_a_row_that_says_so(cli: Cli, tmp_path: Path) -> None:
+    """A question that takes more than there is costs its row."""
+    file = tmp_path / "questions.jsonl"
+    file.write_text('{"goal": ["ice", "macaroni"], "objective": "success"}\n')
+    ran = cli("batch", file, "--results", tmp_path / "a.jsonl", "--memory-limit", "20M")
+    assert ran.code == 3
+    rows = rows_of(tmp_path / "a.jsonl")
+    assert [row["status"] for row in rows] == ["unknown", "unknown"]
+    assert all(row["error"].startswith("stopped at the memory limit of 20M while ") for row in rows)
+    ran = cli("batch", file, "--results", tmp_path / "b.jsonl", "--memory-limit", "2G")
+    assert ran.code == 0
+    assert {row["status"] for row in rows_of(tmp_path / "b.jsonl")} == {"optimal"}

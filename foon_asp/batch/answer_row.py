@@ -21,7 +21,7 @@ def answer_row(asker: Asker, asked: Asked, memory_limit: int | None = None) -> R
     began = time.perf_counter()
     try:
         deadline = Deadline(asked.time_limit, memory_limit)
-        with deadline.watched("reading"):
+        with deadline.watched("reading", late=True):
             problem = asker.problem(asked)
         settings = Settings(deadline=deadline)
         row = _answered(asked, solve(problem, parse_objectives([asked.objective]), settings))

@@ -9,7 +9,7 @@ import click
 
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.deadline import Deadline, Watch, memory_size, seconds
+from foon_asp.deadline import Deadline, LimitError, Watch, memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.question import Question, question_files
@@ -216,7 +216,12 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
     def limited(time_limit: float | None, memory_limit: int | None, **given: object) -> ExitCode:
         deadline = Deadline(time_limit, memory_limit)
         click.get_current_context().meta[_DEADLINE] = deadline
-        code = command(deadline=deadline, **given)
+        try:
+            code = command(deadline=deadline, **given)
+        except KeyboardInterrupt as stop:
+            if deadline.stopped is None or deadline.interrupted or isinstance(stop, LimitError):
+                raise
+            raise LimitError(deadline) from None  # it struck where nobody says so
         if code is ExitCode.LIMIT and deadline.stopped and not deadline.interrupted:
             click.echo(f"stopped at {deadline.stopped}: {deadline.advice}", err=True)
         return code
@@ -228,7 +233,7 @@ def reading() -> Watch:
     """Stop what is read in a ``with`` block at the limits of the command, if it has any."""
     context = click.get_current_context(silent=True)
     deadline: Deadline | None = context.meta.get(_DEADLINE) if context else None
-    return (deadline or Deadline()).watched("reading")
+    return (deadline or Deadline()).watched("reading", late=True)
 
 
 def held() -> Held | None:
