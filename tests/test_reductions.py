@@ -3,19 +3,24 @@
 import sys
 from collections.abc import Collection
 from dataclasses import replace
+from fractions import Fraction
+from functools import cache
 from itertools import combinations, pairwise
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import pytest
 
 from foon_asp.asp import Proof, Settings, solve
 from foon_asp.certificate import certify
+from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.reduce import ALL, NONE, SAFE, Listener, Reduction, reduce, reduction
 from foon_asp.reduce.exact_costs import ExactCosts
 from tests.gap_problem import gap_problem
-from tests.oracle import best, key, trees
-from tests.random_problems import random_problem
+from tests.oracle import best, key, measure, trees
+from tests.random_problems import random_problem, random_steps
+from tests.test_optimum import assert_agrees
 
 LISTS: list[list[str]] = [
     *([str(objective)] for objective in Objective),
@@ -90,6 +95,96 @@ def test_what_is_left_has_an_optimum(seed: int, rule: ContainerRule) -> None:
                 assert total is None or left.bound <= total
                 bound, first = left.costs.first(left.bound), expected[0]
                 assert (-bound if names[0] == "success" else bound) <= first
+
+
+class Measured(NamedTuple):
+    """A tree by unit ids, and its measure by each objective, the smaller the better."""
+
+    units: frozenset[int]
+    figures: dict[str, Fraction]
+
+    def key(self, names: list[str]) -> tuple[Fraction, ...]:
+        return tuple(self.figures[name] for name in names)
+
+
+@cache
+def posed(seed: int) -> tuple[Problem, list[tuple[FunctionalUnit, ...]], list[Measured]]:
+    """Give a random problem and all its trees, measured once for all that is asked of it."""
+    make = random_steps if seed % 4 else random_problem
+    problem = make(seed, list(ContainerRule)[seed % 2])
+    found = list(trees(problem))
+    measured = []
+    for tree in found:
+        units = frozenset(u for unit in tree if (u := problem.network.unit_id(unit)) is not None)
+        measured.append(Measured(units, {str(o): measure(problem, tree, str(o)) for o in Objective}))
+    return problem, found, measured
+
+
+def dearest(problem: Problem, found: list[Measured], names: list[str]) -> set[int]:
+    """Give the worst tree without spare units, as the actions of the reductions' graph."""
+    tight = [tree for tree in found if not any(other.units < tree.units for other in found)]
+    units = set(max(tight, key=lambda tree: tree.key(names)).units) if tight else set()
+    taken = {o for unit in units for o in problem.needs[unit] if o in problem.kitchen}
+    return units | ({len(problem.network) + o for o in taken} if "kitchen" in names else set())
+
+
+@pytest.mark.usefixtures("_sizes")
+@pytest.mark.parametrize("reductions", [*(frozenset({one}) for one in Reduction), ALL])
+@pytest.mark.parametrize("objective", Objective)
+@pytest.mark.parametrize("seeds", [range(24), pytest.param(range(24, 240), marks=pytest.mark.slow)])
+def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
+    seeds: range,
+    objective: Objective,
+    reductions: frozenset[Reduction],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The tree in hand is the worst there is, it gets no better, and it is not among what is left.
+
+    Where only what is better than it is searched for, something better has to be left, unless it is optimal;
+    else an optimal tree always has to be.
+    """
+    monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
+    bad = 0
+    for seed in seeds:
+        problem, _, found = posed(seed)
+        for some_names in ([str(objective)], [str(objective), "success"], ["inputs", str(objective)]):
+            objectives = levels(tuple(dict.fromkeys(map(Objective, some_names))))
+            names = list(map(str, objectives))
+            worst = dearest(problem, found, names)
+            monkeypatch.setattr(reduction, "without_spare", lambda *_, tree=worst: set(tree))
+            reducer = reduction._Reducer(problem, objectives, reductions, lambda: False, Listener())
+            reduced = reducer.reduce()
+            if not found:
+                assert reduced.tree is None
+                continue
+            expected = min(tree.key(names) for tree in found)
+            [in_hand] = [tree.key(names) for tree in found if tree.units == reducer._units(reducer.tree)]
+            if reduced.settled:
+                assert in_hand == expected
+                continue
+            if Reduction.BOUNDS in reductions and in_hand == expected:
+                continue
+            bad += in_hand > expected
+            left = reducer._units(reducer.left)
+            alone = [tree.key(names) for tree in found if tree.units <= left]
+            assert min(alone, default=None) == expected, (seed, names)
+            if reductions <= SAFE:
+                optimal = [tree for tree in found if tree.key(names) == expected]
+                assert all(tree.units <= left for tree in optimal), (seed, names)
+    assert bad > 5
+
+
+@pytest.mark.parametrize("encodings", [None, Path("by_need")])
+@pytest.mark.parametrize("reductions", [frozenset({one}) for one in Reduction])
+@pytest.mark.parametrize("objective", Objective)
+@pytest.mark.parametrize("seeds", [range(16), pytest.param(range(16, 200), marks=pytest.mark.slow)])
+def test_every_objective_by_every_reduction_alone(
+    seeds: range, objective: Objective, reductions: frozenset[Reduction], encodings: Path | None
+) -> None:
+    for seed in seeds:
+        problem, found, _ = posed(seed)
+        settings = Settings(encodings=encodings, reductions=reductions)
+        assert_agrees(problem, [str(objective)], found, settings)
 
 
 @pytest.mark.usefixtures("_sizes")

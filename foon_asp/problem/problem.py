@@ -22,7 +22,8 @@ from foon_asp.problem.costs import Costs
 class Problem:
     """What is asked, before any cut.
 
-    ``kitchen`` and ``goals`` are object node ids of ``network``; all goals have to be made by one tree.
+    ``kitchen`` and ``goals`` are object node ids of ``network``; all goals have to be made by one tree;
+    a goal that is named again counts once.
     ``rates`` gives the success rate of every motion, or is ``None`` where none are known. ``utensils``
     are the labels that the rule ``implied`` looks at. ``own_rates`` gives, by id, the rates of units that
     do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any.
@@ -39,6 +40,7 @@ class Problem:
     def __post_init__(self) -> None:
         if not self.goals:
             raise UserError("no goal is given")
+        object.__setattr__(self, "goals", tuple(dict.fromkeys(self.goals)))
         if self.rates is not None and not self.rates.keys() >= set(self.network.motions):
             network = self.network
             sources = (copies[0] for copies in network.sources)
