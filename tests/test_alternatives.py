@@ -163,6 +163,25 @@ def test_what_a_part_is_worth(rule: ContainerRule) -> None:
                 assert loss >= 0
 
 
+def test_an_item_that_is_made_is_not_taken() -> None:
+    """With dough at hand it is taken along with the water; without it, it is made of the water."""
+    builder = NetworkBuilder()
+    water, dough, bread = map(ObjectNode.of, ("water", "dough", "bread"))
+    builder.add("knead", [water], [dough], Source("bread", 1))
+    builder.add("bake", [dough, water], [bread], Source("bread", 2))
+    network = builder.build()
+    ids = [o for node in (water, dough, bread) if (o := network.object_id(node)) is not None]
+    problem = Problem(network, frozenset(ids[:2]), (ids[2],), None, UTENSILS)
+    found = regrets(problem, [Objective.KITCHEN])
+    assert found.outcome.costs is not None
+    assert found.outcome.costs.kitchen == 2
+    left = {regret.id: regret.costs for regret in found.regrets if regret.part is Part.ITEM}
+    assert left[ids[0]] is None
+    without_dough = left[ids[1]]
+    assert without_dough is not None
+    assert (without_dough.kitchen, without_dough.units) == (1, 2)
+
+
 @pytest.mark.parametrize("rule", RULES)
 def test_a_menu_is_the_joint_optimum_beside_the_single_ones(rule: ContainerRule) -> None:
     shared = 0

@@ -122,7 +122,7 @@ def test_rooms_that_know_different_things_give_no_answer(
         "foon_asp.reduce.exact_costs.unit_count",
         lambda network, by, unit: unit_count(network, Objective.INPUTS if by is FAKE else by, unit),
     )
-    monkeypatch.setattr("foon_asp.asp.facts._OBJECTIVE_TERMS", dict.fromkeys([*Objective, FAKE], "inputs"))
+    monkeypatch.setattr("foon_asp.asp.facts.OBJECTIVE_TERMS", dict.fromkeys([*Objective, FAKE], "inputs"))
     for ways in ((["0.5", "0.5"], ["0.2"]), (["0.2"], ["0.5", "0.5"])):
         with pytest.raises(BugError, match=r"the reductions make it|clingo reports the costs"):
             solve(two_ways(*ways), (FAKE,), Settings(reductions=reductions))

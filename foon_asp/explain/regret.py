@@ -78,7 +78,8 @@ def regrets(
 
     def without(part: Part, id_: int, fewer: Problem, how: Settings) -> None:
         left = solve(fewer, objectives, how, quiet)
-        if own:
+        # an item that is not at hand is not taken, so a tree that makes it has fewer by ``kitchen``
+        if own and (part is Part.UNIT or Objective.KITCHEN not in objectives):
             holds.no_better(left, outcome, f"with the {part} {id_}")
         found.append(Regret(part, id_, left.status, left.costs))
 
