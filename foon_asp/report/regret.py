@@ -69,7 +69,7 @@ def _loss(found: Regrets, regret: Regret) -> str:
     if multiplies(first):
         text = success_text(Fraction(loss * 100))
         return f"≈ -{text[2:]} %" if text.startswith("≈") else f"-{text} %"
-    return f"+{loss} {first}"
+    return f"{int(loss):+} {first}"  # less by ``kitchen`` where an item is made that is not at hand
 
 
 def _regret_json(found: Regrets, regret: Regret) -> dict[str, object]:
