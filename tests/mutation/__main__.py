@@ -108,7 +108,7 @@ def _digest(files: list[str]) -> str:
     for name in _FEEDS:
         path = ROOT / name
         for each in sorted(path.rglob("*")) if path.is_dir() else [path]:
-            if each.is_file() and "__pycache__" not in each.parts:
+            if each.is_file() and not {"__pycache__", "mutation"} & set(each.parts):
                 found.update(each.relative_to(ROOT).as_posix().encode() + b"\0" + each.read_bytes())
     return found.hexdigest()
 

@@ -7,6 +7,7 @@ first, until one fails. Changes that count while a module is imported take a new
 import contextlib
 import gc
 import json
+import math
 import os
 import resource
 import shutil
@@ -16,6 +17,7 @@ import tempfile
 import time
 import types
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
@@ -30,7 +32,7 @@ BUDGET = 60.0  # seconds of tests for one mutant, as long as they took unchanged
 _PATIENCE = (10.0, 10.0)  # a test may take so many seconds, and so many times as long as unchanged
 _START = 120  # seconds until the first test begins
 _MEMORY = 4 << 30  # bytes of a process that tries a mutant
-_QUICK = (0.02, 0.1, 0.5, 2.0)  # tests as quick as that come before slower ones, else in their usual order
+_QUICK = 0.01  # seconds: quicker than that is as good as that
 _SURVIVED, _KILLED = 0, 1  # exit codes of a trial
 
 
@@ -172,7 +174,14 @@ class Trials:
 
     def _ordered(self, tests: Iterable[str]) -> list[str]:
         seconds = {test: self._reach[test].seconds for test in tests}
-        ordered = sorted(seconds, key=lambda t: (sum(seconds[t] > q for q in _QUICK), self._places[t]))
+        dear: dict[str, float] = {}
+        asked: Counter[str] = Counter()
+        for test in sorted(seconds, key=self._places.__getitem__):
+            name = test.partition("[")[0]
+            asked[name] += 1  # one more case of the same test is less likely to notice what others did not
+            dear[test] = seconds[test] * asked[name]
+        # what is about as dear stays in its usual order, in which fixtures are shared
+        ordered = sorted(seconds, key=lambda t: (math.frexp(max(dear[t], _QUICK))[1], self._places[t]))
         budget = BUDGET
         chosen: list[str] = []
         for test in ordered:
