@@ -262,4 +262,4 @@ def test_costs_are_ordered_as_products_of_fractions_are(seed: int) -> None:
         assert figure == float(share * count)
         assert logarithm == pytest.approx(-float(share) * math.log(product), abs=1e-12)
         assert order.total([vector, vector]) == tuple(2 * part for part in vector)
-    assert order.total([]) == order.zero == (0, 0, 0, 0)
+    assert order.total([]) == order.zero == (Fraction(0),) * 4

@@ -16,8 +16,8 @@ from foon_asp.asp import Outcome, Reporter, Settings, exact_success, solve
 from foon_asp.explain.pareto import Front, pareto_front
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.report.front_chart import write_front_chart
 from foon_asp.report.answer import success_text
+from foon_asp.report.front_chart import write_front_chart
 from foon_asp.report.pareto import front_text, success_texts
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import find_data, find_goal, read_data

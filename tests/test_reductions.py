@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Collection
+from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -153,7 +154,7 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
             worst = dearest(problem, found, names)
             monkeypatch.setattr(reduction, "without_spare", lambda *_, tree=worst: set(tree))
             reducer = reduction._Reducer(problem, objectives, reductions, lambda: False, Listener())
-            reduced = reducer.reduce()
+            reduced = reducer.reduce(nullcontext)
             if not found:
                 assert reduced.tree is None
                 continue
