@@ -8,11 +8,13 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut, landmark_cuts
+from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.reduce import ALL, NONE, SAFE, Reduction, parse_reductions, reduce
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.dominance import undominated
-from foon_asp.reduce.exact_costs import ExactCosts
+from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts
 from foon_asp.reduce.forced import beside_forced
 from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.near import near
@@ -51,15 +53,26 @@ def prices(seed: int, graph: Graph, least: int = 1) -> dict[int, int]:
 
 
 def test_all_trees_without_a_spare_unit_are_beside_what_is_forced() -> None:
-    left_out = 0
-    for _, _, graph, slim in with_trees(range(150)):
+    for _, _, graph, slim in with_trees(range(100)):
         cone, _ = graph.cone()
         left = beside_forced(graph, set(cone))
         assert frozenset().union(*slim) <= left
-        left_out += len(set(cone) - left)
         for tree in slim:  # allowed is heard: nothing comes from units that are not
             assert beside_forced(graph, tree) == tree
-    assert left_out > 5
+
+
+def test_what_a_forced_unit_gives_needs_no_other_maker() -> None:
+    builder = NetworkBuilder()
+    water, cup, tea, dish = (ObjectNode.of(name) for name in ("water", "cup", "tea", "dish"))
+    builder.add("wash", [water], [cup, dish], Source("forced", 1))  # the only one that makes a cup
+    builder.add("brew", [cup], [tea], Source("forced", 2))
+    builder.add("rinse", [water], [dish], Source("forced", 3))  # of no use: a dish is there anyway
+    network = builder.build()
+    ids = [network.object_id(node) for node in (water, tea, dish)]
+    start, *goals = (o for o in ids if o is not None)
+    for order in (goals, goals[::-1]):
+        problem = Problem(network, frozenset({start}), tuple(order), None, frozenset(), ContainerRule.STRICT)
+        assert beside_forced(graph_of(problem, (Objective.UNITS,)), range(3)) == {0, 1}
 
 
 def test_all_cheap_trees_are_near() -> None:
@@ -133,6 +146,10 @@ def test_of_spare_actions_one_is_replaceable_and_dear_ones_come_first() -> None:
                 larger = tree | {more}
                 found = replaceable(graph, larger, price.__getitem__)
                 assert found == sorted(found, key=lambda a: (-price[a], a))
+                used = set(graph.goals).union(*(graph.needs[a] for a in larger)) - graph.start
+                for action in larger:
+                    others = {o for a in larger - {action} for o in graph.gives[a]}
+                    assert (action in found) == (used.intersection(graph.gives[action]) <= others)
                 if len(derive(graph, larger, lambda _: 1, added=False).before) < len(larger):
                     continue
                 if any(other <= larger - {a} for a in larger for other in slim):
@@ -256,3 +273,41 @@ def test_cuts_leave_of_costs_what_they_do_not_take() -> None:
         assert all(rest.cost[goal] == 0 for goal in graph.goals)
         none = landmark_cuts(graph, graph.goals, (), price.__getitem__, {}, lambda: False)
         assert none.hopeless == bool(graph.goals)
+
+
+def test_where_no_tree_is_nothing_is_left() -> None:
+    met = 0
+    for seed in SEEDS:
+        problem, _, slim = asked(seed)
+        if not slim:
+            met += 1
+            for reductions in (ALL, NONE):
+                found = reduce(problem, (Objective.UNITS,), reductions)
+                assert found == (None, (), False, None, 0, None, False)
+    assert met > 2
+
+
+@pytest.mark.parametrize("rate", ["1", "0.999", "0.5", "0.04", "1/1" + "0" * 400])
+def test_coarse_costs_are_next_to_the_logarithm_and_not_above_it(rate: str) -> None:
+    problem = chain(rate, "0.5")
+    exact = Fraction(rate)
+    logarithm = 1000 * (math.log(exact.denominator) - math.log(exact.numerator))
+    costs = CoarseCosts(problem, Objective.SUCCESS)
+    assert logarithm - 1 < costs(0) <= logarithm
+    assert [CoarseCosts(problem, Objective.INPUTS)(a) for a in range(2)] == [1, 1]
+    # beyond the units, an action takes an item of the kitchen
+    assert CoarseCosts(problem, Objective.KITCHEN)(2) == 1
+    assert CoarseCosts(problem, Objective.UNITS)(2) == 0
+
+
+def test_what_never_succeeds_is_dearest_by_far() -> None:
+    costs = CoarseCosts(chain("0", "0.000001"), Objective.SUCCESS)
+    assert costs(0) > 5 * costs(1)
+
+
+def test_reductions_are_named() -> None:
+    assert [parse_reductions(word) for word in ("all", "safe", "none")] == [ALL, SAFE, NONE]
+    assert parse_reductions("dear") == {Reduction.DEAR}
+    assert parse_reductions("bounds, forced") == {Reduction.BOUNDS, Reduction.FORCED}
+    with pytest.raises(UserError, match=r"found the reduction 'cheap', expected all, safe, none or some of"):
+        parse_reductions("dear,cheap")
