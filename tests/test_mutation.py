@@ -198,7 +198,8 @@ def test_trials_tell_changes_from_none(tmp_path: Path) -> None:
     at_import = inside._replace(outermost="", old=inside.old, new=inside.old, occurrence=2)
     broken = inside._replace(outermost="", new="1 / 0", occurrence=3)
     endless = inside._replace(new="(lambda: [0 for _ in iter(int, 1)])()", occurrence=4)
-    chosen = [inside, none, at_import, broken, endless]
+    interrupted = inside._replace(new="(_ for _ in ()).throw(KeyboardInterrupt)", occurrence=5)
+    chosen = [inside, none, at_import, broken, endless, interrupted]
     ran = subprocess.run(
         [sys.executable, "-c", TRIAL, json.dumps(chosen), str(tmp_path / "alone.json"), tests],
         cwd=ROOT,
@@ -209,6 +210,7 @@ def test_trials_tell_changes_from_none(tmp_path: Path) -> None:
     outcomes = {tuple(key): (outcome, by) for key, outcome, by in json.loads(ran.stdout.splitlines()[-1])}
     assert outcomes[none.key] == outcomes[at_import.key] == ("survived", "")
     assert outcomes[endless.key][0] == "timeout"
+    assert outcomes[interrupted.key][0] == "killed"
     for mutant in (inside, broken):
         outcome, by = outcomes[mutant.key]
         assert outcome == "killed"

@@ -258,7 +258,12 @@ class Trials:
         return done
 
     def _run(self, tests: Sequence[str]) -> None:
-        run_tests([(self._items[test], self._reach[test].seconds) for test in tests])
+        assert self._child is not None
+        try:
+            run_tests([(self._items[test], self._reach[test].seconds) for test in tests])
+        except BaseException as error:  # what pytest passes on, as ctrl-C, is noticed too
+            (self._child / "by").write_text(f"{type(error).__name__} in a test")
+            os._exit(_KILLED)
 
 
 def run_tests(items: Sequence[tuple[pytest.Item, float]]) -> None:
