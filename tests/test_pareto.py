@@ -96,7 +96,8 @@ def test_fronts_for_several_goals(part: int, rule: ContainerRule) -> None:
     for seed in range(9500, 9500 + 30 // part):
         problem = random_problem(seed, rule)
         made = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
-        problem = replace(problem, goals=tuple(random.Random(seed).sample(made, min(2, len(made)))))
+        wanted = random.Random(seed).sample(made, min(2, len(made)))
+        problem = replace(problem, goals=(*wanted, *problem.goals[len(wanted) :]))
         front = pareto_front(problem, (Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN))
         assert_agrees(front, list(oracle.trees(problem)))
 
