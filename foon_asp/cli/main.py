@@ -52,6 +52,8 @@ def main(arguments: list[str] | None = None) -> None:
             code = _ended(error, debug=False)
         if code is not ExitCode.DONE:
             drop_output()
+    if arguments is None:  # the process ends: what it read is not to be looked through for garbage once more
+        gc.freeze()
     sys.exit(int(code))
 
 
