@@ -7,6 +7,7 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.output import console
 from foon_asp.cli.progress import Progress
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
 from foon_asp.report.optima_table import optima_json, print_optima
@@ -47,7 +48,8 @@ def command(
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     outcomes: list[Outcome] = []
-    settings = Settings(time_limit=time_limit, memory_limit=memory_limit)
+    # limits are for each answer, ctrl-C is for all of them
+    settings = Settings(time_limit=time_limit, memory_limit=memory_limit, deadline=Deadline())
     with Progress() as progress:
         for goal in goals:
             problem = question.problem((goal,), containers)
