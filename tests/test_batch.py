@@ -346,7 +346,7 @@ def scheduler(tmp_path: Path) -> Iterator[str]:
         more = ["--nworkers", "2", "--nthreads", "1", "--no-dashboard", "--local-directory", str(tmp_path)]
         started.append(subprocess.Popen([*worker, *more], **quiet))
         deadline = time.monotonic() + 60
-        while not named.exists():
+        while not (named.exists() and named.read_text()):
             assert time.monotonic() < deadline
             time.sleep(0.05)
         yield json.loads(named.read_text())["address"]

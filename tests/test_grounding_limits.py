@@ -50,7 +50,7 @@ def large(tmp_path: Path) -> Path:
     """Give a network that takes seconds to read."""
     generate = Path(__file__).parents[1] / "benchmarks" / "generate.py"
     folder = tmp_path / "large"
-    words = ["--family", "adversarial", "--units", "30000", "--seed", "1", "--out", str(folder)]
+    words = ["--family", "adversarial", "--units", "100000", "--seed", "1", "--out", str(folder)]
     subprocess.run([sys.executable, generate, *words], check=True, capture_output=True)
     return folder
 
@@ -182,6 +182,7 @@ def test_ctrl_c_while_grounding(endless: Path) -> None:
     assert b"unknown: stopped at ctrl-C while grounding" in out
 
 
+@pytest.mark.slow
 def test_limits_and_ctrl_c_while_reading(large: Path) -> None:
     with within(0.3, 0.3 + LATE + START):
         ran = subprocess.run(
@@ -282,6 +283,7 @@ def test_a_worker_that_dies_is_no_bug(endless: Path) -> None:
 
 
 @LINUX
+@pytest.mark.slow
 def test_reading_stops_at_the_memory_limit(large: Path) -> None:
     ran = subprocess.run(
         command("solve", "--data", large, "--memory-limit", "60M"), capture_output=True, check=False
