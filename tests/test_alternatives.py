@@ -66,6 +66,7 @@ def drawn(seed: int) -> list[str]:
 
 
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_all_optimal_trees_and_the_best_in_order(rule: ContainerRule) -> None:
     several = 0
     for seed in range(7000, 7018):
@@ -111,6 +112,7 @@ def test_constraints_hold_for_alternatives(rule: ContainerRule) -> None:
 
 
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_trees_that_differ_most(rule: ContainerRule) -> None:
     chosen = 0
     for seed in range(7200, 7220):

@@ -166,6 +166,7 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
+@pytest.mark.sampled(3)
 def test_the_answer_is_that_of_the_command_line(question: str, source: Path, cli: Cli) -> None:
     words, goals, containers, ask = QUESTIONS[question]
     named = [word for goal in goals for word in ("--goal", goal)]

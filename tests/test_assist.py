@@ -132,6 +132,7 @@ def check_rows(
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("trees", [None, 0], ids=["one by one", "counted"])
+@pytest.mark.sampled(3)
 def test_every_number_of_units(
     part: int, rule: ContainerRule, trees: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -172,6 +173,7 @@ def test_every_number_of_units(
 
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_rows_end_where_they_are_asked_to(part: int, rule: ContainerRule) -> None:
     reached = missed = short = 0
     for seed in range(5200, 5200 + 36 // part):
@@ -208,6 +210,7 @@ def test_rows_end_where_they_are_asked_to(part: int, rule: ContainerRule) -> Non
 
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_a_constraint_holds_whoever_does_a_unit(part: int, rule: ContainerRule, tmp_path: Path) -> None:
     by_number = tmp_path / "mine.lp"
     for seed in range(5300, 5300 + 40 // part):
@@ -231,6 +234,7 @@ def test_a_constraint_holds_whoever_does_a_unit(part: int, rule: ContainerRule, 
 
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(3)
 def test_a_constraint_can_look_at_who_does_a_unit(part: int, rule: ContainerRule, tmp_path: Path) -> None:
     mine = tmp_path / "mine.lp"
     mine.write_text(':- use(U), _by_person(U), motion(U,"cut").\n', encoding="utf-8")
@@ -282,6 +286,7 @@ def test_no_tree_has_a_unit_twice(part: int, rule: ContainerRule, tmp_path: Path
 
 
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_other_encodings(rule: ContainerRule) -> None:
     for seed in range(5600, 5620):
         problem, person = drawn(seed, rule), table(seed)

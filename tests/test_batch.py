@@ -197,6 +197,7 @@ class OpenMisbehaving:
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.sampled(2)
 def test_one_question_never_ends_the_run(jobs: int) -> None:
     names = ["ice", "die", "macaroni", "sleep", "leave", "break", "greek salad"]
     questions = [Asked((name,), time_limit=5.0 if name != "sleep" else 0.1) for name in names]

@@ -47,6 +47,7 @@ def leaves(proof: dict[str, Any]) -> int:
 
 
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_every_optimum_of_random_networks(rule: ContainerRule) -> None:
     trees = 0
     for seed in range(150):
@@ -95,6 +96,7 @@ def test_branching_closes_large_gaps(seed: int) -> None:
         assert verified(found, problem).claim == "optimal"
 
 
+@pytest.mark.slow
 def test_a_tree_that_is_not_the_best_is_told_so() -> None:
     worse = 0
     for seed in range(100):
@@ -176,6 +178,7 @@ def test_forbidden_motions_and_objects_are_certified() -> None:
     assert certified > 30
 
 
+@pytest.mark.slow
 def test_other_constraints_leave_a_bound_on_all_trees() -> None:
     bounds = optimal = 0
     for seed in range(240):

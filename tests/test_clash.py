@@ -57,6 +57,7 @@ def files(folder: Path, seed: int, problem: Problem) -> tuple[list[Path], list[l
     "seeds", [range(8040, 8075), pytest.param(range(8000, 8100), marks=pytest.mark.slow)]
 )
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_clashes_against_brute_force(rule: ContainerRule, seeds: range, tmp_path: Path) -> None:
     sizes = set()
     for seed in seeds:
@@ -99,6 +100,7 @@ def test_clashes_against_brute_force(rule: ContainerRule, seeds: range, tmp_path
     "seeds", [range(8500, 8535), pytest.param(range(8535, 8580), marks=pytest.mark.slow)]
 )
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_soft_constraints_against_brute_force(rule: ContainerRule, seeds: range, tmp_path: Path) -> None:
     penalties = set()
     for seed in seeds:

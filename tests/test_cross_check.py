@@ -91,6 +91,7 @@ def test_all_engines_give_one_answer(rule: ContainerRule) -> None:
     assert asked == 40 * (3 - len(missing))
 
 
+@pytest.mark.slow
 def test_lists_are_checked_level_by_level() -> None:
     for seed in range(40):
         problem = random_problem(seed, RULES[seed % 2])

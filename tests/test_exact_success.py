@@ -89,6 +89,7 @@ NEAR_1 = [
 @pytest.mark.parametrize(("better", "worse"), NEAR_1)
 @pytest.mark.parametrize("encodings", [None, Path("by_need")])
 @pytest.mark.parametrize("reductions", [ALL, NONE])
+@pytest.mark.sampled(3)
 def test_rates_next_to_1_and_0_are_told_apart(
     better: list[str], worse: list[str], encodings: Path | None, reductions: frozenset[Reduction]
 ) -> None:
@@ -216,6 +217,7 @@ def test_rounding_alone_would_choose_the_worse_tree() -> None:
 
 @pytest.mark.parametrize("rule", list(ContainerRule))
 @pytest.mark.parametrize("scale", [1, 7])
+@pytest.mark.sampled(3)
 def test_a_coarse_scale_still_gives_the_exact_optimum(
     scale: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -441,6 +441,7 @@ def work(until: float) -> int:
 
 
 @pytest.mark.parametrize("in_thread", [False, True])
+@pytest.mark.sampled(2)
 def test_a_watch_strikes_in_its_block_and_never_after(in_thread: bool) -> None:
     failures: list[BaseException] = []
 

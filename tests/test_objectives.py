@@ -161,6 +161,7 @@ def criteria(problem: Problem, tree: list[int], objectives: list[Objective]) -> 
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("objective", Objective)
+@pytest.mark.sampled(3)
 def test_encodings_and_rooms_measure_the_same(objective: Objective, rule: ContainerRule) -> None:
     """What cuts go by where no solver runs is what ``objectives.lp`` says, and what is counted by hand."""
     measured = 0

@@ -150,6 +150,7 @@ def alive(file: Path) -> bool:
     return True
 
 
+@pytest.mark.slow
 def test_a_trial_that_takes_too_long_is_ended_with_all_it_started(tmp_path: Path) -> None:
     noted = tmp_path / "pid"
 
@@ -244,6 +245,7 @@ def test_answers_that_differ_are_a_disagreement() -> None:
     assert opponents.same(Objective.UNITS, None, None)
 
 
+@pytest.mark.slow
 def test_a_whole_run(tmp_path: Path) -> None:
     page, rows = tmp_path / "page.md", tmp_path / "rows.jsonl"
     page.write_text("<!-- begin opponents -->\n<!-- end opponents -->\n", encoding="utf-8")

@@ -37,6 +37,7 @@ def assert_agrees(
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("first", range(0, NETWORKS, CHUNK))
+@pytest.mark.sampled(3)
 def test_every_objective(first: int, rule: ContainerRule) -> None:
     for seed in range(first, first + CHUNK):
         problem = random_problem(seed, rule)
@@ -58,6 +59,7 @@ def test_lexicographic_lists(rule: ContainerRule) -> None:
     "seeds", [range(4000, 4060), pytest.param(range(4060, 4200), marks=pytest.mark.slow)]
 )
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_trees_by_need_have_the_same_optima(rule: ContainerRule, seeds: range) -> None:
     for seed in seeds:
         problem = random_problem(seed, rule)
@@ -145,6 +147,7 @@ def passed_on(problem: Problem, tree: Tree, label: str) -> bool:
 @pytest.mark.parametrize(
     "first", [0, *(pytest.param(n * CHUNK, marks=pytest.mark.slow) for n in (3, 6, 9, 12, 15))]
 )
+@pytest.mark.sampled(2)
 def test_constraints(first: int, rule: ContainerRule) -> None:
     for seed in range(first, first + 3 * CHUNK):
         problem = random_problem(seed, rule)

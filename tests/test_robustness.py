@@ -71,6 +71,7 @@ def test_any_bytes_are_read_or_refused(
 
 
 @pytest.mark.parametrize("lenient", [False, True])
+@pytest.mark.sampled(2)
 def test_a_small_file_with_any_byte_changed(tmp_path: Path, lenient: bool) -> None:
     file = tmp_path / "one.txt"
     for at in range(len(TREE)):

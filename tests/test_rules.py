@@ -58,6 +58,7 @@ def refusal(file: Path) -> InputError:
 
 
 @pytest.mark.parametrize("k", [0, 20, 40])
+@pytest.mark.sampled(3)
 def test_a_constant_k_is_the_users(k: int, cli: Cli, tmp_path: Path) -> None:
     """It was the parameter of the part that compares products of rates: 9 units were called the best."""
     mine = written(tmp_path, f"#const k={k}.\n:- #count {{ U : use(U) }} > k.\n")

@@ -132,6 +132,7 @@ def some_rules(rng: random.Random, folder: Path) -> str:
 
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_answers_under_rules_by_chance_agree(rule: ContainerRule, part: int, tmp_path: Path) -> None:
     statuses = dict.fromkeys(Status, 0)
     for seed in range(0, 36, part):

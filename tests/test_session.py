@@ -165,6 +165,7 @@ def test_a_rate_too_small_for_the_scale_of_others() -> None:
 
 @SERIES
 @pytest.mark.parametrize("scale", [1, 7])
+@pytest.mark.sampled(2)
 def test_coarse_weights_with_kept_products(part: int, scale: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nearly every tree is in the band: many products, seen and wanted again in other questions."""
     monkeypatch.setattr(exact_success, "_SCALES", (scale,))

@@ -110,6 +110,7 @@ def good_lists(problem: Problem, sold: list[int], allowed: oracle.Allowed) -> li
     "seeds", [range(7000, 7040), pytest.param(range(7040, 7120), marks=pytest.mark.slow)]
 )
 @pytest.mark.parametrize("rule", list(ContainerRule))
+@pytest.mark.sampled(2)
 def test_lists_against_brute_force(rule: ContainerRule, seeds: range) -> None:
     """Each list is the cheapest of those that do not hold all of an earlier one, and none is left out."""
     helped = none = 0

@@ -235,6 +235,7 @@ def test_a_network_without_units(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("rule", list(ContainerRule))
+@pytest.mark.sampled(2)
 def test_the_cone_has_the_optimum_of_the_whole(rule: ContainerRule, tmp_path: Path) -> None:
     smaller = 0
     for seed in range(30):

@@ -24,6 +24,7 @@ KNOWN = {
 
 
 @pytest.mark.parametrize(("goal", "rule"), KNOWN)
+@pytest.mark.sampled(3)
 def test_known_optima(cli: Cli, universal: Path, goal: str, rule: str) -> None:
     for objective, value in zip(("units", "inputs", "success"), KNOWN[goal, rule], strict=True):
         words = ["--data", universal, "--goal", goal, "--containers", rule, "--objective", objective]

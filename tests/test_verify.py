@@ -242,6 +242,7 @@ def test_weights_landmarks_and_digests_cannot_be_changed_even_if_sealed_anew() -
     assert tried > 2500
 
 
+@pytest.mark.slow
 def test_units_of_a_tree_cannot_be_swapped_for_others() -> None:
     data = read_data(find_data(bundled_kitchen()))
     goal = find_goal("macaroni", data.network, data.goals)

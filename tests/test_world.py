@@ -74,6 +74,7 @@ def test_a_full_disk(words: tuple[str, ...]) -> None:
 
 
 @pytest.mark.parametrize("words", PRINTED)
+@pytest.mark.sampled(3)
 def test_closed_outputs(words: tuple[str, ...]) -> None:
     ran = run(*words, redirect=">&-")
     assert ran.returncode == 2, ran.stderr
