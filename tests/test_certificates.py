@@ -138,6 +138,7 @@ def order(problem: Problem, tree: tuple[FunctionalUnit, ...]) -> list[int]:
 # --- constraints
 
 
+@pytest.mark.slow
 def test_forbidden_motions_and_objects_are_certified() -> None:
     certified = 0
     for seed in range(150):
@@ -420,6 +421,7 @@ def test_a_bound_is_said_to_be_one(cli: Cli, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("level", [1, 2])
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_levels_below_three_are_certified(cli: Cli, tmp_path: Path, rule: ContainerRule, level: int) -> None:
     file = tmp_path / "proof.json"
     data = read_data(find_data(bundled_kitchen()), level=level)

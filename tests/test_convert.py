@@ -395,6 +395,7 @@ def test_whatever_is_lost_is_listed_and_nothing_else(text: str, target: Dialect)
 
 @steady
 @given(NETWORKS)
+@pytest.mark.slow
 def test_text_to_text_keeps_the_network_its_comments_and_blank_lines(text: str) -> None:
     for target in (Dialect.PLAIN, Dialect.NO_IDS, Dialect.IDS):
         result, lost = convert(text, target)

@@ -79,6 +79,7 @@ def test_every_engine_agrees_with_brute_force(engine: Solve, rule: ContainerRule
 
 
 @pytest.mark.parametrize("rule", [RULES[0], pytest.param(RULES[1], marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_all_engines_give_one_answer(rule: ContainerRule) -> None:
     asked = 0
     missing = [engine.name for engine in ENGINES if not engine.installed()]

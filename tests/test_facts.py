@@ -34,6 +34,7 @@ def bare_clingo(*files: Path) -> tuple[str, list[int], list[int]]:
 
 @pytest.mark.parametrize("goal", ["whipped cream", "macaroni", "hot cocoa"])
 @pytest.mark.parametrize("rule", list(ContainerRule))
+@pytest.mark.sampled(2)
 def test_bare_clingo_finds_the_same_optimum(cli: Cli, tmp_path: Path, goal: str, rule: str) -> None:
     mine, facts = tmp_path / "mine.lp", tmp_path / "facts.lp"
     mine.write_text(MINE)

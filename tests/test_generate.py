@@ -133,6 +133,7 @@ def test_same_seed_same_bytes(family: str, written: Written, tmp_path: Path) -> 
 
 @pytest.mark.parametrize("units", [generator.LEAST_UNITS, 777, UNITS])
 @pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.sampled(3)
 def test_as_many_distinct_units_as_asked(family: str, units: int, seed: int, written: Written) -> None:
     folder = written(family, units, seed)
     data = read(folder)

@@ -81,6 +81,7 @@ def test_sums_of_exponents_do_not_explode() -> None:
     assert said == "its fractions add up to numbers that are too long"
 
 
+@pytest.mark.slow
 def test_many_long_fractions_are_too_many_steps() -> None:
     """Each of them short enough, and added up often."""
     cuts = [sorted([GOAL, *MIDDLES[:size]]) for size in range(1, 200)] * 2
@@ -99,11 +100,13 @@ def test_products_of_rates_are_not_multiplied_out_forever() -> None:
     assert said == "a weight is not above zero"
 
 
+@pytest.mark.slow
 def test_many_cuts_that_many_units_make_are_too_many_steps() -> None:
     said = refusal(**UNITS, cuts=[[GOAL]] * 300_000)
     assert said == TOO_MANY
 
 
+@pytest.mark.slow
 def test_many_branches_are_too_many_steps() -> None:
     """Every leaf looks at every unit, and is right."""
     weights = [[number, ["1/180"]] for number in range(180)]

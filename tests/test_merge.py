@@ -189,6 +189,7 @@ SOURCES = st.builds(Source, FILES, st.integers(1, 999_999_999), st.integers(1, 9
 
 @steady
 @given(st.lists(st.tuples(units(), SOURCES), max_size=4))
+@pytest.mark.slow
 def test_what_is_written_is_read_back(files: list[tuple[list[FunctionalUnit], Source]]) -> None:
     builder = NetworkBuilder()
     for found, source in files:

@@ -82,6 +82,7 @@ def answers(name: str) -> list[tuple[float | None, float | None]]:
 
 
 @pytest.mark.parametrize("engine", OPPONENTS)
+@pytest.mark.sampled(3)
 def test_every_opponent_finds_known_optima(engine: Engine) -> None:
     # in a process of its own, not forked: two of the libraries cannot be loaded together
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:

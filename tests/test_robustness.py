@@ -81,6 +81,7 @@ def test_a_small_file_with_any_byte_changed(tmp_path: Path, lenient: bool) -> No
 
 
 @pytest.mark.skipif(not CORPUS.exists(), reason="the corpus of real FOON files is not here")
+@pytest.mark.slow
 def test_real_files_with_accidents(tmp_path: Path) -> None:
     dice = random.Random(7)
     files = sorted((CORPUS / "subgraphs").glob("*.txt")) + sorted((CORPUS / "dialects").iterdir())

@@ -150,6 +150,7 @@ def test_answers_under_rules_by_chance_agree(rule: ContainerRule, part: int, tmp
 
 
 @SERIES
+@pytest.mark.slow
 def test_answers_under_soft_rules_agree(part: int, tmp_path: Path) -> None:
     penalties = 0
     for seed in range(0, 30, part):
@@ -185,6 +186,7 @@ def test_a_coarse_scale_leaves_many_trees_to_look_at(monkeypatch: pytest.MonkeyP
         (["0.99999999999"], ["0.999999999"]),
     ],
 )
+@pytest.mark.sampled(2)
 def test_products_that_differ_late_are_told_apart(better: list[str], worse: list[str]) -> None:
     problem = two_ways(better, worse)
     outcome = solve(problem, (Objective.SUCCESS,))
@@ -247,6 +249,7 @@ def wrong_answers(outcome: Outcome, allowed: oracle.Allowed) -> Iterator[Outcome
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("objective", [Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN])
+@pytest.mark.sampled(2)
 def test_wrong_answers_are_found(rule: ContainerRule, objective: Objective, tmp_path: Path) -> None:
     mine = tmp_path / "mine.lp"
     mine.write_text(':- use(U), motion(U,"pour").\n')

@@ -888,6 +888,7 @@ def with_other(value: Any, path: tuple[Any, ...], other: Any) -> Any:
     return new
 
 
+@pytest.mark.slow
 def test_no_block_that_is_made_up_is_a_bug(soup: tuple[DataFiles, Path], cli: Cli) -> None:
     _, store = soup
     original = store.read_bytes()

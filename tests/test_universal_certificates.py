@@ -61,6 +61,7 @@ def test_every_goal_of_the_goals_file(data: Data, rule: ContainerRule) -> None:
 
 
 @pytest.mark.parametrize("level", [1, pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_goals_at_lower_levels(universal: Path, level: int) -> None:
     data = read_data(find_data(universal), level=level)
     goals = sorted({node for entry in data.goals for node in data.network.find(entry.pattern)})
