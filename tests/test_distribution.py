@@ -169,11 +169,13 @@ def test_an_editable_install_runs_the_encodings_and_the_kitchen_of_the_checkout(
     )
     question = ("-m", "foon_asp", "solve", "--goal", "ice", "--format", "json")
     assert json.loads(run(*question, cwd=tmp_path, by=python))["costs"]["units"] == 2
-    with (checkout / "encodings" / "show.lp").open("a", encoding="utf-8") as encoding:
+    with (checkout / "encodings" / "constraints" / "forbid_motion.lp").open(
+        "a", encoding="utf-8"
+    ) as encoding:
         encoding.write('\n:- use(U), motion(U, "crush").\n')
-    answer = json.loads(run(*question, "--reduce", "none", cwd=tmp_path, by=python))
+    rule = ("--constraint", "forbid_motion", "-c", "forbidden_motion=fry")
+    answer = json.loads(run(*question, *rule, cwd=tmp_path, by=python))
     assert answer["costs"]["units"] == 3, "the encoding that was changed is not the one that ran"
     (checkout / "data" / "kitchen" / "kitchen.json").write_text("[]", encoding="utf-8")
-    (checkout / "encodings" / "show.lp").write_bytes((ROOT / "encodings" / "show.lp").read_bytes())
     ended = subprocess.run([python, *question], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (ended.returncode, json.loads(ended.stdout)["status"]) == (1, "infeasible"), ended.stderr
