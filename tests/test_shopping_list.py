@@ -120,7 +120,7 @@ def test_lists_against_brute_force(rule: ContainerRule, seeds: range) -> None:
         others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
         sold = rng.sample(others, min(len(others), 5))
         prices = {o: Fraction(rng.choice(["0.5", "0.05", "1", "2.25", "3"])) for o in sold}
-        bound = rng.choice([1, 2, 9])
+        bound = rng.choice([0, 1, 2, 9])
         settings = Settings(constraints=(Path("at_most_units"),), constants=(f"max_units={bound}",))
         found = shopping_list(problem, settings=settings, prices=prices, most=3)
 
