@@ -183,10 +183,11 @@ print(json.dumps([[each.mutant.key, each.outcome, each.by] for each in trials.tr
 def test_trials_tell_changes_from_none(tmp_path: Path) -> None:
     """What is no change survives, in a forked process and afresh; what breaks a function is noticed."""
     tests = "tests/test_simulation.py"
+    alone = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_XDIST")}
     subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "tests.mutation.reach", "-p", "no:cacheprovider", tests],
         cwd=ROOT,
-        env={**os.environ, RECORD: str(tmp_path)},
+        env={**alone, RECORD: str(tmp_path)},
         check=True,
     )
     file = "foon_asp/proof/simulation.py"
@@ -203,6 +204,7 @@ def test_trials_tell_changes_from_none(tmp_path: Path) -> None:
     ran = subprocess.run(
         [sys.executable, "-c", TRIAL, json.dumps(chosen), str(tmp_path / "alone.json"), tests],
         cwd=ROOT,
+        env=alone,
         stdout=subprocess.PIPE,
         text=True,
         check=True,
