@@ -288,6 +288,7 @@ def test_a_tree_with_units_of_no_network(source: Path) -> None:
     assert without.in_order is None
 
 
+@pytest.mark.slow
 def test_other_engines(source: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     foon = foon_asp.load(source)
     rules = {"constraints": ["at_most_utensils"], "constants": {"max_utensils": 3}}

@@ -89,7 +89,7 @@ NEAR_1 = [
 @pytest.mark.parametrize(("better", "worse"), NEAR_1)
 @pytest.mark.parametrize("encodings", [None, Path("by_need")])
 @pytest.mark.parametrize("reductions", [ALL, NONE])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 def test_rates_next_to_1_and_0_are_told_apart(
     better: list[str], worse: list[str], encodings: Path | None, reductions: frozenset[Reduction]
 ) -> None:

@@ -359,6 +359,7 @@ def test_faults_in_rules_are_said_as_before(tmp_path: Path, cli: Cli) -> None:
     assert "unsafe" in ran.err
 
 
+@pytest.mark.slow
 def test_the_most_different_trees_known_by_the_limit() -> None:
     problem = hard_problem(6, 8, 3, 3)
     for limit in (0.5, 2):
@@ -382,6 +383,7 @@ def test_a_choice_that_is_stopped_is_from_all_that_is_known(monkeypatch: pytest.
     assert not found.complete
 
 
+@pytest.mark.slow
 def test_trees_that_are_not_settled_are_given_as_such() -> None:
     problem = hard_problem()
     found = best_trees(problem, (Objective.UNITS,), Settings(time_limit=2), 5)
@@ -391,6 +393,7 @@ def test_trees_that_are_not_settled_are_given_as_such() -> None:
     assert not found.optimal
 
 
+@pytest.mark.slow
 def test_soft_constraints_tell_what_the_tree_known_by_then_breaks(tmp_path: Path) -> None:
     file = tmp_path / "soft.lp"
     file.write_text(":- use(U), inputs(U,N), N > 1.\n")

@@ -67,6 +67,7 @@ def test_some_hostile_files_in_a_session(tmp_path: Path) -> None:
     assert endings.keys() == {"refused", "infeasible", "optimal"}
 
 
+@pytest.mark.slow
 def test_some_hostile_files_that_are_soft(tmp_path: Path) -> None:
     endings: Counter[str] = Counter()
     for number, hostile in enumerate(some_hostile_files(120, seed=3)):

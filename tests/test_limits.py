@@ -59,6 +59,7 @@ def test_a_limit_before_any_tree_is_unknown() -> None:
     assert outcome.units is None
 
 
+@pytest.mark.slow
 def test_trees_improve_and_bounds_close_in_on_the_optimum() -> None:
     recorder = Recorder()
     outcome = solve(hard_problem(12, 8, 3, 3), (Objective.UNITS,), None, recorder)

@@ -66,7 +66,7 @@ def some(count: int) -> list[Any]:
 @pytest.mark.usefixtures("_sizes")
 @pytest.mark.parametrize("rule", ContainerRule)
 @pytest.mark.parametrize("seed", some(60))
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 def test_what_is_left_has_an_optimum(seed: int, rule: ContainerRule) -> None:
     problem = random_problem(seed, rule)
     found = list(trees(problem))
@@ -134,7 +134,7 @@ def dearest(problem: Problem, found: list[Measured], names: list[str]) -> set[in
 @pytest.mark.parametrize("reductions", [*(frozenset({one}) for one in Reduction), ALL])
 @pytest.mark.parametrize("objective", Objective)
 @pytest.mark.parametrize("seeds", [range(24), pytest.param(range(24, 240), marks=pytest.mark.slow)])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
     seeds: range,
     objective: Objective,
@@ -181,7 +181,7 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
 @pytest.mark.parametrize("reductions", [frozenset({one}) for one in Reduction])
 @pytest.mark.parametrize("objective", Objective)
 @pytest.mark.parametrize("seeds", [range(16), pytest.param(range(16, 200), marks=pytest.mark.slow)])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 def test_every_objective_by_every_reduction_alone(
     seeds: range, objective: Objective, reductions: frozenset[Reduction], encodings: Path | None
 ) -> None:
@@ -194,7 +194,7 @@ def test_every_objective_by_every_reduction_alone(
 @pytest.mark.usefixtures("_sizes")
 @pytest.mark.parametrize("rule", ContainerRule)
 @pytest.mark.parametrize("seed", some(100))
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 def test_answers_are_the_same(seed: int, rule: ContainerRule) -> None:
     problem = random_problem(seed, rule, units=14)
     names = LISTS[seed % len(LISTS)]
