@@ -7,8 +7,6 @@ import click
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.cli import options
-from foon_asp.cli.certify import find_certificate, write_certificate
-from foon_asp.cli.cross_check import check_across
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import write_data
@@ -16,12 +14,10 @@ from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.cli.weighted_files import weighted_files
 from foon_asp.deadline import Deadline
-from foon_asp.engines import Asked
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, parse_objectives, reach
 from foon_asp.reduce import Reduction, parse_reductions
 from foon_asp.report import answer
-from foon_asp.report.certified import certificate_lines
 
 
 @click.command("solve")
@@ -113,11 +109,17 @@ def command(
     outcome.seconds["read"] = question.read_seconds
     remarks: list[str] = []
     if certificate_file is not None:
+        from foon_asp.cli.certify import find_certificate, write_certificate
+        from foon_asp.report.certified import certificate_lines
+
         outcome, certificate = find_certificate(outcome, settings, deadline)
         write_certificate(certificate, certificate_file)
         remarks = certificate_lines(outcome, certificate, str(certificate_file))
     more: dict[str, object] = {}
     if cross_check:
+        from foon_asp.cli.cross_check import check_across
+        from foon_asp.engines import Asked
+
         lines, more = check_across(Asked(outcome, settings))
         remarks += lines
     if format_ == "json":
@@ -155,6 +157,9 @@ def _solve_soft(
     more: dict[str, object] = {}
     remarks: list[str] = []
     if cross_check:
+        from foon_asp.cli.cross_check import check_across
+        from foon_asp.engines import Asked
+
         remarks, more = check_across(Asked(outcome, settings, weights, found.penalty))
     if format_ == "json":
         click.echo(soft_json(found, more), nl=False)
