@@ -150,4 +150,4 @@ def whole(problem: plain.Problem) -> plain.Problem:
 
 def asked_with(problem: plain.Problem, how: Settings) -> plain.Problem:
     """Give a problem over all that the rules of these settings may be about."""
-    return whole(problem) if how.constraints or how.encodings is not None else problem
+    return whole(problem) if how.constraints or how.replaced is not None else problem

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from foon_asp.asp.facts import write_assisted
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import Bounded, find_constraint
-from foon_asp.resources import encodings_folder
 
 _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
@@ -16,7 +16,7 @@ def assisted(twins: Mapping[int, int], most: int) -> Bounded:
     ``twins`` gives for each unit that is a person's the same unit as the robot does it, both by their ids in
     the whole network. For :class:`foon_asp.asp.Settings`.
     """
-    return Bounded(write_assisted(twins, most), (encodings_folder() / "questions" / "assist.lp",))
+    return Bounded(write_assisted(twins, most), (question_encoding("assist.lp"),))
 
 
 def sees_who_does_it(constraints: Sequence[Path]) -> bool:

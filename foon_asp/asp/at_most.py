@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Mapping
 
 from foon_asp.asp.facts import write_at_most
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import Bounded
 from foon_asp.problem import Costs, Objective
-from foon_asp.resources import encodings_folder
 
 
 def at_most(bounds: Mapping[Objective, int]) -> Bounded:
@@ -29,4 +29,4 @@ def better_than(known: Iterable[Costs], objectives: Iterable[Objective]) -> Boun
 def _bounded(bounds: Iterable[Mapping[Objective, int]]) -> Bounded:
     """Keep to one part of each bound."""
     rules = "".join(write_at_most(number, bound) for number, bound in enumerate(bounds))
-    return Bounded(rules, (encodings_folder() / "questions" / "at_most.lp",))
+    return Bounded(rules, (question_encoding("at_most.lp"),))

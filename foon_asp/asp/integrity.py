@@ -9,11 +9,11 @@ from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 from clingo.symbol import SymbolType
 
 from foon_asp.asp.encoding import located, read_encoding
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import Relaxed, find_constraint
 from foon_asp.asp.search import ground
 from foon_asp.deadline import Deadline
 from foon_asp.network import Source
-from foon_asp.resources import encodings_folder
 from foon_asp.text import Diagnostic, InputError
 
 _TEXT = "<block>"  # what clingo calls text that is in no file
@@ -62,7 +62,7 @@ def relax(
             found.append(IntegrityConstraint(number, path, _source(statement), _text(statement), given))
             rule = _broken(statement, number) if soft else _unless_dropped(statement, number)
             rules[rule] = _source(statement)
-    encoding = encodings_folder() / "questions" / ("soft.lp" if soft else "clash.lp")
+    encoding = question_encoding("soft.lp" if soft else "clash.lp")
     return tuple(found), Relaxed(paths, "".join(f"{rule}\n" for rule in rules), encoding, rules)
 
 

@@ -210,8 +210,8 @@ class Postconditions:
         constraints = [*how.constraints, *(how.relaxed.files if how.relaxed else ())]
         for file in constraints:
             words += ["--constraint", str(file)]
-        if how.encodings is not None:
-            words += ["--encodings", str(how.encodings)]
+        if how.replaced is not None:
+            words += ["--encodings", str(how.replaced)]
         others = {
             "constants": ", ".join(how.constants),
             "reductions": ", ".join(sorted(how.reductions)) or "none",

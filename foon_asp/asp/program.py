@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from foon_asp.asp.own_encodings import exact_success, is_own
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import Source
@@ -17,7 +18,6 @@ if TYPE_CHECKING:  # clingo, which often is not needed
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
 ENCODING_FILES = ("task_tree.lp", "objectives.lp", "show.lp")
-_EXACT_SUCCESS = "exact_success.lp"
 
 # Options that would change what an answer means, or whether it is a proof; the solver sets them itself.
 _RESERVED = (
@@ -95,6 +95,14 @@ class Settings(NamedTuple):
         return self._replace(deadline=self.begun, time_limit=None, memory_limit=None)
 
     @property
+    def replaced(self) -> Path | None:
+        """The folder of encodings that replace ours: our own folder where a file was changed in place."""
+        if self.encodings is None:
+            ours = encodings_folder()
+            return None if all(is_own(ours / name) for name in ENCODING_FILES) else ours
+        return self.encodings
+
+    @property
     def begun(self) -> Deadline:
         """The deadline that has begun, and within it one that begins now where there are limits."""
         if self.deadline is not None and self.time_limit is None and self.memory_limit is None:
@@ -106,17 +114,19 @@ class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
     ``constants`` are those of the ``arguments`` that set constants. ``rules`` are added to them as text.
-    ``exact_success`` is loaded beside ``files`` when products of rates
-    are compared exactly. ``own`` says that every rule is ours, so that what the goals do not need cannot
-    matter. ``bounded`` says that a tree of the unbounded question need not be one. ``looked_at`` are the
-    predicates, by name and arity, that rules of the user's look at. ``text`` is all that the files said when
-    they were looked over. ``open`` says that the program means the same when facts are left open
-    (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether its grounding comes to an end.
+    ``exact_success`` is loaded beside ``files`` when products of rates are compared exactly. ``replaced``
+    says that not all of the first three files say what ours say. ``own`` says that every rule is ours, so
+    that what the goals do not need cannot matter. ``bounded`` says that a tree of the unbounded question need
+    not be one. ``looked_at`` are the predicates, by name and arity, that rules of the user's look at.
+    ``text`` is all that the files said when they were looked over. ``open`` says that the program means the
+    same when facts are left open (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether
+    its grounding comes to an end.
     """
 
     files: tuple[Path, ...]
     exact_success: Path
     arguments: tuple[str, ...]
+    replaced: bool
     own: bool
     rules: str = ""
     bounded: bool = False
@@ -152,8 +162,8 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     constants: list[str] = []
     looked_at: frozenset[tuple[str, int]] = frozenset()
     text, is_open = "", False
-    endless = not all(file.is_relative_to(ours) for file in (*base, *added))
-    if added or settings.encodings or settings.constants:
+    endless = not all(map(is_own, (*base, *added)))
+    if added or settings.replaced or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
 
@@ -173,7 +183,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         looked_at = frozenset(signature for each in extra for signature in each.used)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))
         is_open = (
-            settings.encodings is None
+            settings.replaced is None
             and relaxed is None
             and bounded is None
             and _OF_ONE_SEARCH not in looked_at
@@ -181,9 +191,10 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         )
     return Program(
         (*base, *loaded, *questions),
-        ours / _EXACT_SUCCESS,
+        exact_success(),
         (*constants, *_clingo_options(settings.clingo_options)),
-        own=not added and settings.encodings is None,
+        replaced=not all(map(is_own, base)),
+        own=not added and settings.replaced is None,
         rules=rules,
         bounded=bounded is not None,
         looked_at=looked_at,

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Settings, assemble
 from foon_asp.asp.search import run
@@ -12,7 +13,6 @@ from foon_asp.asp.solver import Reporter
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach, relevant
-from foon_asp.resources import encodings_folder
 
 Rounded = tuple[int, ...]  # costs as clingo adds them up: success in rounded logarithms
 
@@ -41,8 +41,6 @@ class Ranked:
         self._deadline = settings.begun
         self._program = assemble(settings, (reporter or Reporter()).warning)
         self._holds = Postconditions(problem, self.levels, settings, self._program.own)
-        ours = encodings_folder()
-        self._replaced = not all(file.is_relative_to(ours) for file in self._program.files[:3])
         self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
         self._scale: RateScale | None = None
         if Objective.SUCCESS in self.levels and problem.rates is None:
@@ -119,7 +117,7 @@ class Ranked:
         except KeyboardInterrupt:
             self._deadline.interrupt()
             return Run()
-        files = (*self._program.files, encodings_folder() / "questions" / "other_trees.lp")
+        files = (*self._program.files, question_encoding("other_trees.lp"))
         return run(
             files,
             facts + self._program.rules + write_objectives(self.levels) + avoided,
@@ -151,7 +149,7 @@ class Ranked:
         agree = len(rounded) == len(ended.cost) and all(
             (ours - theirs) % 2**32 == 0 for ours, theirs in zip(rounded, ended.cost, strict=True)
         )
-        if not (agree and last <= rounded) and self._replaced:
+        if not (agree and last <= rounded) and self._program.replaced:
             raise UserError(
                 f"{self._program.files[1]} does not measure what the objectives {', '.join(self.levels)} "
                 "measure here, so trees cannot be put in their order"

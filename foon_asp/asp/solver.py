@@ -23,7 +23,6 @@ from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, multiplies, reach, relevant
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
-from foon_asp.resources import encodings_folder
 
 if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import OpenProgram
@@ -104,8 +103,6 @@ class _Solver:
             )
         self.program: Program = assemble(settings, reporter.warning)
         self.holds = Postconditions(problem, self.levels, settings, self.program.own)
-        ours = encodings_folder()
-        self._replaced = not all(file.is_relative_to(ours) for file in self.program.files[:3])
         if settings.clingo_options:  # looked at now, since clingo may have nothing to do
             from foon_asp.asp.search import check  # noqa: PLC0415
 
@@ -149,7 +146,7 @@ class _Solver:
             self.holds.require(strict, lambda: "a tree is at hand, but the encodings say that there is none")
             return self._optimal(incumbent)
         best, proved = ended.units, ended.exhausted
-        if best is None or not self._replaced:
+        if best is None or not self.program.replaced:
             best = self._better(incumbent, best)
         if self._measures_agree(ended, self.levels) and proved and Objective.SUCCESS in self.levels:
             best, proved = self._settle_success(best)
@@ -214,7 +211,7 @@ class _Solver:
 
     def _limited(self, units: Units, lower: Sequence[int]) -> Outcome:
         """State what is known at a limit; nobody knows what replaced encodings have bounds on."""
-        return self._outcome(Status.FEASIBLE, units, {} if self._replaced else self._bounds(lower))
+        return self._outcome(Status.FEASIBLE, units, {} if self.program.replaced else self._bounds(lower))
 
     def facts(self) -> str:
         if self._facts is None:
@@ -404,7 +401,7 @@ class _Solver:
         ):
             return True
         self.holds.require(
-            self._replaced,
+            self.program.replaced,
             lambda: f"clingo reports the costs {list(ended.cost)}, the units {sorted(units)} cost {ours}",
         )
         self.reporter.warning(
@@ -499,7 +496,7 @@ class _Solver:
                 None,
                 bounds,
                 self.seconds,
-                self.settings.encodings,
+                self.settings.replaced,
                 proof,
                 stopped=stopped,
             )
@@ -514,13 +511,13 @@ class _Solver:
             self._costs(units),
             bounds,
             self.seconds,
-            self.settings.encodings,
+            self.settings.replaced,
             proof,
             left=left,
             cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
             stopped=stopped,
         )
-        self.holds.outcome(outcome, None if self._replaced else self._best, self.reduced)
+        self.holds.outcome(outcome, None if self.program.replaced else self._best, self.reduced)
         self._spent("check", began)
         return outcome
 

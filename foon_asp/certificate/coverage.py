@@ -4,9 +4,9 @@ import hashlib
 from typing import NamedTuple
 
 from foon_asp.asp import Settings
+from foon_asp.asp.own_encodings import is_own
 from foon_asp.asp.program import find_constraint
 from foon_asp.network import Network
-from foon_asp.resources import encodings_folder
 
 # Our constraints that rule out units one by one, and the constant that says which.
 _FORBIDDING = {"forbid_motion.lp": "forbidden_motion", "forbid_object.lp": "forbidden_object"}
@@ -43,21 +43,20 @@ def coverage(settings: Settings) -> Coverage:
     ``forbid_motion`` and ``forbid_object`` of ours are covered. Other rules only narrow the trees, so a bound
     without them still holds; a replaced encoding may say anything, and is named, too.
     """
-    library = encodings_folder() / "constraints"
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     forbidden: dict[str, set[str]] = {constant: set() for constant in _FORBIDDING.values()}
     others: list[str] = []
     for file in dict.fromkeys(map(find_constraint, settings.constraints)):
         constant = _FORBIDDING.get(file.name)
-        if constant is not None and file.resolve() == (library / file.name).resolve():
+        if constant is not None and is_own(file):
             if constant in constants:
                 from foon_asp.asp.encoding import string_constant  # noqa: PLC0415 - it loads clingo
 
                 forbidden[constant] |= {string_constant(constants.pop(constant))} - {""}
         else:
             others.append(f"{file.name} {hashlib.sha256(file.read_bytes()).hexdigest()}")
-    if settings.encodings is not None:
-        others.append(f"encodings {settings.encodings.name}")
+    if settings.replaced is not None:
+        others.append(f"encodings {settings.replaced.name}")
     others += [f"{name}={value}" for name, value in constants.items()]
     motions, labels = (tuple(sorted(forbidden[constant])) for constant in _FORBIDDING.values())
     return Coverage(motions, labels, tuple(sorted(set(map(_printable, others)))))

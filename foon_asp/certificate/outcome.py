@@ -118,8 +118,8 @@ def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
     ]
     asked += [f"constraint: {file}" for file in settings.constraints]
     asked += [f"constant: {constant}" for constant in settings.constants]
-    if settings.encodings is not None:
-        asked.append(f"encodings: {settings.encodings}")
+    if settings.replaced is not None:
+        asked.append(f"encodings: {settings.replaced}")
     answer = "no tree" if outcome.units is None else _tree(outcome, outcome.units)
     return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(asked))
 

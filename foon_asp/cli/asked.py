@@ -47,7 +47,7 @@ class Asked:
     @property
     def by_users_rules(self) -> bool:
         """Whether rules of the user's have a say, which may ask for units that no goal needs."""
-        return bool(self.settings.constraints or self.settings.encodings)
+        return bool(self.settings.constraints or self.settings.replaced)
 
     @cached_property
     def question(self) -> Question:

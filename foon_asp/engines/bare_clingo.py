@@ -27,9 +27,9 @@ from typing import Any, NamedTuple
 from foon_asp.asp import Status
 from foon_asp.asp.bare_program import BareProgram, bare_program
 from foon_asp.asp.facts import write_exactly_alike, write_given, write_most_alike, write_same_rates
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError, check_tree
 from foon_asp.problem import Objective, levels, multiplies
-from foon_asp.resources import encodings_folder
 
 NAME = "clingo"
 OPTIONS = ("--opt-strategy=usc,pmres,disjoint,stratify",)  # ended most often of those tried, ours apart
@@ -208,7 +208,7 @@ class _Check:
         said = list(found.costs[1:] if self.asked.soft else found.costs)
         if said == figures:
             return True
-        if self.asked.settings.encodings is None:
+        if self.asked.settings.replaced is None:
             raise self._disagreement(f"clingo adds up the costs {said}, its units cost {figures}", found)
         return False
 
@@ -299,7 +299,7 @@ class _Check:
         try:
             return check_tree(self.problem, self._answer(found))
         except DisagreementError as error:
-            if self.asked.settings.encodings is None:
+            if self.asked.settings.replaced is None:
                 raise
             raise NotCheckedError(f"{error}, as the replaced encodings allow") from None
 
@@ -371,7 +371,7 @@ def _answers(found: Mapping[str, Any]) -> list[Found]:
 
 
 def _second_opinion() -> Path:
-    return encodings_folder() / "questions" / _SECOND_OPINION
+    return question_encoding(_SECOND_OPINION)
 
 
 def _limit(process: int, seconds: float, memory: int) -> None:

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 from foon_asp.asp import Reporter, Settings
 from foon_asp.asp.facts import write_distances
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.search import run
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
-from foon_asp.resources import encodings_folder
 
 
 class Tree(NamedTuple):
@@ -99,7 +99,7 @@ def most_different(
     if len(pool.trees) <= count:
         return pool
     ended = run(
-        (encodings_folder() / "questions" / "most_different.lp",),
+        (question_encoding("most_different.lp"),),
         write_distances([tree.units for tree in pool.trees], count),
         CLINGO_OPTIONS,
         settings.begun,

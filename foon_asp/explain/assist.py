@@ -116,9 +116,9 @@ class _Assistant:
             rate = Fraction(1) if person is None else person.get(motion, Fraction(0))
             if rate > robot:
                 self._better[motion] = rate
-        self._own = not settings.constraints and settings.encodings is None
+        self._own = not settings.constraints and settings.replaced is None
         self._priced: PricedHelp | None = None
-        if settings.encodings is None and not sees_who_does_it(settings.constraints):
+        if settings.replaced is None and not sees_who_does_it(settings.constraints):
             self._priced = PricedHelp(problem, self._better, self._unbounded, self._ranked)
         self._twins: Problem | None = None
 

@@ -8,11 +8,11 @@ from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
 from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import CLINGO_OPTIONS, assemble, find_constraint
 from foon_asp.asp.search import run
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem, reach
-from foon_asp.resources import encodings_folder
 
 
 class Clash(NamedTuple):
@@ -63,7 +63,7 @@ def find_clash(
     weights = {number: of_file.get(c.file, 1) for number, c in by_number.items()}
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, reporter.warning)
-    blame = (encodings_folder() / "questions" / "blame.lp",)
+    blame = (question_encoding("blame.lp"),)
 
     makeable = True
 

@@ -52,7 +52,7 @@ def menu(
     separate = tuple(
         solve(replace(problem, goals=(goal,)), objectives, settings, Reporter()) for goal in problem.goals
     )
-    if settings.constraints == () and settings.encodings is None:  # else goals may have rules of their own
+    if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
         holds = Postconditions(problem, levels(tuple(objectives)), settings)
         for goal, alone in zip(problem.goals, separate, strict=True):
             holds.no_better(together, alone, f"for goal {goal} alone")

@@ -89,7 +89,7 @@ def pareto_front(
         pass  # what was found stands
     found.sort(key=lambda tree: tree.costs.key(asked))
     seconds = time.monotonic() - began
-    return Front(problem, asked, tuple(found), complete, seconds, settings.encodings)
+    return Front(problem, asked, tuple(found), complete, seconds, settings.replaced)
 
 
 def _require_apart(holds: Postconditions, point: Tree, found: Sequence[Tree]) -> None:

@@ -73,7 +73,7 @@ def regrets(
     taken = sorted({o for unit in tree for o in problem.needs[unit] if o in problem.kitchen})
     quiet = Reporter()
     found = []
-    own = settings.constraints == () and settings.encodings is None  # else rules may ask for what is missing
+    own = settings.constraints == () and settings.replaced is None  # else rules may ask for what is missing
     holds = Postconditions(problem, levels(tuple(objectives)), settings)
 
     def without(part: Part, id_: int, fewer: Problem, how: Settings) -> None:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_facts, write_for_sale, write_list
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import Program, assemble
 from foon_asp.asp.search import run
 from foon_asp.deadline import Deadline
@@ -17,7 +18,6 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.explain.sold import Shop
 from foon_asp.explain.why_not import Cause, why_not
 from foon_asp.problem import Objective, Problem, reach, relevant
-from foon_asp.resources import encodings_folder
 from foon_asp.text import Price
 
 
@@ -172,7 +172,7 @@ def _lists(
         facts = write_facts(problem, units, rates, with_sources=not program.own) + write_for_sale(
             {o: int(price * scale) for o, price in sold.items()}, filter(shop.is_second_choice, sold)
         )
-    files = (*program.files, encodings_folder() / "questions" / "shopping_list.lp")
+    files = (*program.files, question_encoding("shopping_list.lp"))
     lists: list[ShoppingList] = []
     while len(lists) < most:
         ended = run(

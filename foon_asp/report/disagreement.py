@@ -59,8 +59,8 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
         words += ["--constraint", rules.copy(file)]
     for file, weight in asked.soft.items():
         words += ["--soft", f"{rules.copy(file)}={weight}"]
-    if settings.encodings is not None:
-        words += ["--encodings", rules.copy_encodings(settings.encodings)]
+    if settings.replaced is not None:
+        words += ["--encodings", rules.copy_encodings(settings.replaced)]
     words += [word for setting in settings.constants for word in ("-c", setting)]
     words += [word for goal in goals for word in ("--goal", goal if ";" in goal else goal + ";")]
     bare, facts = printed_command(asked)
