@@ -22,7 +22,7 @@ FLOORS = (
     {"text", "problem", "bounds"},
     {"reduce", "grounding"},
     {"asp", "search", "proof", "store"},
-    {"explain", "compare", "lint", "certificate", "engines", "question"},
+    {"explain", "compare", "lint", "certificate", "engines", "dataset"},
     {"report"},
     {"batch"},
     {"api"},

@@ -16,8 +16,8 @@ from foon_asp.asp.facts import write_at_most, write_facts, write_objectives
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify
+from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.coverage import NOTHING
-from foon_asp.certificate.question import Question
 from foon_asp.cli.progress import Progress
 from foon_asp.engines import engine, fast_downward, highs
 from foon_asp.errors import BugError
@@ -61,8 +61,8 @@ ROOMS: dict[str, Callable[[Problem], object]] = {
     "exact costs": lambda p: ExactCosts(p, (FAKE, Objective.UNITS), range(3))(0),
     "exact costs, later": lambda p: ExactCosts(p, (Objective.UNITS, FAKE), range(3))(0),
     "coarse costs": lambda p: CoarseCosts(p, FAKE)(0),
-    "certificate": lambda p: Question(p, (FAKE, Objective.UNITS), NOTHING),
-    "certificate, later": lambda p: Question(p, (Objective.SUCCESS, FAKE), NOTHING),
+    "certificate": lambda p: Arrays(p, (FAKE, Objective.UNITS), NOTHING),
+    "certificate, later": lambda p: Arrays(p, (Objective.SUCCESS, FAKE), NOTHING),
     "certify": lambda p: certify(p, (Objective.UNITS, FAKE), (0, 1)),
     "engine": lambda p: engine.cost(p, FAKE, 0),
     "HiGHS": lambda p: highs.solve_with_highs(p, (FAKE, Objective.UNITS), frozenset(), 5.0),

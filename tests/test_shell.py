@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.cli.options import read_question
+from foon_asp.cli.options import read_dataset
 from foon_asp.cli.shell_completion import candidates
 from foon_asp.cli.shell_line import Word, quoted, take_apart
 from foon_asp.cli.shell_prompt import history_file
@@ -334,7 +334,7 @@ def test_help(shell: Cli) -> None:
 
 @pytest.fixture(scope="module")
 def session() -> ShellSession:
-    question = read_question(None, (), None, None, None, None, lenient=False, level=3)
+    question = read_dataset(None, (), None, None, None, None, lenient=False, level=3)
     session = ShellSession(question, lenient=False, level=3, encodings=None)
     session.run("constraint at_most_units max_units=9")
     return session

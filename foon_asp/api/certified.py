@@ -108,6 +108,6 @@ def verify(data: Foon | plain.Problem, certificate: Certificate | str | PathLike
             content = proof.load_certificate(Path(certificate))
         except (OSError, UnicodeDecodeError) as error:
             raise UserError(f"{certificate}: cannot be read: {error}") from None
-    read = (data if isinstance(data, Foon) else taken(data).foon).question.data
+    read = (data if isinstance(data, Foon) else taken(data).foon).dataset.data
     verified = proof.verify(content, read.network, read.kitchen, read.rates, read.utensils)
     return VerifiedCertificate(verified, read.network, content)

@@ -38,5 +38,5 @@ def why_not(problem: plain.Problem) -> Explanation:
     Takes time about linear in the network, which of a store is read as a whole.
     """
     asked = whole(problem)
-    items = asked.foon.question.data.kitchen_items if isinstance(asked, Problem) else ()
+    items = asked.foon.dataset.data.kitchen_items if isinstance(asked, Problem) else ()
     return Explanation._make(explain.why_not(asked, items))

@@ -10,9 +10,9 @@ from typing import Self
 from foon_asp.api.arguments import File, Files, Number, container_rule, files, success_rate
 from foon_asp.api.problem import Problem, taken
 from foon_asp.api.warning import warn
+from foon_asp.dataset import Dataset, ask, dataset_files, read_dataset
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, TaskTree, node_at_level, pattern_at_level
-from foon_asp.question import Question, ask, question_files, read_question
 from foon_asp.text import Data, GoalError, Wording, find_goal, kitchen_item_warning, read_object_list
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
@@ -48,9 +48,9 @@ def load(
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals)]
-    question = read_question(question_files(folder, () if folder else paths, *beside), lenient, level)
+    dataset = read_dataset(dataset_files(folder, () if folder else paths, *beside), lenient, level)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
-    foon = Foon(question, name)
+    foon = Foon(dataset, name)
     for remark in foon.warnings:
         warn(remark)
     return foon
@@ -66,8 +66,8 @@ class Foon:
     :meth:`close` does; so does Python when nothing refers to the data any more.
     """
 
-    def __init__(self, question: Question, name: str) -> None:
-        self._question = question
+    def __init__(self, dataset: Dataset, name: str) -> None:
+        self._dataset = dataset
         self._name = name
 
     def close(self) -> None:
@@ -75,7 +75,7 @@ class Foon:
 
         To read more of a closed store raises :class:`UserError`.
         """
-        self._question.close()
+        self._dataset.close()
 
     def __enter__(self) -> Self:
         return self
@@ -108,82 +108,82 @@ class Foon:
         """
         if kitchen is None and not adding and not without and rates is None:
             return self
-        question = self._question
+        dataset = self._dataset
         only = None
         if isinstance(kitchen, Path):
             items = read_object_list(kitchen)
-            question = question.with_kitchen(items)
-            names = question.names
+            dataset = dataset.with_kitchen(items)
+            names = dataset.names
             for item in items:
                 if not names.find(pattern_at_level(item.pattern, names.level)):
                     warn(str(kitchen_item_warning(item)))
         elif kitchen is not None:
             only = frozenset(self._ids(kitchen, "kitchen item"))
         more = frozenset(self._ids(adding, "kitchen item"))
-        with_more = Foon(question.varied(more, frozenset(), only, self._rates(rates)), self._name)
+        with_more = Foon(dataset.varied(more, frozenset(), only, self._rates(rates)), self._name)
         less = frozenset(o for name in _listed(without) for o in with_more._items(name))
         if not less:
             return with_more
-        return Foon(with_more._question.varied((), less, None, with_more._question.rates), self._name)
+        return Foon(with_more._dataset.varied((), less, None, with_more._dataset.rates), self._name)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What was assumed while reading, with files and lines; empty when nothing was."""
-        advice = () if self._question.has_kitchen else (_NO_KITCHEN,)
-        return (*self._question.remarks, *advice)
+        advice = () if self._dataset.has_kitchen else (_NO_KITCHEN,)
+        return (*self._dataset.remarks, *advice)
 
     @property
     def level(self) -> int:
         """What counts of an object node: 3 all of it, 2 without contents, 1 the label."""
-        return self._question.names.level
+        return self._dataset.names.level
 
     @property
     def network(self) -> Network:
         """The whole network; of a store, all of it is read."""
-        return self._question.data.network
+        return self._dataset.data.network
 
     @property
     def kitchen(self) -> tuple[ObjectNode, ...]:
         """Everything at hand, in the order of the network; of a store, all of it is read."""
-        data = self._question.data
+        data = self._dataset.data
         return tuple(data.network.objects[o] for o in sorted(data.kitchen))
 
     @property
     def goals(self) -> tuple[ObjectNode, ...]:
         """The object nodes of the goals file; raises :class:`UserError` for an entry that matches none."""
         try:
-            return tuple(map(self._node, dict.fromkeys(self._question.each_goal(()))))
+            return tuple(map(self._node, dict.fromkeys(self._dataset.each_goal(()))))
         except GoalError as error:
             raise UserError(_in_python(error)) from None
 
     @property
     def rates(self) -> dict[str, Fraction] | None:
         """The success rates by motion, exact; ``None`` where none are known."""
-        rates = self._question.rates
+        rates = self._dataset.rates
         return None if rates is None else dict(rates)
 
     @property
     def utensils(self) -> frozenset[str]:
         """The labels that the container rule ``implied`` looks at."""
-        return self._question.utensils
+        return self._dataset.utensils
 
     def nodes(self, label: str) -> tuple[ObjectNode, ...]:
         """Give the object nodes that have a label; of a store, the first dozen or more."""
-        names = self._question.names
+        names = self._dataset.names
         found = names.by_label.get(label, ()) if isinstance(names, Network) else names.labelled(label)[1]
         return tuple(map(self._node, found))
 
     @property
-    def question(self) -> Question:
+    def dataset(self) -> Dataset:
         """What the rooms below ask the data with."""
-        return self._question
+        return self._dataset
 
     def goal_ids(self, names: Names) -> tuple[int, ...]:
         """Find goals, by id in the whole network, each once."""
         found = tuple(dict.fromkeys(self._ids(names, "goal")))
         if found:
             return found
-        listed = self._question.listed
+        listed = self._dataset.listed
         if len(listed) == 1:
             return (self._id(listed[0].pattern.label, "goal"),)
         known = ", ".join(repr(entry.pattern.label) for entry in listed)
@@ -191,18 +191,18 @@ class Foon:
 
     def pose(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals by id in the whole network; with ``everything``, a store is read as a whole."""
-        return taken(self._question.problem(goals, container_rule(containers), everything), self)
+        return taken(self._dataset.problem(goals, container_rule(containers), everything), self)
 
     def pose_for(self, goals: Sequence[int], containers: str, tree: TaskTree) -> Problem:
         """Ask for goals by id in the whole network, about a tree: of a store, no more is read than it has."""
-        data, goals = self._question.part(goals, tree=tree)
+        data, goals = self._dataset.part(goals, tree=tree)
         return taken(ask(data, goals, containers), self)
 
     def _ids(self, names: Names, what: str) -> list[int]:
         return [self._id(name, what) for name in _listed(names)]
 
     def _id(self, name: str | ObjectNode, what: str) -> int:
-        names = self._question.names
+        names = self._dataset.names
         if isinstance(name, ObjectNode):
             found = names.object_id(node_at_level(name, names.level))
             if found is None:
@@ -210,14 +210,14 @@ class Foon:
             return found
         try:
             return find_goal(
-                name, names, self._question.listed if what == "goal" else (), Wording(what, "", "")
+                name, names, self._dataset.listed if what == "goal" else (), Wording(what, "", "")
             )
         except GoalError as error:
             raise UserError(_in_python(error)) from None
 
     def _items(self, name: str | ObjectNode) -> list[int]:
         """Give the kitchen items that a name stands for: a label for all that have it."""
-        names = self._question.names
+        names = self._dataset.names
         if isinstance(name, str) and ";" not in name:
             count, found = (
                 (len(ids := names.by_label.get(name, ())), ids)
@@ -227,21 +227,21 @@ class Foon:
             if count > len(found):
                 raise UserError(f"{count} object nodes have the label {name!r}: name those you mean in full")
             if count:
-                there = [o for o in found if self._question.at_hand(o)]
+                there = [o for o in found if self._dataset.at_hand(o)]
                 if not there:
                     raise UserError(f"the kitchen has nothing with the label {name!r}")
                 return there
         found_one = self._id(name, "kitchen item")
-        if not self._question.at_hand(found_one):
+        if not self._dataset.at_hand(found_one):
             raise UserError(f"the kitchen does not have {str(name)!r}")
         return [found_one]
 
     def _node(self, o: int) -> ObjectNode:
-        names = self._question.names
+        names = self._dataset.names
         return names.objects[o] if isinstance(names, Network) else names.node(o)
 
     def _rates(self, changed: Mapping[str, Number] | None) -> Mapping[str, Fraction] | None:
-        known = self._question.rates
+        known = self._dataset.rates
         if changed is None:
             return known
         rates = dict(known or {})
@@ -266,14 +266,12 @@ def foon_of(problem: Problem) -> Foon:
     if problem.origin is None:
         network, kitchen = problem.network, problem.kitchen
         rates = None if problem.rates is None else dict(problem.rates)
-        return Foon(
-            Question(Data(network, kitchen, (), (), rates, problem.utensils, (), 0), 0.0), "a problem"
-        )
-    question = problem.origin.question
-    more, less = question.kitchen_changes(problem)
+        return Foon(Dataset(Data(network, kitchen, (), (), rates, problem.utensils, (), 0), 0.0), "a problem")
+    dataset = problem.origin.dataset
+    more, less = dataset.kitchen_changes(problem)
     if not more and not less:
         return problem.origin
-    return Foon(question.varied(more, less, None, question.rates), problem.origin._name)
+    return Foon(dataset.varied(more, less, None, dataset.rates), problem.origin._name)
 
 
 def _listed(names: Names) -> list[str | ObjectNode]:

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from foon_asp.bounds import CheaperError, Cut, Hopeless, Packing, Proof, Prover
+from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.coverage import NOTHING, Coverage
-from foon_asp.certificate.question import Question
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof import verify
@@ -77,51 +77,49 @@ def certify(
         return None
     guide = tuple(units)
     for count in range(len(objectives), 0, -1):
-        question = Question(problem, objectives[:count], covered)
-        prover = _prover(question, expired, cuts)
+        arrays = Arrays(problem, objectives[:count], covered)
+        prover = _prover(arrays, expired, cuts)
         try:
-            proof = prover.prove(question.actions(units))
+            proof = prover.prove(arrays.actions(units))
         except CheaperError as cheaper:
             guide = tuple(a for a in cheaper.actions if a < len(problem.network))
             if not covered.not_covered:
                 raise NotBestError(guide, problem.costs(guide)) from None
             break
         if proof is not None:
-            certificate = _write(question, covered, "optimal", units, proof)
+            certificate = _write(arrays, covered, "optimal", units, proof)
             if certificate is not None:
                 return certificate
         if expired():
             break
-    question = Question(problem, objectives, covered)
-    relaxed = _prover(question, expired).relax(question.actions(guide))
+    arrays = Arrays(problem, objectives, covered)
+    relaxed = _prover(arrays, expired).relax(arrays.actions(guide))
     if relaxed is None:
         return None
     packing, bound = relaxed
-    return _write(question, covered, "bound", units, packing, question.stated(bound))
+    return _write(arrays, covered, "bound", units, packing, arrays.stated(bound))
 
 
 def certify_infeasible(problem: Problem, covered: Coverage = NOTHING) -> Certificate | None:
     """Prove that there is no tree; ``None`` where only constraints that are not covered leave none."""
-    question = Question(problem, (), covered)
-    cut = _prover(question, lambda: False).hopeless()
-    return None if cut is None else _write(question, covered, "infeasible", None, Hopeless(cut))
+    arrays = Arrays(problem, (), covered)
+    cut = _prover(arrays, lambda: False).hopeless()
+    return None if cut is None else _write(arrays, covered, "infeasible", None, Hopeless(cut))
 
 
-def _prover(question: Question, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
-    return Prover(
-        question.graph, question.goals, question.costs, question.order, question.forbidden, expired, cuts
-    )
+def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
+    return Prover(arrays.graph, arrays.goals, arrays.costs, arrays.order, arrays.forbidden, expired, cuts)
 
 
 def _write(
-    question: Question,
+    arrays: Arrays,
     covered: Coverage,
     claim: str,
     units: Sequence[int] | None,
     proof: Proof,
     bound: list[object] | None = None,
 ) -> Certificate | None:
-    problem = question.problem
+    problem = arrays.problem
     cuts: dict[tuple[int, ...], int] = {}
 
     def number(cut: Cut) -> int:
@@ -131,10 +129,10 @@ def _write(
         if isinstance(proof, Hopeless):
             return {"hopeless": number(proof.cut)}
         if isinstance(proof, Packing):
-            weights = sorted((number(cut), question.stated(weight)) for cut, weight in proof.weights)
+            weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in proof.weights)
             return {"weights": [list(pair) for pair in weights]}
         return {
-            "branch": question.member(proof.action),
+            "branch": arrays.member(proof.action),
             "without": stated(proof.without),
             "using": stated(proof.using),
         }
@@ -143,7 +141,7 @@ def _write(
     costs: list[object] | None = None
     if units is not None:
         measured = problem.costs(units)
-        figures = [measured.measure(objective) for objective in question.objectives]
+        figures = [measured.measure(objective) for objective in arrays.objectives]
         try:
             costs = [figure if isinstance(figure, int) else str(figure) for figure in figures]
         except ValueError:  # Python writes no whole number of more than 4,300 digits
@@ -155,7 +153,7 @@ def _write(
         "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
         "containers": str(problem.containers),
         "level": problem.network.level,
-        "objective": [str(objective) for objective in question.objectives],
+        "objective": [str(objective) for objective in arrays.objectives],
         "digests": verify.digests(problem.network, problem.kitchen, problem.rates, problem.utensils),
         "forbidden": {"motions": list(covered.motions), "objects": list(covered.labels)},
         "not_covered": list(covered.not_covered),
@@ -166,7 +164,7 @@ def _write(
         "proof": found,
     }
     content["seal"] = verify.seal(content)
-    certificate = Certificate(content, claim, question.objectives)
+    certificate = Certificate(content, claim, arrays.objectives)
     try:
         verify.verify(
             verify.read_certificate(certificate.text()),

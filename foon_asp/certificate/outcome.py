@@ -7,9 +7,9 @@ from typing import Any
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
 from foon_asp.bounds import Vector
+from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage, coverage
-from foon_asp.certificate.question import Question
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem, levels
 
@@ -78,25 +78,25 @@ def _costs_at_odds(
 ) -> str | None:
     """Say why a tree cannot cost what a certificate proves; ``None`` where it can."""
     problem, content = outcome.problem, certificate.content
-    question = Question(problem, certificate.certified, covered)
-    cost = question.order.total(question.costs[a] for a in question.actions(units))
+    arrays = Arrays(problem, certificate.certified, covered)
+    cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
     if certificate.claim == "bound":
-        least = _read(question, content["bound"])
-        if question.order.sign(_minus(cost, least)) < 0:
+        least = _read(arrays, content["bound"])
+        if arrays.order.sign(_minus(cost, least)) < 0:
             return f"the certificate proves the bound {content['bound']}, and the tree costs less"
         return None
-    proved = question.order.total(question.costs[a] for a in question.actions(content["tree"]))
-    if question.order.sign(_minus(cost, proved)) != 0:
+    proved = arrays.order.total(arrays.costs[a] for a in arrays.actions(content["tree"]))
+    if arrays.order.sign(_minus(cost, proved)) != 0:
         return f"the certificate proves another tree optimal, {_tree(outcome, content['tree'])}"
     return None
 
 
-def _read(question: Question, stated: Sequence[Any]) -> Vector:
+def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
     """Read a bound as certificates state it back into a cost."""
     vector: list[Fraction] = []
-    for objective, part in zip(question.objectives, stated, strict=True):
+    for objective, part in zip(arrays.objectives, stated, strict=True):
         if objective is Objective.SUCCESS:
-            vector += [Fraction(part.get(str(rate), 0)) for rate in question.rates]
+            vector += [Fraction(part.get(str(rate), 0)) for rate in arrays.rates]
         else:
             vector.append(Fraction(part))
     return tuple(vector)

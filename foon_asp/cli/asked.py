@@ -8,9 +8,9 @@ from pathlib import Path
 from foon_asp.asp import Settings
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, parse_objectives
-from foon_asp.question import Question
 
 Option = Callable[[Callable[..., ExitCode]], Callable[..., ExitCode]]
 _HOW = ("goals_named", "objectives", "containers", "constraints", "encodings", "constants", "deadline")
@@ -50,20 +50,20 @@ class Asked:
         return bool(self.settings.constraints or self.settings.replaced)
 
     @cached_property
-    def question(self) -> Question:
+    def dataset(self) -> Dataset:
         """The data."""
-        return options.read_question(**self._data)  # type: ignore[arg-type]
+        return options.read_dataset(**self._data)  # type: ignore[arg-type]
 
     @cached_property
     def goals(self) -> Sequence[int]:
         """The goals that are named."""
-        return self.question.goals(self._names)
+        return self.dataset.goals(self._names)
 
     def problem(self, everything: bool = False) -> Problem:
         """Ask for the goals; with ``everything``, and under rules of the user's, all units are there."""
-        question = self.question
+        dataset = self.dataset
         with options.reading():
-            return question.problem(self.goals, self._containers, everything or self.by_users_rules)
+            return dataset.problem(self.goals, self._containers, everything or self.by_users_rules)
 
 
 def asking(*own: Option, objective: Option | None = options.objective_option) -> Option:

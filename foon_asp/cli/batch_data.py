@@ -11,10 +11,10 @@ from typing import Any
 from foon_asp.batch import Asked
 from foon_asp.cli import options
 from foon_asp.compare import makeable
+from foon_asp.dataset import Dataset, dataset_files
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
-from foon_asp.question import Question, question_files
 from foon_asp.text import read_object_list
 
 
@@ -31,45 +31,45 @@ class Opening:
     def __call__(self, quiet: bool = True) -> "BatchData":
         """Open the data; warnings are shown once, and not by every worker."""
         with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
-            return BatchData(options.read_question(**dict(self.named)))
+            return BatchData(options.read_dataset(**dict(self.named)))
 
 
 class BatchData:
     """Opened data, and the kitchens that were asked about."""
 
-    def __init__(self, question: Question) -> None:
-        self._questions: dict[Path | None, Question] = {None: question}
+    def __init__(self, dataset: Dataset) -> None:
+        self._datasets: dict[Path | None, Dataset] = {None: dataset}
 
     def named(self, word: str, containers: str, kitchen: Path | None) -> Sequence[str]:
         """Give the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
-        question = self._with(kitchen)
+        dataset = self._with(kitchen)
         if word == "@makeable":
-            problem = question.problem((0,), containers, everything=True)
+            problem = dataset.problem((0,), containers, everything=True)
             return [str(problem.network.objects[goal]) for goal in makeable(problem)]
-        names = question.names
-        goals = dict.fromkeys(question.each_goal(()))
+        names = dataset.names
+        goals = dict.fromkeys(dataset.each_goal(()))
         if isinstance(names, Network):
             return [str(names.objects[goal]) for goal in goals]
         return [str(names.node(goal)) for goal in goals]
 
     def problem(self, asked: Asked) -> Problem:
         """Pose a question."""
-        question = self._with(asked.kitchen)
-        return question.problem(question.goals(asked.goals), asked.containers)
+        dataset = self._with(asked.kitchen)
+        return dataset.problem(dataset.goals(asked.goals), asked.containers)
 
-    def _with(self, kitchen: Path | None) -> Question:
-        question = self._questions.get(kitchen)
-        if question is None:
+    def _with(self, kitchen: Path | None) -> Dataset:
+        dataset = self._datasets.get(kitchen)
+        if dataset is None:
             assert kitchen is not None
-            question = self._questions[None].with_kitchen(read_object_list(kitchen))
-            self._questions[kitchen] = question
-        return question
+            dataset = self._datasets[None].with_kitchen(read_object_list(kitchen))
+            self._datasets[kitchen] = dataset
+        return dataset
 
 
 def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
     """Give a digest of everything in the files that the options name, and of kitchens beside them."""
     named = {key: value for key, value in named.items() if key not in {"level", "lenient"}}
-    files = question_files(**named)
+    files = dataset_files(**named)
     found = hashlib.sha256()
     beside = (files.kitchen, files.rates, files.utensils, files.goals)
     for file in (*files.network, *(file for file in beside if file), *sorted(set(kitchens))):

@@ -71,10 +71,10 @@ def command(
     """
     chosen = parse_objectives(objectives)
     check_outputs()
-    question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
+    dataset = options.read_dataset(lenient=lenient, **data)  # type: ignore[arg-type]
     # a certificate speaks about the whole network, by its digest
     with options.reading():
-        problem = question.problem(question.goals(goals_named), containers, everything=True)
+        problem = dataset.problem(dataset.goals(goals_named), containers, everything=True)
     settings = Settings(constraints, encodings, constants, session=options.session_here(), deadline=deadline)
     name = "standard output" if file is None else str(file)
     if tree_file is not None:

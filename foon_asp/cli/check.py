@@ -7,9 +7,9 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
+from foon_asp.dataset import ask
 from foon_asp.network import TaskTree, unit_at_level
 from foon_asp.proof import Verdict, simulate_for
-from foon_asp.question import ask
 from foon_asp.report.verdict import verdict_json, verdict_text
 from foon_asp.text import FoonReader, summarize
 
@@ -36,15 +36,15 @@ def command(
     Exits with 0 when the tree executes, as listed or in the order that is then given; with 1 when no
     order executes or when a unit is not one of the network.
     """
-    question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
-    goals = question.goals(goals_named)
+    dataset = options.read_dataset(lenient=lenient, **data)  # type: ignore[arg-type]
+    goals = dataset.goals(goals_named)
     reader = FoonReader(lenient)
     listed = reader.read_tree(tree_file)
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
-    listed = [(unit_at_level(unit, question.names.level), source) for unit, source in listed]
+    listed = [(unit_at_level(unit, dataset.names.level), source) for unit, source in listed]
     tree = TaskTree(tuple(unit for unit, _ in listed))
-    data_of_tree, goals = question.part(goals, tree=tree)
+    data_of_tree, goals = dataset.part(goals, tree=tree)
     problem = ask(data_of_tree, goals, containers)
     simulation = simulate_for(problem, tree)
     render = {"text": verdict_text, "json": verdict_json}[format_]

@@ -101,7 +101,7 @@ def command(
     optimum is proved, and with 3 when one was stopped at a limit.
     """
     check_outputs()
-    question = options.read_question(**data)  # type: ignore[arg-type]
+    dataset = options.read_dataset(**data)  # type: ignore[arg-type]
     table = read_published(published_table()) if published else None
     if table is not None:
         goals_named = goals_named or tuple(table.goals)
@@ -109,9 +109,9 @@ def command(
         if unknown or all_makeable:
             raise UserError(f"the published table has the goals {', '.join(table.goals)} and no others")
     if all_makeable:
-        goals = makeable(question.problem((0,), containers, everything=True))
+        goals = makeable(dataset.problem((0,), containers, everything=True))
     else:
-        goals = list(dict.fromkeys(question.each_goal(goals_named)))
+        goals = list(dict.fromkeys(dataset.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     if charts and len(goals) > _CHARTED:
@@ -119,7 +119,7 @@ def command(
     settings = SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit, memory_limit)
     # Results are kept with a digest of all the data.
     everything = all_makeable or results is not None
-    problem = question.problem(goals, containers, everything)
+    problem = dataset.problem(goals, containers, everything)
     goals = list(problem.goals)
     rows = _run(problem, goals, searches, settings, jobs, results)
 

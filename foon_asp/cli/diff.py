@@ -9,13 +9,13 @@ from click.core import ParameterSource
 from foon_asp.asp import Settings, solve
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
-from foon_asp.cli.options import read_question
+from foon_asp.cli.options import read_dataset
 from foon_asp.cli.progress import Progress
+from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.explain.difference import Listed, Side, difference, side
 from foon_asp.network import unit_at_level
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
-from foon_asp.question import Question
 from foon_asp.reduce import parse_reductions
 from foon_asp.report.answer import headline
 from foon_asp.report.difference import difference_json, difference_text
@@ -55,7 +55,7 @@ def command(
 
     Exits with 0 when both were compared, whether they differ or not, and with 1 when one has no tree.
     """
-    question: list[Question] = []  # read once, and only when a file is to be looked at
+    dataset: list[Dataset] = []  # read once, and only when a file is to be looked at
     sides: list[Side] = []
     ended = ExitCode.DONE
     for name in (left, right):
@@ -63,8 +63,8 @@ def command(
             found, code = _solved(name)
             ended = max(ended, code)
         else:
-            question = question or [read_question(**data)]  # type: ignore[arg-type]
-            found = _listed(Path(name), question[0], goals_named, containers, bool(data["lenient"]))
+            dataset = dataset or [read_dataset(**data)]  # type: ignore[arg-type]
+            found = _listed(Path(name), dataset[0], goals_named, containers, bool(data["lenient"]))
         if found is None:
             return ExitCode.NEGATIVE if ended is ExitCode.DONE else ended
         sides.append(found)
@@ -74,7 +74,7 @@ def command(
 
 
 def _listed(
-    file: Path, question: Question, goals_named: tuple[str, ...], containers: str, lenient: bool
+    file: Path, dataset: Dataset, goals_named: tuple[str, ...], containers: str, lenient: bool
 ) -> Side | None:
     """Read a tree from a file; ``None`` for an answer that has none."""
     reader = FoonReader(lenient)
@@ -84,7 +84,7 @@ def _listed(
     if tree.units is None:
         click.echo(f"{file}: the answer has no tree ({tree.status})", err=True)
         return None
-    data, network = question.data, question.data.network
+    data, network = dataset.data, dataset.data.network
     objects = network.objects
     goals = tree.goals or tuple(objects[find_goal(name, network, data.goals)] for name in goals_named)
     listed = [(unit_at_level(unit, network.level), source) for unit, source in tree.units]
@@ -118,8 +118,8 @@ def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     settings = Settings(*map(asked.pop, names))._replace(reductions=reductions, memory_limit=memory_limit)
     settings = settings.limited()
     with settings.begun.watched("reading"):
-        question = read_question(**asked)
-        problem = question.problem(question.goals(goals), containers, everything=True)
+        dataset = read_dataset(**asked)
+        problem = dataset.problem(dataset.goals(goals), containers, everything=True)
     settings = settings._replace(session=options.session_here())
     with Progress() as progress:
         outcome = solve(problem, objectives, settings, progress)

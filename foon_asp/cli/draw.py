@@ -14,11 +14,11 @@ from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import utf_8, write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
+from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import TaskTree, unit_at_level
 from foon_asp.problem import ContainerRule, parse_objectives
-from foon_asp.question import Question
 from foon_asp.report.answer import counted, headline
 from foon_asp.report.dot import dot_text
 from foon_asp.report.drawing import Drawing, draw_network
@@ -105,13 +105,13 @@ def command(
         raise UserError("--objective chooses among the task trees for a --goal: here is nothing to choose")
     chosen = parse_objectives(objectives)
     check_outputs()
-    question = options.read_question(lenient=lenient, **data)  # type: ignore[arg-type]
-    goals = question.goals(goals_named) if goals_named else ()
+    dataset = options.read_dataset(lenient=lenient, **data)  # type: ignore[arg-type]
+    goals = dataset.goals(goals_named) if goals_named else ()
     code = ExitCode.DONE
     if to_solve:
         with Progress() as progress:
             with options.reading():
-                problem = question.problem(goals, containers)
+                problem = dataset.problem(goals, containers)
             outcome = solve(problem, chosen, Settings(deadline=deadline), progress)
         code = of_status(outcome.status)
         if outcome.status is not Status.OPTIMAL:
@@ -120,9 +120,9 @@ def command(
             return code
         drawing = solved_tree(outcome, outcome.units)
     elif tree_file is not None:
-        drawing = _given_tree(question, goals, tree_file, ContainerRule(containers), lenient)
+        drawing = _given_tree(dataset, goals, tree_file, ContainerRule(containers), lenient)
     else:
-        data_shown, goals = question.part(goals, units) if units else (question.data, goals)
+        data_shown, goals = dataset.part(goals, units) if units else (dataset.data, goals)
         drawing = _subgraph(data_shown, goals, units)
     _write(drawing, form, file)
     return code
@@ -147,18 +147,18 @@ def _format(file: Path | None, named: str | None) -> _Format:
 
 
 def _given_tree(
-    question: Question, goal_ids: tuple[int, ...], file: Path, containers: ContainerRule, lenient: bool
+    dataset: Dataset, goal_ids: tuple[int, ...], file: Path, containers: ContainerRule, lenient: bool
 ) -> Drawing:
     """Read a tree and draw it with the data that it is about."""
     reader = FoonReader(lenient)
-    level = question.names.level
+    level = dataset.names.level
     listed = (unit_at_level(unit, level) for unit, _ in reader.read_tree(file))
     tree = TaskTree(tuple(dict.fromkeys(listed)))
     for text in summarize(reader.diagnostics):
         click.echo(text, err=True)
     if not tree.units:
         raise UserError(f"{file}: no functional unit to draw")
-    data, goal_ids = question.part(goal_ids, tree=tree)
+    data, goal_ids = dataset.part(goal_ids, tree=tree)
     objects = data.network.objects
     kitchen = {objects[o] for o in data.kitchen}
     goals = [objects[o] for o in goal_ids]

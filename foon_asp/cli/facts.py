@@ -44,9 +44,9 @@ def command(
     python -m clingo encodings/*.lp encodings/questions/soft.lp facts.lp
     """
     chosen = parse_objectives(objectives)
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    problem = question.problem(
-        question.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
+    dataset = options.read_dataset(**data)  # type: ignore[arg-type]
+    problem = dataset.problem(
+        dataset.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
     )
     program = bare_program(problem, chosen, Settings(constraints, encodings), weighted_files(soft, "--soft"))
     write_data(program.facts)

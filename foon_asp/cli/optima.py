@@ -43,8 +43,8 @@ def command(
     included, and with 3 when one was stopped at the limit.
     """
     lists = [parse_objectives([text]) for text in objectives]
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    goals = list(dict.fromkeys(question.each_goal(goals_named)))
+    dataset = options.read_dataset(**data)  # type: ignore[arg-type]
+    goals = list(dict.fromkeys(dataset.each_goal(goals_named)))
     if not goals:
         raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
     outcomes: list[Outcome] = []
@@ -52,7 +52,7 @@ def command(
     settings = Settings(time_limit=time_limit, memory_limit=memory_limit, deadline=Deadline())
     with Progress() as progress:
         for goal in goals:
-            problem = question.problem((goal,), containers)
+            problem = dataset.problem((goal,), containers)
             for chosen in lists:
                 outcome = solve(problem, chosen, settings, progress)
                 outcomes.append(outcome)

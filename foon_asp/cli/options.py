@@ -9,11 +9,11 @@ import click
 
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
+from foon_asp.dataset import Dataset, dataset_files
+from foon_asp.dataset.reading import read_dataset as read_data
 from foon_asp.deadline import Deadline, LimitError, Watch, memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.question import Question, question_files
-from foon_asp.question.reading import read_question as read_data
 
 if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import Session
@@ -30,7 +30,7 @@ class Held(NamedTuple):
     and ``encodings`` are the rules that stand: a line of the session adds to them, and takes none away.
     """
 
-    question: Question
+    dataset: Dataset
     lenient: bool
     level: int
     session: "Session"
@@ -248,7 +248,7 @@ def session_here() -> "Session | None":
     return here.session if here else None
 
 
-def read_question(
+def read_dataset(
     folder: Path | None,
     network: Sequence[Path],
     kitchen: Path | None,
@@ -258,7 +258,7 @@ def read_question(
     lenient: bool,
     level: int,
     kitchen_expected: bool = True,
-) -> Question:
+) -> Dataset:
     """Read the data that the options name; warnings go to stderr. Within a session it is there already."""
     here = held()
     if here:
@@ -266,15 +266,15 @@ def read_question(
             raise UserError(
                 "the data of a session is what it was started with; another kitchen is given by: kitchen FILE"
             )
-        return here.question
+        return here.dataset
     with reading():
-        files = question_files(folder, network, kitchen, rates, utensils, goals)
-        question = read_data(files, lenient, level)
+        files = dataset_files(folder, network, kitchen, rates, utensils, goals)
+        dataset = read_data(files, lenient, level)
     context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
     if context:
-        context.call_on_close(question.close)
-    for text in question.remarks:
+        context.call_on_close(dataset.close)
+    for text in dataset.remarks:
         click.echo(text, err=True)
-    if not question.has_kitchen and kitchen_expected:
+    if not dataset.has_kitchen and kitchen_expected:
         click.echo("warning: no kitchen is given, so nothing is at hand; name one with --kitchen", err=True)
-    return question
+    return dataset

@@ -45,9 +45,9 @@ def command(
     Exits with 0 when the tree executes, as listed or in another order; 1 when it never does or there is
     none; 3 when stopped at a limit.
     """
-    question = options.read_question(**data)  # type: ignore[arg-type]
+    dataset = options.read_dataset(**data)  # type: ignore[arg-type]
     with options.reading():
-        problem = question.problem(question.goals(goals_named), containers)
+        problem = dataset.problem(dataset.goals(goals_named), containers)
     settings = SearchSettings(
         Ties(ties), Count(count), published, depth_limit, deadline.left, deadline.memory
     )

@@ -60,8 +60,8 @@ def command(
     first fault, with its line, and exits with 2; else with the code of the question asked last.
     """
     from_terminal = script is None and sys.stdin.isatty() and sys.stdout.isatty()
-    question = options.read_question(lenient=lenient, level=level, **data)  # type: ignore[arg-type]
-    session = ShellSession(question, lenient, level, encodings)
+    dataset = options.read_dataset(lenient=lenient, level=level, **data)  # type: ignore[arg-type]
+    session = ShellSession(dataset, lenient, level, encodings)
     session.files += read_files()
     session.containers = ContainerRule(containers)
     session.time_limit, session.memory_limit = time_limit, memory_limit

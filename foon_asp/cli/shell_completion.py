@@ -85,7 +85,7 @@ def _options(verb: str, last: str, fragment: str, session: ShellSession) -> Iter
 
 def _goals(fragment: str, session: ShellSession) -> Iterable[str]:
     """Give the labels of the goals file before all other nodes."""
-    yield from _beginning((entry.pattern.label for entry in session.kitchen.question.listed), fragment)
+    yield from _beginning((entry.pattern.label for entry in session.kitchen.dataset.listed), fragment)
     yield from _nodes(fragment, session.kitchen.names)
 
 
@@ -107,7 +107,7 @@ def _constants(constraint: str, fragment: str, session: ShellSession) -> Iterabl
         ours = {each.name: each.parameters for each in library_constraints()}
         return _beginning((f"{parameter.name}=" for parameter in ours.get(constraint, ())), fragment)
     if name.endswith(_MOTIONS):
-        values = _beginning(session.kitchen.question.motions, value)
+        values = _beginning(session.kitchen.dataset.motions, value)
     elif name.endswith(_LABELS):
         values = session.kitchen.names.beginning(value, _MOST)
     else:

@@ -6,9 +6,9 @@ from pathlib import Path
 import click
 
 from foon_asp.cli.shell_line import quoted
+from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode, pattern_at_level
-from foon_asp.question import Question
 from foon_asp.text import (
     Diagnostic,
     ListedObject,
@@ -29,26 +29,26 @@ _LACK = Wording("kitchen item", " at hand", "lack")
 class ShellKitchen:
     """What is at hand; ``question`` is asked with it. What changes is said on stderr."""
 
-    def __init__(self, question: Question) -> None:
-        self.question = question
-        self._read = question
+    def __init__(self, dataset: Dataset) -> None:
+        self.dataset = dataset
+        self._read = dataset
         self._added: frozenset[int] = frozenset()
         self._removed: frozenset[int] = frozenset()
 
     @property
     def names(self) -> NodeNames:
         """What the names of object nodes are looked up in."""
-        return node_names(self.question.names)
+        return node_names(self.dataset.names)
 
     @property
     def names_at_hand(self) -> NodeNames:
         """What the names of things at hand are looked up in."""
-        nodes = {o: self.names.node(o) for o in sorted(self.question.kitchen)}
+        nodes = {o: self.names.node(o) for o in sorted(self.dataset.kitchen)}
         return SomeNames(nodes, self.names.level)
 
     def have(self, words: Sequence[str]) -> None:
         """Put object nodes into the kitchen, by name."""
-        before = self.question.kitchen
+        before = self.dataset.kitchen
         found = find_nodes(words, self.names, _HAVE)
         self._change(self._added.union(found), self._removed.difference(found))
         for o in found:
@@ -78,12 +78,12 @@ class ShellKitchen:
     @property
     def size(self) -> str:
         """Say how much is at hand."""
-        count = len(self.question.kitchen)
+        count = len(self.dataset.kitchen)
         return "1 object node" if count == 1 else f"{count} object nodes"
 
     def nodes(self) -> list[str]:
         """List what is at hand."""
-        return self._sorted(self.question.kitchen)
+        return self._sorted(self.dataset.kitchen)
 
     def changes(self) -> list[str]:
         """List what was put in, behind a plus, and taken out, behind a minus."""
@@ -93,9 +93,9 @@ class ShellKitchen:
         at_hand = self._read.kitchen
         self._added, self._removed = added - at_hand, removed & at_hand
         changed = self._added or self._removed
-        self.question = self._read
+        self.dataset = self._read
         if changed:
-            self.question = self._read.varied(self._added, self._removed, None, self._read.rates)
+            self.dataset = self._read.varied(self._added, self._removed, None, self._read.rates)
 
     def _sorted(self, ids: Iterable[int]) -> list[str]:
         nodes: list[ObjectNode] = [self.names.node(o) for o in ids]

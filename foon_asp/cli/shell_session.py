@@ -19,10 +19,10 @@ from foon_asp.cli.options import Held
 from foon_asp.cli.shell_kitchen import ShellKitchen, find_nodes
 from foon_asp.cli.shell_line import quoted, take_apart
 from foon_asp.cli.verbs import verb_command
+from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline, memory_size, seconds, size_text
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
-from foon_asp.question import Question
 from foon_asp.text import Wording, notation
 
 # The verbs that ask something of a network and a kitchen.
@@ -92,7 +92,7 @@ class ShellSession:
     stderr, answers go to stdout.
     """
 
-    def __init__(self, question: Question, lenient: bool, level: int, encodings: Path | None) -> None:
+    def __init__(self, dataset: Dataset, lenient: bool, level: int, encodings: Path | None) -> None:
         self.code = ExitCode.DONE
         self.goals: tuple[str, ...] = ()
         self.containers = ContainerRule.STRICT
@@ -101,7 +101,7 @@ class ShellSession:
         self.constants: dict[str, str] = {}
         self.time_limit: float | None = None
         self.memory_limit: int | None = None
-        self.kitchen = ShellKitchen(question)
+        self.kitchen = ShellKitchen(dataset)
         self.files: list[Path] = []  # what was read, which no question writes over
         self._encodings = encodings
         self._lenient, self._level = lenient, level
@@ -144,7 +144,7 @@ class ShellSession:
     def _ask(self, verb: str, words: list[str]) -> None:
         """Ask a question by its verb; what stands counts for all options that are not given."""
         self._refuse_without_rules(verb, words)
-        question = self.kitchen.question
+        dataset = self.kitchen.dataset
         given: dict[str, object] = {
             "goals_named": self.goals,
             "objectives": self._objectives_for(verb),
@@ -160,7 +160,7 @@ class ShellSession:
             standalone_mode=False,
             default_map={name: value for name, value in given.items() if value not in {None, ()}},
             obj=Held(
-                question,
+                dataset,
                 self._lenient,
                 self._level,
                 self._session,
@@ -193,12 +193,12 @@ class ShellSession:
 
     def set_goals(self, names: Sequence[str]) -> None:
         """Make these the goals."""
-        question = self.kitchen.question
+        dataset = self.kitchen.dataset
         if not names:
-            labels = "".join(f"\n  goal {quoted(entry.pattern.label)}" for entry in question.listed)
+            labels = "".join(f"\n  goal {quoted(entry.pattern.label)}" for entry in dataset.listed)
             raise UserError("name a goal" + (f"; the goals file has{labels}" if labels else ""))
         known = self.kitchen.names
-        nodes = [known.node(o) for o in find_nodes(names, known, _GOAL, question.listed)]
+        nodes = [known.node(o) for o in find_nodes(names, known, _GOAL, dataset.listed)]
         self.goals = tuple(map(notation, nodes))
         for node in nodes:
             _say(f"goal: {node}")

@@ -85,11 +85,11 @@ def command(
         raise UserError(f"found {clingo_options[0]!r}, expected an option; a goal is named by --goal NAME")
     chosen = parse_objectives(objectives)
     check_outputs()
-    question = options.read_question(**data)  # type: ignore[arg-type]
+    dataset = options.read_dataset(**data)  # type: ignore[arg-type]
     # What is asked by rules of the user's, and what is proved or asked again, is about the whole network.
     everything = bool(constraints or encodings or soft) or cross_check or certificate_file is not None
     with options.reading():
-        problem = question.problem(question.goals(goals_named), containers, everything)
+        problem = dataset.problem(dataset.goals(goals_named), containers, everything)
     settings = Settings(
         constraints,
         encodings,
@@ -103,10 +103,10 @@ def command(
         if certificate_file is not None:
             raise UserError("soft constraints have no certificates; leave one of them out")
         weights = weighted_files(soft, "--soft")
-        return _solve_soft(problem, chosen, settings, weights, question.read_seconds, cross_check, format_)
+        return _solve_soft(problem, chosen, settings, weights, dataset.read_seconds, cross_check, format_)
     with Progress() as progress:
         outcome = solve(problem, chosen, settings, progress)
-    outcome.seconds["read"] = question.read_seconds
+    outcome.seconds["read"] = dataset.read_seconds
     remarks: list[str] = []
     if certificate_file is not None:
         from foon_asp.cli.certify import find_certificate, write_certificate

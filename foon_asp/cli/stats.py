@@ -37,8 +37,8 @@ def command(
     networks = (*paths, *network)
     if len(paths) == 1 and paths[0].is_dir() and folder is None and not network:
         folder, networks = paths[0], ()
-    question = options.read_question(folder=folder, network=networks, level=3, kitchen_expected=False, **data)
-    read = question.data
+    dataset = options.read_dataset(folder=folder, network=networks, level=3, kitchen_expected=False, **data)
+    read = dataset.data
     levels = []
     for level in LEVELS:
         at_level = network_at_level(read.network, level)

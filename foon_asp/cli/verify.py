@@ -33,8 +33,8 @@ def command(certificate: Path, format_: str, **data: object) -> ExitCode:
         raise UserError(f"{certificate}: cannot be read: {error}") from None
     except RefusedError as refused:
         return _refused(refused, format_)
-    question = options.read_question(**data)  # type: ignore[arg-type]
-    read = question.data
+    dataset = options.read_dataset(**data)  # type: ignore[arg-type]
+    read = dataset.data
     try:
         verified = verify(content, read.network, read.kitchen, read.rates, read.utensils)
     except RefusedError as refused:

@@ -35,7 +35,7 @@ def command(asked: Asked) -> ExitCode:
     Exits with 1 when there is no tree, 0 when there is one, 3 when stopped at a limit.
     """
     problem = asked.problem(everything=True)
-    explanation = why_not(problem, asked.question.data.kitchen_items)
+    explanation = why_not(problem, asked.dataset.data.kitchen_items)
     found = explanation_dict(explanation)
     if explanation.goals:
         lines = [explanation_text(explanation).rstrip("\n")]

@@ -15,7 +15,7 @@ def ask(data: Data, goals: Sequence[int], containers: str) -> Problem:
     return Problem(data.network, data.kitchen, tuple(goals), data.rates, data.utensils, rule)
 
 
-class Question:
+class Dataset:
     """Data that was read, and how many seconds that took.
 
     Whoever asks it for goals and problems leaves the rest to it; ``data`` is everything, for those that need
@@ -88,11 +88,11 @@ class Question:
             return [find_goal(name, self.names, self.listed) for name in names]
         return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
 
-    def with_kitchen(self, items: Sequence[ListedObject]) -> "Question":
+    def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Give the same data with the kitchen of another file."""
         kitchen = kitchen_nodes(self.data.network, items)
         data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items))
-        return Question(data, self.read_seconds)
+        return Dataset(data, self.read_seconds)
 
     def varied(
         self,
@@ -100,7 +100,7 @@ class Question:
         less: Collection[int],
         only: Collection[int] | None,
         rates: Mapping[str, Fraction] | None,
-    ) -> "Question":
+    ) -> "Dataset":
         """Give the same data with these object nodes, by id, put into the kitchen and taken out of it.
 
         ``only`` are all that is in the kitchen before that, where it is not ``None``; ``rates`` are those of
@@ -108,7 +108,7 @@ class Question:
         """
         kitchen = self._data.kitchen if only is None else only
         items = self._data.kitchen_items if only is None else ()
-        return Question(
+        return Dataset(
             self._data._replace(
                 kitchen=frozenset(kitchen).union(more).difference(less),
                 kitchen_items=items,

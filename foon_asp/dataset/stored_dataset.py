@@ -1,4 +1,4 @@
-"""Questions to a store, which is read as far as a question goes."""
+"""A store, which is read as far as each question goes."""
 
 import copy
 import time
@@ -6,10 +6,10 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 
+from foon_asp.dataset.dataset import Dataset, ask
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, network_at_level, pattern_at_level
 from foon_asp.problem import ContainerRule, Problem, require_rates
-from foon_asp.question.question import Question, ask
 from foon_asp.store import Store
 from foon_asp.text import (
     Data,
@@ -26,7 +26,7 @@ from foon_asp.text import (
 )
 
 
-def read_stored(files: DataFiles, level: int) -> Question:
+def read_stored(files: DataFiles, level: int) -> Dataset:
     """Open the store that is named instead of networks; what is named beside it replaces what is in it.
 
     Below level 3 it is read whole, since its nodes become others there.
@@ -53,15 +53,15 @@ def read_stored(files: DataFiles, level: int) -> Question:
     if store.left_out:
         lines = "1 line" if store.left_out == 1 else f"{store.left_out} lines"
         remarks.append(f"warning: {lines} left out when the store was made")
-    question = StoredQuestion(store, kitchen, goals, rates, utensils, began, tuple(remarks))
+    dataset = StoredDataset(store, kitchen, goals, rates, utensils, began, tuple(remarks))
     if level == 3:
-        return question
-    data = _at_level(question.data, level)
-    question.close()
-    return Question(data, time.perf_counter() - began, tuple(remarks), question.has_kitchen)
+        return dataset
+    data = _at_level(dataset.data, level)
+    dataset.close()
+    return Dataset(data, time.perf_counter() - began, tuple(remarks), dataset.has_kitchen)
 
 
-class StoredQuestion(Question):
+class StoredDataset(Dataset):
     """The store, and what is asked of it beside; ids are those of the whole network.
 
     ``kitchen`` and the others take the place of the store's own, as far as they are not ``None``.
@@ -93,13 +93,13 @@ class StoredQuestion(Question):
         self.read_seconds = time.perf_counter() - began
 
     def close(self) -> None:
-        """Close the store, for all that vary this question too."""
+        """Close the store, for all data that vary this too."""
         self._store.close()
 
-    def with_kitchen(self, items: Sequence[ListedObject]) -> Question:
+    def with_kitchen(self, items: Sequence[ListedObject]) -> Dataset:
         """Give the same store with the kitchen of another file."""
         began = time.perf_counter()
-        return StoredQuestion(self._store, items, self._listed, self._rates, self._utensils, began)
+        return StoredDataset(self._store, items, self._listed, self._rates, self._utensils, began)
 
     def varied(
         self,
@@ -107,7 +107,7 @@ class StoredQuestion(Question):
         less: Collection[int],
         only: Collection[int] | None,
         rates: Mapping[str, Fraction] | None,
-    ) -> Question:
+    ) -> Dataset:
         """Give the same store with another kitchen and other rates; nothing is read."""
         before = self._at_hand if only is None else frozenset(only).__contains__
         other = copy.copy(self)

@@ -8,7 +8,7 @@ from foon_asp.certificate.coverage import Coverage
 from foon_asp.problem import Objective, Problem, multiplies, unit_count
 
 
-class Question:
+class Arrays:
     """What is asked of a problem, in numbers: units are actions, and taking a kitchen item may be one.
 
     Where ``kitchen`` is an objective, nothing is at hand from the start, and each item is given by an
