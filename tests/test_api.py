@@ -404,7 +404,12 @@ def test_varying_reads_nothing_and_indexes_nothing(
 ) -> None:
     problem = foon.problem("macaroni", containers="implied")
     needs, network = problem.needs, problem.network
-    monkeypatch.setattr(Path, "read_bytes", lambda *_: pytest.fail("a file is read"))
+    reading = Path.read_bytes
+
+    def encodings_only(path: Path) -> bytes:
+        return reading(path) if path.suffix == ".lp" else pytest.fail(f"{path} is read")
+
+    monkeypatch.setattr(Path, "read_bytes", encodings_only)
     monkeypatch.setattr(Path, "read_text", lambda *_: pytest.fail("a file is read"))
     fewer = problem.vary(goals="ice", without="knife")
     assert fewer.network is network
