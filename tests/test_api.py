@@ -409,6 +409,7 @@ def test_varying_reads_nothing_and_indexes_nothing(
     def encodings_only(path: Path) -> bytes:
         return reading(path) if path.suffix == ".lp" else pytest.fail(f"{path} is read")
 
+    foon_asp.solve(problem)  # looks up the digests of our encodings
     monkeypatch.setattr(Path, "read_bytes", encodings_only)
     monkeypatch.setattr(Path, "read_text", lambda *_: pytest.fail("a file is read"))
     fewer = problem.vary(goals="ice", without="knife")
