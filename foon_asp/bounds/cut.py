@@ -6,7 +6,8 @@ object of the set and needs none: those actions are a *landmark*, and the set is
 Bonet and Helmert (2010) bound delete-free plans by hitting landmarks of this kind.
 """
 
-from collections.abc import Collection, Iterable
+import math
+from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple
 
 from foon_asp.bounds.hypergraph import Hypergraph
@@ -34,16 +35,13 @@ class Cutter:
         self._graph = graph
         self._forbidden = forbidden
         self.targets = sorted({o for o in targets if not graph.at_start[o]})
-        ready, self._reachable = graph.reach(forbidden)
+        self._reachable = reachable = graph.reach(forbidden)
         self.actions: list[int] = []
         self.hopeless: Cut | None = None
-        lost = [o for o in self.targets if not self._reachable[o]]
+        lost = [o for o in self.targets if not reachable[o]]
         if lost:
-            self.hopeless = self._shrink(lost[0], set(), bytearray(graph.size), [0] * graph.size)
+            self.hopeless = self._shrink(lost[0], set(), reachable, {})
             return
-        can_run = bytearray(len(graph.needs))
-        for action in ready:
-            can_run[action] = 1
         # what the targets can need, numbered anew: most of a large network is of no concern to them
         self._numbers: dict[int, int] = {}
         stack = list(self.targets)
@@ -52,7 +50,9 @@ class Cutter:
         chosen: set[int] = set()
         while stack:
             for action in graph.makers[stack.pop()]:
-                if can_run[action] and action not in chosen:
+                if action in chosen or action in forbidden:
+                    continue
+                if all(reachable[o] for o in graph.needs[action]):
                     chosen.add(action)
                     for o in graph.needs[action]:
                         if not graph.at_start[o] and o not in self._numbers:
@@ -87,16 +87,15 @@ class Cutter:
             return None
         refused: set[int] = set()
         for action in order:
-            place = places[action]
-            if not growth.admitted[place] and not growth.admit(place):
+            if not growth.admit(places[action]):
                 refused.add(action)
         reached = bytearray(self._reachable)
-        makers: list[int] = [0] * self._graph.size
+        takers: dict[int, int] = {}
         for o, number in self._numbers.items():
             reached[o] = growth.reached[number]
-            makers[o] = len(self._takers[number])
+            takers[o] = len(self._takers[number])
         first = next(o for o in self.targets if not reached[o])
-        return self._shrink(first, refused, reached, makers)
+        return self._shrink(first, refused, reached, takers)
 
     def widened(self, objects: Iterable[int]) -> Cut:
         """Give the cut of some objects before the targets, with more where that keeps its landmark small.
@@ -121,11 +120,12 @@ class Cutter:
         landmark = sorted(a for a in makers if inside.isdisjoint(graph.needs[a]))
         return Cut(tuple(sorted(inside)), tuple(landmark))
 
-    def _shrink(self, target: int, members: set[int], reached: bytearray, weight: list[int]) -> Cut:
+    def _shrink(self, target: int, members: set[int], reached: bytearray, takers: Mapping[int, float]) -> Cut:
         """Go back from an object that is not reached, only as far as is needed for the cut to hold.
 
         Every action that is no member and gives an object of the cut has to need one of the cut, and has one
-        that is not reached; the one with the most takers is taken, which other actions need, too.
+        that is not reached; the one with the most takers is taken, which other actions need, too. Those that
+        nothing makes have no number of takers, and come first.
         """
         graph, forbidden = self._graph, self._forbidden
         inside = {target}
@@ -138,8 +138,8 @@ class Cutter:
                 makers.add(action)
                 if action in members or not inside.isdisjoint(graph.needs[action]):
                     continue
-                lacking = [o for o in graph.needs[action] if not reached[o] and not graph.at_start[o]]
-                o = max(lacking, key=lambda o: (not self._reachable[o], weight[o], -o))
+                lacking = [o for o in graph.needs[action] if not reached[o]]
+                o = max(lacking, key=lambda o: (takers.get(o, math.inf), -o))
                 inside.add(o)
                 stack.append(o)
         landmark = sorted(a for a in makers if inside.isdisjoint(graph.needs[a]))
@@ -150,48 +150,43 @@ class _Growth:
     """A set of actions that is closed step by step and never reaches the targets."""
 
     def __init__(self, cutter: Cutter, missing: list[int]) -> None:
-        self.admitted = bytearray(len(missing))
         self._gives, self._takers = cutter._gives, cutter._takers
         self._missing = list(missing)
+        self._waiting = bytearray(len(missing))  # admitted, and not run so far
         self.reached = bytearray(len(self._takers))
         self._left = len(cutter.targets)  # targets are the first objects by number
         self._targets = len(cutter.targets)
 
     def admit_all(self, places: Iterable[int]) -> bool:
         """Admit actions; whether the targets are reached, after which the growth is of no more use."""
-        if not self._left:
-            return True
-        return not all(self.admitted[place] or self.admit(place) for place in places)
+        return not (self._left and all(self.admit(place) for place in places))
 
     def admit(self, place: int) -> bool:
         """Admit an action unless the targets are reached with it; whether it was admitted."""
-        admitted, missing, reached = self.admitted, self._missing, self.reached
-        admitted[place] = 1
+        waiting, missing, reached = self._waiting, self._missing, self.reached
         if missing[place]:
+            waiting[place] = True
             return True
         gives, takers, targets = self._gives, self._takers, self._targets
         new: list[int] = []
         stack = [place]
-        while stack:
+        while stack and self._left:
             for o in gives[stack.pop()]:
                 if not reached[o]:
-                    reached[o] = 1
+                    reached[o] = True
                     new.append(o)
                     if o < targets:
                         self._left -= 1
                     for taker in takers[o]:
                         missing[taker] -= 1
-                        if not missing[taker] and admitted[taker]:
+                        if not missing[taker] and waiting[taker]:
                             stack.append(taker)
-            if not self._left:
-                break
-        if self._left:
-            return True
-        admitted[place] = 0
-        for o in new:
-            reached[o] = 0
-            if o < targets:
-                self._left += 1
-            for taker in takers[o]:
-                missing[taker] += 1
-        return False
+        refused = not self._left
+        if refused:
+            for o in new:
+                reached[o] = False
+                if o < targets:
+                    self._left += 1
+                for taker in takers[o]:
+                    missing[taker] += 1
+        return not refused

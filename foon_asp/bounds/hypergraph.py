@@ -11,8 +11,7 @@ class Hypergraph:
 
     Action ``a`` can run once every object of ``needs[a]`` is at hand, and then those of ``gives[a]`` are.
     ``start`` are the objects that are at hand from the beginning; no object is ever used up.
-    ``known_makers`` are the actions that give each object, where they are known already: those of objects
-    that are there from the start may be among them.
+    ``known_makers`` are the actions that give each object, where they are known already.
     """
 
     size: int
@@ -26,17 +25,17 @@ class Hypergraph:
         """A 1 for every object that is at hand from the beginning."""
         flags = bytearray(self.size)
         for o in self.start:
-            flags[o] = 1
+            flags[o] = True
         return flags
 
     @cached_property
     def makers(self) -> Sequence[Sequence[int]]:
-        """For each object that is not there from the start, the actions that give it."""
+        """For each object the actions that give it."""
         return self._owners(self.gives) if self.known_makers is None else self.known_makers
 
     @cached_property
     def takers(self) -> list[list[int]]:
-        """For each object that is not there from the start, the actions that need it."""
+        """For each object the actions that need it."""
         return self._owners(self.needs)
 
     @cached_property
@@ -46,18 +45,16 @@ class Hypergraph:
         return [sum(not at_start[o] for o in set(needed)) for needed in self.needs]
 
     def _owners(self, lists: Sequence[Sequence[int]]) -> list[list[int]]:
-        at_start = self.at_start
         owners: list[list[int]] = [[] for _ in range(self.size)]
         for action, members in enumerate(lists):
             for o in set(members):
-                if not at_start[o]:
-                    owners[o].append(action)
+                owners[o].append(action)
         return owners
 
-    def reach(self, forbidden: frozenset[int] = frozenset()) -> tuple[list[int], bytearray]:
+    def reach(self, forbidden: frozenset[int] = frozenset()) -> bytearray:
         """Close the start under all actions but the forbidden ones, in linear time.
 
-        Gives the actions that can run, in an order in which they do, and a 1 for every object at hand then.
+        Gives a 1 for every object at hand then.
         """
         missing = list(self.missing)
         reached = bytearray(self.at_start)
@@ -66,9 +63,9 @@ class Hypergraph:
         for action in ready:  # grows while it is walked through
             for o in gives[action]:
                 if not reached[o]:
-                    reached[o] = 1
+                    reached[o] = True
                     for taker in takers[o]:
                         missing[taker] -= 1
                         if not missing[taker] and taker not in forbidden:
                             ready.append(taker)
-        return ready, reached
+        return reached

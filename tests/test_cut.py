@@ -1,0 +1,121 @@
+"""Which cuts are found: their objects and members, worked out by hand."""
+
+import pytest
+
+from foon_asp.bounds import Cut, Cutter, Hypergraph
+
+# 0 and 1 are at hand; 4 is made of 2 and 3, 2 from 0 or from 3, 3 from 1 or from 2; 5 from 4 is of no concern
+KITCHEN = Hypergraph(
+    6, needs=[[2, 3], [0], [3], [1], [2], [4]], gives=[[4], [2], [2], [3], [3], [5, 0]], start=[0, 1]
+)
+
+
+def test_targets_at_hand_are_left_out_and_so_is_what_no_target_needs() -> None:
+    cutter = Cutter(KITCHEN, [4, 0, 4])
+    assert cutter.targets == [4]
+    assert cutter.actions == [0, 1, 2, 3, 4]
+    assert cutter.hopeless is None
+    assert Cutter(KITCHEN, [3]).actions == [1, 2, 3, 4]
+    assert Cutter(KITCHEN, [3], frozenset({1, 5})).actions == [2, 3, 4]
+    assert Cutter(KITCHEN, [4], frozenset({1, 4})).actions == [0, 2, 3]
+
+
+def test_actions_that_cannot_run_are_not_asked_for() -> None:
+    graph = Hypergraph(4, needs=[[1], [2, 3], [0], []], gives=[[0], [0], [1], [1]], start=[])
+    assert Cutter(graph, [0]).actions == [0, 2, 3]
+    assert Cutter(graph, [0]).cut([], [2, 0, 3]) == Cut((0, 1, 2), (3,))
+
+
+def test_where_all_is_at_hand_there_is_nothing_to_cut() -> None:
+    cutter = Cutter(KITCHEN, [0, 1])
+    assert cutter.actions == []
+    assert cutter.reached_by([])
+    assert cutter.cut([], []) is None
+
+
+def test_actions_that_are_of_no_concern_may_be_kept() -> None:
+    cutter = Cutter(KITCHEN, [4])
+    assert cutter.reached_by([5, 0, 1, 5, 3])
+    assert not cutter.reached_by([5, 0, 1])
+    assert cutter.cut([5, 0, 1, 3], cutter.actions) is None
+    assert cutter.cut([5, 1, 3], cutter.actions) == Cut((4,), (0,))
+
+
+@pytest.mark.parametrize(
+    ("keep", "order", "cut"),
+    [
+        ([], [1, 2, 3, 4, 0], Cut((4,), (0,))),
+        ([], [4, 3, 2, 1, 0], Cut((4,), (0,))),
+        ([], [0, 1, 2, 3, 4], Cut((3, 4), (3, 4))),  # 3 would reach the target, and so would 4
+        ([], [0, 3, 1, 2, 4], Cut((2, 4), (1, 2))),
+        ([], [0, 4, 2, 1, 3], Cut((2, 3, 4), (1, 3))),  # 2 and 4 wait for each other
+        ([2, 4], [0, 3, 1], Cut((2, 3, 4), (1, 3))),
+        ([4, 2], [1, 0, 3], Cut((4,), (0,))),
+        ([0], [2, 4, 3, 1], Cut((2, 3, 4), (1, 3))),
+        ([0, 3], [0, 1, 2, 3, 4], Cut((2, 4), (1, 2))),
+        ([0, 1], [0, 1, 2, 3, 4], Cut((3, 4), (3, 4))),
+        ([0, 1, 4], [0, 1, 2, 3, 4], None),
+        ([2, 4, 0, 3], [0, 1, 2, 3, 4], None),
+    ],
+)
+def test_what_comes_late_is_cut(keep: list[int], order: list[int], cut: Cut | None) -> None:
+    assert Cutter(KITCHEN, [4]).cut(keep, order) == cut
+
+
+def test_what_an_action_that_is_refused_would_have_made_is_taken_back() -> None:
+    # 0 gives both targets and 4; each can be had by itself, 3 only by way of 4
+    graph = Hypergraph(5, needs=[[], [], [4], []], gives=[[2, 4, 3], [2], [3], [4]], start=[])
+    cutter = Cutter(graph, [2, 3])
+    assert cutter.cut([], [0, 1, 2, 3]) == Cut((3, 4), (0, 3))
+    assert cutter.cut([], [2, 0, 3, 1]) == Cut((2,), (0, 1))
+    assert cutter.cut([], [1, 3, 0, 2]) == Cut((3,), (0, 2))
+    assert not cutter.reached_by([1, 2])
+    assert cutter.reached_by([1, 2, 3])
+    assert cutter.reached_by([0])
+
+
+def test_of_several_that_lack_the_one_with_most_takers_is_cut_then_the_first() -> None:
+    # 0 needs 1 and 2, which 1 makes at once; 3 is a target of its own, made of 2 in the second graph
+    one = Hypergraph(4, needs=[[2, 1], []], gives=[[0], [1, 2]], start=[])
+    assert Cutter(one, [0]).cut([], [0, 1]) == Cut((0, 1), (1,))
+    two = Hypergraph(4, needs=[[1, 2], [], [2], []], gives=[[0], [1, 2], [3], [3]], start=[])
+    assert Cutter(two, [0, 3]).cut([], [0, 2, 3, 1]) == Cut((0, 2), (1,))
+
+
+def test_what_cannot_be_made_is_cut_before_all_else() -> None:
+    # 0 is made of 1, which action 2 makes; action 0 lacks 3 as well, which only comes of itself
+    graph = Hypergraph(4, needs=[[1, 3], [1], [], [3]], gives=[[0], [0], [1], [3]], start=[])
+    for forbidden in (frozenset[int](), frozenset({3})):
+        cutter = Cutter(graph, [0], forbidden)
+        assert cutter.actions == [1, 2]
+        assert cutter.cut([], [2, 1]) == Cut((0, 3), (1,))
+        assert cutter.cut([], [1, 2]) == Cut((0, 1, 3), (2,))
+
+
+def test_where_targets_are_lost_the_cut_of_the_first_has_no_members() -> None:
+    graph = Hypergraph(6, needs=[[5, 1], [3, 2], [0], []], gives=[[4], [4, 1], [2], [0, 5]], start=[])
+    cutter = Cutter(graph, [5, 4, 1])
+    assert cutter.hopeless == Cut((1, 3), ())
+    assert (cutter.targets, cutter.actions) == ([1, 4, 5], [])
+    assert Cutter(graph, [4]).hopeless == Cut((1, 3, 4), ())
+    assert Cutter(graph, [2]).hopeless is None
+    assert Cutter(graph, [2], frozenset({2})).hopeless == Cut((2,), ())
+    assert Cutter(graph, [2], frozenset({3})).hopeless == Cut((0, 2), ())
+
+
+def test_a_cut_is_widened_by_what_cannot_be_made() -> None:
+    # 0 comes of 1, of nothing, and by actions that can never run; nothing makes 3 and 4
+    graph = Hypergraph(
+        6,
+        needs=[[1], [5, 2, 3], [4, 5], [2, 3], [5], [3], []],
+        gives=[[0], [0], [0], [2], [1], [2], [5, 0]],
+        start=[5],
+    )
+    cutter = Cutter(graph, [0])
+    assert cutter.widened([0]) == Cut((0, 2, 3, 4), (0, 6))
+    assert cutter.widened([5, 0]) == Cut((0, 2, 3, 4), (0, 6))
+    assert cutter.widened([0, 1]) == Cut((0, 1, 2, 3, 4), (4, 6))
+    assert Cutter(graph, [0], frozenset({6})).widened([0]) == Cut((0, 2, 3, 4), (0,))
+    assert Cutter(graph, [0], frozenset({1, 3, 6})).widened([0, 1]) == Cut((0, 1, 4), (4,))
+    assert cutter.widened([0, 3]) == Cut((0, 3, 4), (0, 6))  # 2 is not needed for it
+    assert cutter.widened([5]) == Cut((), ())
