@@ -24,18 +24,17 @@ if TYPE_CHECKING:
     from foon_asp.api.cross_check import CrossChecked, cross_check
     from foon_asp.api.difference import Difference, diff
     from foon_asp.api.explanation import Explanation, why_not
-    from foon_asp.api.foon import Foon, load
     from foon_asp.api.menu import Menu, menu
     from foon_asp.api.pareto import Front, pareto
-    from foon_asp.api.problem import Problem
     from foon_asp.api.regret import Regrets, regret
     from foon_asp.api.retrieval import Retrieved, retrieve
     from foon_asp.api.shopping import Shopping, shopping_list
     from foon_asp.api.tree import Tree
     from foon_asp.asp import Outcome, Reporter, Status
     from foon_asp.errors import BugError, FoonWarning, UserError
+    from foon_asp.foon import Foon, build, load
     from foon_asp.network import FunctionalUnit, Network, NetworkBuilder, ObjectNode, Source, TaskTree
-    from foon_asp.problem import ContainerRule, Costs, Objective
+    from foon_asp.problem import ContainerRule, Costs, Objective, Problem
     from foon_asp.proof import Simulation, Verdict
     from foon_asp.proof.verify import RefusedError
     from foon_asp.text import FoonReader, parse_node, write_units
@@ -54,10 +53,9 @@ _ROOMS = {
     "api.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),
     "api.explanation": ("Explanation", "why_not"),
-    "api.foon": ("Foon", "load"),
+    "foon": ("Foon", "build", "load"),
     "api.menu": ("Menu", "menu"),
     "api.pareto": ("Front", "pareto"),
-    "api.problem": ("Problem",),
     "api.regret": ("Regrets", "regret"),
     "api.retrieval": ("Retrieved", "retrieve"),
     "api.shopping": ("Shopping", "shopping_list"),
@@ -65,7 +63,7 @@ _ROOMS = {
     "asp": ("Outcome", "Reporter", "Status"),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
-    "problem": ("ContainerRule", "Costs", "Objective"),
+    "problem": ("ContainerRule", "Costs", "Objective", "Problem"),
     "proof": ("Simulation", "Verdict"),
     "proof.verify": ("RefusedError",),
     "text": ("FoonReader", "parse_node", "write_units"),
@@ -113,6 +111,7 @@ __all__ = [
     "VerifiedCertificate",
     "alternatives",
     "assist",
+    "build",
     "certify",
     "check",
     "clash",

@@ -255,7 +255,7 @@ def test_trees_in_files_are_checked_and_compared(source: Path, cli: Cli, tmp_pat
     file = saved(cli("search", "bfs", *words, "--format", "foon"), tmp_path / "tree.txt")
     answer_file = saved(cli("solve", *words, "--format", "json"), tmp_path / "answer.json")
     problem = foon_asp.load(source).problem("macaroni")
-    tree = problem.read_tree(file)
+    tree = foon_asp.Tree.read(problem, file)
     checked = foon_asp.check(problem, file)
     assert checked.json() == cli("check", file, *words, "--format", "json").json
     assert f"{checked}\n" == cli("check", file, *words).out
@@ -268,8 +268,8 @@ def test_trees_in_files_are_checked_and_compared(source: Path, cli: Cli, tmp_pat
         cli("diff", file, "solve " + " ".join(map(str, words)), *words, "--format", "json").json
     )
     assert {unit.motion for unit in found.only_right} == {"tilt"}
-    assert problem.read_tree(answer_file) == best.tree
-    assert foon_asp.diff(best, problem.read_tree(answer_file)).partings == ()
+    assert foon_asp.Tree.read(problem, answer_file) == best.tree
+    assert foon_asp.diff(best, foon_asp.Tree.read(problem, answer_file)).partings == ()
 
 
 def test_a_tree_with_units_of_no_network(source: Path) -> None:
@@ -369,7 +369,7 @@ def test_a_varied_problem_is_one_that_is_asked_anew(goal: str, source: Path, tmp
     less = foon_asp.load(source, kitchen=fewer)
     assert {str(node) for node in less.kitchen} < {str(node) for node in foon.kitchen}
     varied = foon.problem(goal).vary(without="drinking glass")
-    assert varied.foon.kitchen == less.kitchen
+    assert Foon.of(varied).kitchen == less.kitchen
     assert answers(varied) == answers(less.problem(goal))
     gone = [node for node in foon.kitchen if node.label == "drinking glass"]
     assert answers(varied.vary(adding=gone)) == answers(foon.problem(goal))
@@ -463,7 +463,10 @@ def test_a_problem_put_together_by_hand() -> None:
     problem = Problem(plain.network, plain.kitchen, plain.goals, plain.rates, plain.utensils)
     assert foon_asp.solve(problem).units == foon_asp.solve(plain).units
     assert foon_asp.solve(plain).tree == foon_asp.solve(problem).tree
-    implied = problem.vary(containers="implied", without=problem.foon.kitchen[:1])
+    with pytest.raises(UserError, match="put together by hand"):
+        problem.vary(containers="implied")
+    foon = Foon.of(problem)
+    implied = foon.problem(*problem.goal_nodes).vary(containers="implied", without=foon.kitchen[:1])
     assert implied.kitchen == frozenset(sorted(plain.kitchen)[1:])
     assert implied.containers == "implied"
     assert implied.network is plain.network
@@ -472,7 +475,7 @@ def test_a_problem_put_together_by_hand() -> None:
 @pytest.mark.parametrize("seed", range(40))
 def test_random_problems_vary_as_if_they_were_posed_anew(seed: int) -> None:
     plain = random_problem(seed, foon_asp.ContainerRule.STRICT)
-    start = Problem(plain.network, plain.kitchen, plain.goals, plain.rates, plain.utensils)
+    start = Foon.of(plain).problem(*plain.goal_nodes)
     rng = random.Random(seed)
     kitchen = frozenset(rng.sample(range(len(plain.network.objects)), rng.randint(0, 5)))
     goals = tuple(rng.sample(range(len(plain.network.objects)), rng.randint(1, 2)))

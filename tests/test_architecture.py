@@ -17,7 +17,7 @@ MODULES = {path.relative_to(ROOT).as_posix(): path for path in sorted(PACKAGE.rg
 # foon_asp/__init__.py. Rooms that are planned and not built yet are named too.
 FACE = "the face"
 FLOORS = (
-    {"errors", "escapes", "resources", "deadline"},
+    {"errors", "escapes", "resources", "deadline", "warning"},
     {"network"},
     {"text", "problem", "bounds"},
     {"reduce", "grounding"},
@@ -25,6 +25,7 @@ FLOORS = (
     {"explain", "compare", "lint", "certificate", "engines", "dataset"},
     {"report"},
     {"batch"},
+    {"foon"},
     {"api"},
     {FACE},
     {"cli"},
@@ -35,6 +36,7 @@ FLOORS = (
 SIDEWAYS = {
     ("resources", "errors"): "a broken installation is reported as such",
     ("deadline", "errors"): "a limit that cannot be held is refused",
+    ("warning", "errors"): "what is warned of has a class of its own",
     ("asp", "proof"): "every tree found is simulated before it is given out",
     ("engines", "certificate"): "which rules do no more than rule units out is asked of both",
 }

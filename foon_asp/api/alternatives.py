@@ -4,22 +4,14 @@ from collections.abc import Iterable
 from fractions import Fraction
 
 from foon_asp.api.answer import asked_with
-from foon_asp.api.arguments import (
-    Constants,
-    File,
-    Files,
-    Objectives,
-    at_least,
-    chosen_objectives,
-    settings,
-)
-from foon_asp.api.problem import taken
+from foon_asp.api.arguments import Constants, Objectives, at_least, chosen_objectives, settings
 from foon_asp.api.shown import Shown, page_bundle
 from foon_asp.api.tree import Tree
 from foon_asp.api.warning import Warner
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import alternatives as explain
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.report.alternatives import alternatives_json, alternatives_text
 from foon_asp.report.answer import costs_text
 from foon_asp.report.drawing import Drawing
@@ -40,9 +32,10 @@ class Alternatives(Shown, explain.Alternatives):
     @property
     def task_trees(self) -> tuple[Tree, ...]:
         """The trees as values, in the same order."""
-        problem, found = taken(self.problem), enumerate(self.trees, 1)
+        found = enumerate(self.trees, 1)
         return tuple(
-            problem.tree(tree.units, f"tree {number}: {costs_text(tree.costs)}") for number, tree in found
+            Tree.of(self.problem, tree.units, f"tree {number}: {costs_text(tree.costs)}")
+            for number, tree in found
         )
 
     def text(self) -> str:
@@ -65,7 +58,7 @@ class Alternatives(Shown, explain.Alternatives):
 
 
 def alternatives(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     best: int | None = None,

@@ -2,16 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from foon_asp.api.arguments import (
-    Constants,
-    File,
-    Files,
-    Objectives,
-    chosen_objectives,
-    file_weights,
-    settings,
-)
-from foon_asp.api.problem import Problem, taken
+from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, file_weights, settings
 from foon_asp.api.shown import Shown, picture_bundle
 from foon_asp.api.tree import Tree
 from foon_asp.api.warning import Warner
@@ -19,7 +10,8 @@ from foon_asp.asp import Outcome, Reporter, Settings
 from foon_asp.asp.soft import SoftOutcome
 from foon_asp.asp.soft import solve_soft as find_soft
 from foon_asp.asp.solver import solve as find
-from foon_asp.problem import problem as plain
+from foon_asp.dataset.paths import File, Files
+from foon_asp.problem import Problem
 from foon_asp.reduce import parse_reductions
 from foon_asp.report.answer import headline, outcome_json, outcome_text
 from foon_asp.report.clash import soft_json, soft_text
@@ -37,14 +29,9 @@ class Answer(Shown, Outcome):
     __slots__ = ()
 
     @property
-    def problem(self) -> Problem:
-        """What was asked."""
-        return taken(super().problem)
-
-    @property
     def tree(self) -> Tree | None:
         """The tree, in an order that executes; ``None`` where there is none."""
-        return None if self.units is None else self.problem.tree(self.units, headline(self))
+        return None if self.units is None else Tree.of(self.problem, self.units, headline(self))
 
     def text(self) -> str:
         """Give the answer as ``foon-asp solve`` does."""
@@ -93,7 +80,7 @@ class SoftAnswer(Shown, SoftOutcome):
 
 
 def solve(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     constraints: Files = (),
@@ -123,7 +110,7 @@ def solve(
 
 
 def solve_soft(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     soft: Mapping[File, int],
@@ -140,14 +127,9 @@ def solve_soft(
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    return SoftAnswer._make(find_soft(whole(problem), chosen, how, file_weights(soft), Warner()))
+    return SoftAnswer._make(find_soft(problem.whole, chosen, how, file_weights(soft), Warner()))
 
 
-def whole(problem: plain.Problem) -> plain.Problem:
-    """Give a problem over the whole network, which of a store has to be read for it."""
-    return problem.whole if isinstance(problem, Problem) else problem
-
-
-def asked_with(problem: plain.Problem, how: Settings) -> plain.Problem:
+def asked_with(problem: Problem, how: Settings) -> Problem:
     """Give a problem over all that the rules of these settings may be about."""
-    return whole(problem) if how.constraints or how.replaced is not None else problem
+    return problem.whole if how.constraints or how.replaced is not None else problem

@@ -1,30 +1,21 @@
 """What callers write, turned into what the rooms take; faults are said in the words of Python."""
 
 from collections.abc import Iterable, Mapping
-from decimal import Decimal
-from fractions import Fraction
-from os import PathLike
 from pathlib import Path
 
 from foon_asp.asp import Settings
 from foon_asp.asp.program import find_constraint
 from foon_asp.asp.soft import GREATEST_WEIGHT
+from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import memory_size, seconds
 from foon_asp.errors import UserError
-from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
+from foon_asp.problem import Objective, Problem, parse_objectives
 
-File = str | PathLike[str]
-"""A path; for a constraint also the name of one of ours, such as ``forbid_motion``."""
-
-Files = File | Iterable[File]
 Objectives = str | Iterable[str]
 """An objective, a list by commas, or several: the first counts most."""
 
 Constants = Mapping[str, object]
 """Values of ``#const`` by name."""
-
-Number = int | str | float | Decimal | Fraction
-"""An exact number; a float is taken as it is printed, so 0.9 is nine tenths."""
 
 
 def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, ...]:
@@ -33,16 +24,6 @@ def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, .
     if Objective.SUCCESS in objectives and problem.rates is None:
         raise UserError("the objective success needs the success rates of the motions: load(..., rates=FILE)")
     return objectives
-
-
-def container_rule(given: str) -> ContainerRule:
-    """Read the name of a container rule."""
-    try:
-        return ContainerRule(given)
-    except ValueError:
-        raise UserError(
-            f"found the containers {given!r}, expected one of {', '.join(ContainerRule)}"
-        ) from None
 
 
 def settings(
@@ -62,12 +43,6 @@ def settings(
     )
 
 
-def files(given: Files) -> tuple[Path, ...]:
-    """Read one path or several."""
-    one = isinstance(given, str | PathLike)
-    return tuple(map(Path, [given] if one else given))  # type: ignore[arg-type]
-
-
 def file_weights(given: Mapping[File, int]) -> dict[Path, int]:
     """Read the weights of constraint files, whole numbers from 1."""
     weights: dict[Path, int] = {}
@@ -81,22 +56,6 @@ def file_weights(given: Mapping[File, int]) -> dict[Path, int]:
             raise UserError(f"{name} has two weights")
         weights[file] = weight
     return weights
-
-
-def exact(given: Number, what: str) -> Fraction:
-    """Read an exact number."""
-    try:
-        return Fraction(repr(given) if isinstance(given, float) else given)
-    except (ValueError, ZeroDivisionError, OverflowError):
-        raise UserError(f"found {given!r} for {what}, expected a number such as '0.85'") from None
-
-
-def success_rate(given: Number, what: str) -> Fraction:
-    """Read an exact success rate."""
-    rate = exact(given, what)
-    if not 0 < rate <= 1:
-        raise UserError(f"found {given} for {what}, expected a number above 0 and at most 1")
-    return rate
 
 
 def at_least(number: int, least: int, what: str) -> int:

@@ -6,17 +6,18 @@ from os import PathLike
 from pathlib import Path
 
 from foon_asp.api.answer import asked_with
-from foon_asp.api.arguments import Constants, File, Files, Number, at_least, settings, success_rate
-from foon_asp.api.problem import taken
+from foon_asp.api.arguments import Constants, at_least, settings
 from foon_asp.api.shown import Shown
 from foon_asp.api.tree import Tree
-from foon_asp.api.warning import Warner, warn
+from foon_asp.api.warning import Warner
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import assist as explain
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Number, Problem, success_rate
 from foon_asp.report.answer import costs_text, counted
 from foon_asp.report.assist import assistance_json, assistance_text
 from foon_asp.text import read_rates
+from foon_asp.warning import warn
 
 
 class Assistance(Shown, explain.Assistance):
@@ -33,12 +34,12 @@ class Assistance(Shown, explain.Assistance):
     @property
     def task_trees(self) -> tuple[Tree | None, ...]:
         """The trees of the rows as values, ``None`` where a row has none."""
-        problem = taken(self.problem)
+        problem = self.problem
         return tuple(
             None
             if row.units is None or row.costs is None
-            else problem.tree(
-                row.units, f"{counted(len(row.helped), 'unit')} helped: {costs_text(row.costs)}"
+            else Tree.of(
+                problem, row.units, f"{counted(len(row.helped), 'unit')} helped: {costs_text(row.costs)}"
             )
             for row in self.rows
         )
@@ -53,7 +54,7 @@ class Assistance(Shown, explain.Assistance):
 
 
 def assist(
-    problem: plain.Problem,
+    problem: Problem,
     most: int | None = None,
     *,
     reach: Number | None = None,

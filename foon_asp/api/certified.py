@@ -7,17 +7,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from foon_asp.api.answer import Answer, whole
-from foon_asp.api.arguments import Constants, File, Files, Objectives, chosen_objectives, settings
-from foon_asp.api.foon import Foon
-from foon_asp.api.problem import taken
+from foon_asp.api.answer import Answer
+from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, settings
 from foon_asp.api.shown import Shown
 from foon_asp.api.warning import Warner
 from foon_asp.asp.solver import solve as find
 from foon_asp.certificate import Certificate, certify_outcome
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
+from foon_asp.foon import Foon
 from foon_asp.network import Network
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.proof import verify as proof
 from foon_asp.report.answer import outcome_json, outcome_text
 from foon_asp.report.certified import certificate_lines, verified_json, verified_text
@@ -72,7 +72,7 @@ class VerifiedCertificate(Shown, _VerifiedIn):
 
 
 def certify(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     constraints: Files = (),
@@ -88,14 +88,14 @@ def certify(
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
-    outcome = find(whole(problem), chosen, how, Warner())
+    outcome = find(problem.whole, chosen, how, Warner())
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), how.begun.watched("looking for a certificate"):
         outcome, certificate = certify_outcome(outcome, how, lambda: how.begun.passed)
     return Certified(Answer._make(outcome), certificate)
 
 
-def verify(data: Foon | plain.Problem, certificate: Certificate | str | PathLike[str]) -> VerifiedCertificate:
+def verify(data: Foon | Problem, certificate: Certificate | str | PathLike[str]) -> VerifiedCertificate:
     """Check a certificate against the data it speaks about, without any solver, and say what it proves.
 
     ``certificate`` is one that was found, or the path of a file. Raises :class:`RefusedError` for one that is
@@ -108,6 +108,6 @@ def verify(data: Foon | plain.Problem, certificate: Certificate | str | PathLike
             content = proof.load_certificate(Path(certificate))
         except (OSError, UnicodeDecodeError) as error:
             raise UserError(f"{certificate}: cannot be read: {error}") from None
-    read = (data if isinstance(data, Foon) else taken(data).foon).dataset.data
+    read = (data if isinstance(data, Foon) else Foon.of(data)).dataset.data
     verified = proof.verify(content, read.network, read.kitchen, read.rates, read.utensils)
     return VerifiedCertificate(verified, read.network, content)

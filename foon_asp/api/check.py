@@ -4,11 +4,10 @@ from collections.abc import Iterable
 from os import PathLike
 from typing import NamedTuple
 
-from foon_asp.api.problem import Problem, taken
 from foon_asp.api.shown import Shown
 from foon_asp.api.tree import Tree
 from foon_asp.network import FunctionalUnit, Source
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.proof import Simulation, Verdict, simulate_for
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.verdict import verdict_json, verdict_text
@@ -59,12 +58,11 @@ class Checked(Shown, _Checked):
         return list(zip(self.tree.units, self.tree.places, strict=True))
 
 
-def check(problem: plain.Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Checked:
+def check(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Checked:
     """Simulate a tree for the goals of a problem, and say whether and in which order it executes.
 
     ``tree`` is the path of a file, FOON text or an answer in JSON, or functional units in the order listed,
     such as a :class:`~foon_asp.TaskTree`.
     """
-    asked = taken(problem)
-    given = asked.read_tree(tree) if isinstance(tree, str | PathLike) else asked.given(tree)
+    given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
     return Checked(given, simulate_for(given.problem, given))

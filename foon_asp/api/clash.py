@@ -2,21 +2,14 @@
 
 from collections.abc import Mapping
 
-from foon_asp.api.answer import Answer, whole
-from foon_asp.api.arguments import (
-    Constants,
-    File,
-    Files,
-    Objectives,
-    chosen_objectives,
-    file_weights,
-    settings,
-)
+from foon_asp.api.answer import Answer
+from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, file_weights, settings
 from foon_asp.api.shown import Shown
 from foon_asp.api.warning import Warner
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import clash as explain
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.report.clash import clash_json, clash_text
 from foon_asp.report.drawing import Drawing
 
@@ -51,7 +44,7 @@ class Clash(Shown, explain.Clash):
 
 
 def clash(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     constraints: Files,
@@ -71,5 +64,5 @@ def clash(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if not how.constraints:
         raise UserError("name constraints; why_not explains other reasons")
-    found = explain.find_clash(whole(problem), chosen, how, file_weights(weights or {}), Warner())
+    found = explain.find_clash(problem.whole, chosen, how, file_weights(weights or {}), Warner())
     return Clash._make(found)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from foon_asp.api.retrieval import search_settings, searched
 from foon_asp.api.shown import Shown
 from foon_asp.compare import Comparison, all_proved, compare_goals, comparison_json
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.report.comparison_table import comparisons_markdown
 from foon_asp.search import SEARCHES
 
@@ -49,7 +49,7 @@ class Compared(Shown, _Compared):
 
 
 def compare_searches(
-    problem: plain.Problem,
+    problem: Problem,
     searches: Iterable[str] = tuple(SEARCHES),
     *,
     ties: str = "first",

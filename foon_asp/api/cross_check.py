@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from foon_asp.api.answer import Answer, SoftAnswer, solve, solve_soft, whole
-from foon_asp.api.arguments import Constants, File, Files, Objectives, file_weights, settings
+from foon_asp.api.answer import Answer, SoftAnswer, solve, solve_soft
+from foon_asp.api.arguments import Constants, Objectives, file_weights, settings
 from foon_asp.api.shown import Shown
+from foon_asp.dataset.paths import File, Files
 from foon_asp.engines import Asked, Check, DisagreementError
 from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.report.answer import outcome_json, outcome_text
 from foon_asp.report.clash import soft_json, soft_text
 from foon_asp.report.cross_check import check_lines, checked_dict
@@ -54,7 +55,7 @@ class CrossChecked(Shown, _CrossChecked):
 
 
 def cross_check(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     soft: Mapping[File, int] | None = None,
@@ -71,7 +72,7 @@ def cross_check(
     command ``foon-asp solve --cross-check`` then writes down all that is needed to look into it. Otherwise as
     :func:`foon_asp.solve`.
     """
-    problem = whole(problem)
+    problem = problem.whole
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if soft:
         found = solve_soft(

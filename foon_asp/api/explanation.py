@@ -1,10 +1,9 @@
 """Why there is no tree."""
 
-from foon_asp.api.answer import whole
-from foon_asp.api.problem import Problem
 from foon_asp.api.shown import Shown
 from foon_asp.explain import why_not as explain
-from foon_asp.problem import problem as plain
+from foon_asp.foon import Foon
+from foon_asp.problem import Problem
 from foon_asp.report.explanation import explanation_json, explanation_text
 
 
@@ -32,11 +31,11 @@ class Explanation(Shown, explain.Explanation):
         return explanation_json(self)
 
 
-def why_not(problem: plain.Problem) -> Explanation:
+def why_not(problem: Problem) -> Explanation:
     """Explain why there is no task tree, constraints left aside; :func:`foon_asp.clash` is about those.
 
     Takes time about linear in the network, which of a store is read as a whole.
     """
-    asked = whole(problem)
-    items = asked.foon.dataset.data.kitchen_items if isinstance(asked, Problem) else ()
+    asked = problem.whole
+    items = Foon.of(asked).dataset.data.kitchen_items
     return Explanation._make(explain.why_not(asked, items))

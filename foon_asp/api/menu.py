@@ -1,12 +1,13 @@
 """Several goals by one tree, beside a tree for each."""
 
 from foon_asp.api.answer import Answer, asked_with
-from foon_asp.api.arguments import Constants, File, Files, Objectives, chosen_objectives, settings
+from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, settings
 from foon_asp.api.shown import Shown
 from foon_asp.api.warning import Warner
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import menu as explain
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.report.answer import headline
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.menu import menu_json, menu_text
@@ -48,7 +49,7 @@ class Menu(Shown, explain.Menu):
 
 
 def menu(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     constraints: Files = (),

@@ -4,14 +4,14 @@ from fractions import Fraction
 from pathlib import Path
 
 from foon_asp.api.answer import asked_with
-from foon_asp.api.arguments import Constants, File, Files, Objectives, chosen_objectives, settings
-from foon_asp.api.problem import taken
+from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, settings
 from foon_asp.api.shown import Shown
 from foon_asp.api.tree import Tree
 from foon_asp.api.warning import Warner
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import pareto as explain
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.report.answer import costs_text
 from foon_asp.report.pareto import front_json, front_text
 
@@ -33,9 +33,10 @@ class Front(Shown, explain.Front):
     @property
     def task_trees(self) -> tuple[Tree, ...]:
         """The trees as values, in the same order."""
-        problem, found = taken(self.problem), enumerate(self.points, 1)
+        found = enumerate(self.points, 1)
         return tuple(
-            problem.tree(tree.units, f"point {number}: {costs_text(tree.costs)}") for number, tree in found
+            Tree.of(self.problem, tree.units, f"point {number}: {costs_text(tree.costs)}")
+            for number, tree in found
         )
 
     def text(self) -> str:
@@ -60,7 +61,7 @@ class Front(Shown, explain.Front):
 
 
 def pareto(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = ("units", "success"),
     *,
     constraints: Files = (),

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterable
 
-from foon_asp.api.answer import Answer, asked_with, whole
-from foon_asp.api.arguments import Constants, File, Files, Objectives, chosen_objectives, settings
+from foon_asp.api.answer import Answer, asked_with
+from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, settings
 from foon_asp.api.shown import Shown
 from foon_asp.api.warning import Warner
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import regret as explain
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Problem
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.regret import regrets_json, regrets_text
 
@@ -41,7 +42,7 @@ class Regrets(Shown, explain.Regrets):
 
 
 def regret(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     units: Iterable[int] = (),
@@ -59,7 +60,7 @@ def regret(
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     numbers = tuple(units)
-    asked = whole(problem) if numbers else asked_with(problem, how)
+    asked = problem.whole if numbers else asked_with(problem, how)
     found = [asked.network.unit_of_number(number) for number in numbers]
     ids = [unit for unit in found if unit is not None]
     if len(ids) < len(found):

@@ -3,12 +3,10 @@
 from typing import NamedTuple
 
 from foon_asp.api.arguments import at_least, settings
-from foon_asp.api.problem import Problem, taken
 from foon_asp.api.shown import Shown
 from foon_asp.api.tree import Tree
 from foon_asp.errors import UserError
-from foon_asp.problem import Costs
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Costs, Problem
 from foon_asp.proof import Simulation, Verdict, simulate_for
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.retrieval import retrieval_json, retrieval_text
@@ -36,7 +34,7 @@ class Retrieved(Shown, _Retrieved):
         """The tree in the order listed, ``None`` where the search has none."""
         if self.retrieval.ending is not Ending.TREE:
             return None
-        return self.problem.tree(self.retrieval.units)
+        return Tree.of(self.problem, self.retrieval.units)
 
     @property
     def executes(self) -> bool:
@@ -66,7 +64,7 @@ class Retrieved(Shown, _Retrieved):
 
 
 def retrieve(
-    problem: plain.Problem,
+    problem: Problem,
     search: str,
     *,
     ties: str = "first",
@@ -89,7 +87,7 @@ def retrieve(
     simulation = None
     if found.ending is Ending.TREE:
         simulation = simulate_for(problem, problem.tree(found.units))
-    return Retrieved(taken(problem), searches[0], found, simulation)
+    return Retrieved(problem, searches[0], found, simulation)
 
 
 def searched(names: list[str]) -> list[Search]:

@@ -4,27 +4,19 @@ from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 
-from foon_asp.api.answer import Answer, whole
-from foon_asp.api.arguments import (
-    Constants,
-    File,
-    Files,
-    Number,
-    Objectives,
-    at_least,
-    chosen_objectives,
-    exact,
-    settings,
-)
+from foon_asp.api.answer import Answer
+from foon_asp.api.arguments import Constants, Objectives, at_least, chosen_objectives, settings
 from foon_asp.api.shown import Shown
-from foon_asp.api.warning import Warner, warn
+from foon_asp.api.warning import Warner
+from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import shopping_list as explain
 from foon_asp.network import ObjectNode, Source
-from foon_asp.problem import problem as plain
+from foon_asp.problem import Number, Problem, exact
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.shopping import shopping_json, shopping_text
 from foon_asp.text import LineError, Price, parse_node, read_prices
+from foon_asp.warning import warn
 
 
 class Shopping(Shown, explain.Shopping):
@@ -63,7 +55,7 @@ class Shopping(Shown, explain.Shopping):
 
 
 def shopping_list(
-    problem: plain.Problem,
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     prices: File | Mapping[str, Number] | None = None,
@@ -82,7 +74,7 @@ def shopping_list(
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    asked = whole(problem)
+    asked = problem.whole
     by_id = None
     if prices is not None:
         listed = read_prices(Path(prices)) if isinstance(prices, str | PathLike) else _given(prices)

@@ -2,17 +2,19 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from os import PathLike
+from pathlib import Path
+from typing import Self
 
 from foon_asp.api.shown import picture_bundle, svg_text
-from foon_asp.network import Source, TaskTree
-from foon_asp.problem import given_outputs
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, Source, TaskTree, unit_at_level
+from foon_asp.problem import Problem, given_outputs
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.tree_drawing import given_tree
-from foon_asp.text import write_units
-
-if TYPE_CHECKING:
-    from foon_asp.api.problem import Problem
+from foon_asp.text import FoonReader, summarize, write_units
+from foon_asp.text.answer_file import read_listed_tree
+from foon_asp.warning import warn
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -24,9 +26,43 @@ class Tree(TaskTree):
     they list the same units in the same order.
     """
 
-    problem: "Problem" = field(compare=False)
+    problem: Problem = field(compare=False)
     places: tuple[Source, ...] = field(compare=False)
     claim: str = field(default="", compare=False)
+
+    @classmethod
+    def of(cls, problem: Problem, units: Iterable[int], claim: str = "") -> Self:
+        """Give units of a problem's network, by id and in the order given, as a tree."""
+        units = tuple(units)
+        network = problem.network
+        places = tuple(network.sources[unit][0] for unit in units)
+        return cls(tuple(network.unit(unit) for unit in units), problem, places, claim)
+
+    @classmethod
+    def given(cls, problem: Problem, units: Iterable[FunctionalUnit], places: Iterable[Source] = ()) -> Self:
+        """Take units of any origin as a tree for the goals of a problem, in the order listed.
+
+        Without ``places``, units stand where the network has them, or in no file.
+        """
+        units = tuple(unit_at_level(unit, problem.network.level) for unit in units)
+        about = problem.about(units)
+        return cls(units, about, tuple(places) or tuple(map(about.place, units)))
+
+    @classmethod
+    def read(cls, problem: Problem, file: str | PathLike[str]) -> Self:
+        """Read a tree from FOON text, or from an answer of foon-asp in JSON, whatever its units are.
+
+        It is a tree for the goals of the problem, whatever goals an answer names. Raises
+        :class:`UserError` for a file that is not understood or has no tree.
+        """
+        reader = FoonReader()
+        listed = read_listed_tree(Path(file), reader)
+        for remark in summarize(reader.diagnostics):
+            warn(remark)
+        if listed.units is None:
+            raise UserError(f"{file}: the answer has no tree ({listed.status})")
+        units = [unit for unit, _ in listed.units]
+        return cls.given(problem, units, [place for _, place in listed.units])
 
     def __str__(self) -> str:
         return write_units(self.units, filter(None, [f"Task tree for: {self._goals()}", self.claim]))

@@ -1,20 +1,7 @@
-"""Warnings in Python's own way, as if the line of the caller had raised them."""
-
-import inspect
-import warnings
+"""Warnings of a search in Python's own way."""
 
 from foon_asp.asp import Reporter
-from foon_asp.errors import FoonWarning
-
-
-def warn(message: str) -> None:
-    """Warn of something in the data or in a constraint, at the first line outside the package."""
-    frame = inspect.currentframe()
-    level = 0
-    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "foon_asp":
-        frame = frame.f_back
-        level += 1
-    warnings.warn(message, FoonWarning, stacklevel=level + 1)
+from foon_asp.warning import warn
 
 
 class Warner(Reporter):

@@ -1,18 +1,38 @@
 """Data that was read, and the problems that are posed of it."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
+from foon_asp.dataset.names import changed_rates, item_ids, listed, node_ids
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network
-from foon_asp.problem import ContainerRule, Problem
-from foon_asp.text import Data, ListedObject, NodeNames, find_goal, kitchen_nodes, listed_nodes
+from foon_asp.network import FunctionalUnit, Network, pattern_at_level
+from foon_asp.problem import Names, Number, Origin, Problem, container_rule
+from foon_asp.text import (
+    Data,
+    ListedObject,
+    NodeNames,
+    find_goal,
+    kitchen_item_warning,
+    kitchen_nodes,
+    listed_nodes,
+    read_object_list,
+)
+from foon_asp.warning import warn
 
 
-def ask(data: Data, goals: Sequence[int], containers: str) -> Problem:
+def ask(data: Data, goals: Sequence[int], containers: str, origin: Origin | None = None) -> Problem:
     """Ask for goals of the network under a container rule."""
-    rule = ContainerRule(containers)
-    return Problem(data.network, data.kitchen, tuple(goals), data.rates, data.utensils, rule)
+    return Problem(
+        data.network,
+        data.kitchen,
+        tuple(goals),
+        data.rates,
+        data.utensils,
+        container_rule(containers),
+        origin=origin,
+    )
 
 
 class Dataset:
@@ -117,6 +137,78 @@ class Dataset:
             self.read_seconds,
         )
 
+    def vary(
+        self,
+        kitchen: Names | Path | None = None,
+        adding: Names = (),
+        without: Names = (),
+        rates: Mapping[str, Number] | None = None,
+    ) -> "Dataset":
+        """Give the same data with another kitchen or other success rates; see :meth:`foon_asp.Foon.vary`."""
+        if kitchen is None and not adding and not without and rates is None:
+            return self
+        dataset = self
+        only = None
+        if isinstance(kitchen, Path):
+            items = read_object_list(kitchen)
+            dataset = self.with_kitchen(items)
+            names = dataset.names
+            for item in items:
+                if not names.find(pattern_at_level(item.pattern, names.level)):
+                    warn(str(kitchen_item_warning(item)))
+        elif kitchen is not None:
+            only = frozenset(node_ids(self, kitchen, "kitchen item"))
+        more = frozenset(node_ids(self, adding, "kitchen item"))
+        with_more = dataset.varied(more, frozenset(), only, changed_rates(self.rates, rates))
+        less = frozenset(o for name in listed(without) for o in item_ids(with_more, name))
+        return with_more.varied((), less, None, with_more.rates) if less else with_more
+
+    def posed_anew(
+        self,
+        problem: Problem,
+        goals: Names | None,
+        containers: str | None,
+        *,
+        kitchen: Names | Path | None,
+        adding: Names,
+        without: Names,
+        rates: Mapping[str, Number] | None,
+    ) -> Problem:
+        """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
+        dataset = self.with_kitchen_of(problem).vary(kitchen, adding, without, rates)
+        ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
+        return _with_own_rates(dataset.problem(ids, containers or problem.containers), problem)
+
+    def posed_whole(self, problem: Problem) -> Problem:
+        """Pose a problem of these data over the whole network."""
+        dataset = self.with_kitchen_of(problem)
+        posed = dataset.problem(_whole_goals(problem), problem.containers, everything=True)
+        return _with_own_rates(posed, problem)
+
+    def posed_about(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
+        """Pose a problem of these data over what its goals and these units are made of."""
+        dataset = self.with_kitchen_of(problem)
+        data, goals = dataset.part(_whole_goals(problem), tree=units)
+        return _with_own_rates(ask(data, goals, problem.containers, dataset), problem)
+
+    def named_goals(self, names: Names) -> tuple[int, ...]:
+        """Find goals that Python names, by id in the whole network, each once.
+
+        Without a name, the goals file has to hold exactly one.
+        """
+        found = tuple(dict.fromkeys(node_ids(self, names, "goal")))
+        if found:
+            return found
+        if len(self.listed) == 1:
+            return tuple(node_ids(self, self.listed[0].pattern.label, "goal"))
+        known = ", ".join(repr(entry.pattern.label) for entry in self.listed)
+        raise UserError("name a goal" + (f"; the goals file has {known}" if known else ""))
+
+    def with_kitchen_of(self, problem: Problem) -> "Dataset":
+        """Give the same data with the kitchen that a problem posed of it has."""
+        more, less = self.kitchen_changes(problem)
+        return self.varied(more, less, None, self.rates) if more or less else self
+
     def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
         """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
 
@@ -130,7 +222,7 @@ class Dataset:
 
         ``everything`` asks for units that no goal needs to be there too.
         """
-        return ask(self.data, goals, containers)
+        return ask(self.data, goals, containers, self)
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
@@ -146,3 +238,17 @@ class Dataset:
         for unit in units:
             if not 0 <= unit < count:
                 raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
+
+
+def _whole_goals(problem: Problem) -> tuple[int, ...]:
+    """Give the goals of a problem by id in the whole network."""
+    return tuple(problem.network.object_number(goal) for goal in problem.goals)
+
+
+def _with_own_rates(posed: Problem, problem: Problem) -> Problem:
+    """Give a problem the rates that units of another one over the same network have of their own."""
+    if not problem.own_rates:
+        return posed
+    numbered = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}
+    own = {posed.network.unit_of_number(number): rate for number, rate in numbered.items()}
+    return replace(posed, own_rates={unit: rate for unit, rate in own.items() if unit is not None})

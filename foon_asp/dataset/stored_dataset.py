@@ -9,7 +9,7 @@ from functools import cached_property
 from foon_asp.dataset.dataset import Dataset, ask
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, network_at_level, pattern_at_level
-from foon_asp.problem import ContainerRule, Problem, require_rates
+from foon_asp.problem import Problem, container_rule, require_rates
 from foon_asp.store import Store
 from foon_asp.text import (
     Data,
@@ -187,10 +187,10 @@ class StoredDataset(Dataset):
     def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals; what no tree for them needs is not read, unless everything is asked for."""
         if everything:
-            return ask(self.data, goals, containers)
+            return ask(self.data, goals, containers, self)
         began = time.perf_counter()
-        cone = self._store.cone(goals, ContainerRule(containers), self._utensils, self._at_hand)
-        problem = ask(self._part(cone), _places(cone, goals), containers)
+        cone = self._store.cone(goals, container_rule(containers), self._utensils, self._at_hand)
+        problem = ask(self._part(cone), _places(cone, goals), containers, self)
         self.read_seconds += time.perf_counter() - began
         return problem
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from enum import StrEnum
 from functools import lru_cache
 
+from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, node_at_level
 
 
@@ -17,6 +18,16 @@ class ContainerRule(StrEnum):
 
     STRICT = "strict"
     IMPLIED = "implied"
+
+
+def container_rule(given: str) -> ContainerRule:
+    """Read the name of a container rule."""
+    try:
+        return ContainerRule(given)
+    except ValueError:
+        raise UserError(
+            f"found the containers {given!r}, expected one of {', '.join(ContainerRule)}"
+        ) from None
 
 
 def conditions(rule: ContainerRule, level: int) -> str:

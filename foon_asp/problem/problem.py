@@ -5,9 +5,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from pathlib import Path
+from typing import Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network, Source, TaskTree
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree
 from foon_asp.problem.containers import (
     ContainerRule,
     conditions,
@@ -16,17 +18,46 @@ from foon_asp.problem.containers import (
     network_needs,
 )
 from foon_asp.problem.costs import Costs
+from foon_asp.problem.number import Number
+
+Names = str | ObjectNode | Iterable[str | ObjectNode]
+"""One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
 
 
-@dataclass(frozen=True, eq=False)
+class Origin(Protocol):
+    """The data that a problem was posed of."""
+
+    def posed_anew(
+        self,
+        problem: "Problem",
+        goals: Names | None,
+        containers: str | None,
+        *,
+        kitchen: Names | Path | None,
+        adding: Names,
+        without: Names,
+        rates: Mapping[str, Number] | None,
+    ) -> "Problem":
+        """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
+
+    def posed_whole(self, problem: "Problem") -> "Problem":
+        """Pose a problem of these data over the whole network."""
+
+    def posed_about(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
+        """Pose a problem of these data over what its goals and these units are made of."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Problem:
-    """What is asked, before any cut.
+    """What is asked, before any cut: goals, a kitchen and a container rule, over a network.
 
-    ``kitchen`` and ``goals`` are object node ids of ``network``; all goals have to be made by one tree;
-    a goal that is named again counts once.
+    :meth:`foon_asp.Foon.problem` makes one from names. ``kitchen`` and ``goals`` are object node ids, places
+    in ``network.objects``; all goals have to be made by one tree; a goal that is named again counts once.
     ``rates`` gives the success rate of every motion, or is ``None`` where none are known. ``utensils``
     are the labels that the rule ``implied`` looks at. ``own_rates`` gives, by id, the rates of units that
-    do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any.
+    do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any. Of a store,
+    ``network`` is the part that can matter for the goals. ``origin`` is the data that it was posed of,
+    ``None`` for a problem put together by hand.
     """
 
     network: Network
@@ -36,6 +67,7 @@ class Problem:
     utensils: frozenset[str]
     containers: ContainerRule = ContainerRule.STRICT
     own_rates: Mapping[int, Fraction] = field(default_factory=dict)
+    origin: Origin | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
@@ -45,6 +77,57 @@ class Problem:
             network = self.network
             sources = (copies[0] for copies in network.sources)
             require_rates(zip(network.motions, sources, strict=True), self.rates)
+
+    @property
+    def goal_nodes(self) -> tuple[ObjectNode, ...]:
+        """The goals as object nodes."""
+        return tuple(self.network.objects[goal] for goal in self.goals)
+
+    def at_hand(self, node: ObjectNode) -> bool:
+        """Whether the kitchen has an object node."""
+        return self.network.object_id(node) in self.kitchen
+
+    @cached_property
+    def whole(self) -> "Problem":
+        """The same problem over the whole network: of a store, all of it is read."""
+        part = self.origin is not None and self.network.object_numbers
+        return self.origin.posed_whole(self) if self.origin is not None and part else self
+
+    def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
+        """Give the same problem over a network that has these units, as far as it is known to have them.
+
+        Of a store, what they are made of is read.
+        """
+        part = self.origin is not None and self.network.object_numbers
+        return self.origin.posed_about(self, units) if self.origin is not None and part else self
+
+    def vary(
+        self,
+        goals: Names | None = None,
+        containers: str | None = None,
+        *,
+        kitchen: Names | Path | None = None,
+        adding: Names = (),
+        without: Names = (),
+        rates: Mapping[str, Number] | None = None,
+    ) -> "Problem":
+        """Give the same problem with other goals, another container rule, kitchen or rates.
+
+        Nothing is read again, and nothing of the network is looked up anew; a store is read as far as the
+        new question goes beyond the old one. The kitchen varies as in :meth:`foon_asp.Foon.vary`. Raises
+        :class:`UserError` for names that mean nothing or too much, and for a problem put together by hand,
+        of which :func:`dataclasses.replace` makes another.
+        """
+        if self.origin is None:
+            raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
+        return self.origin.posed_anew(
+            self, goals, containers, kitchen=kitchen, adding=adding, without=without, rates=rates
+        )
+
+    def place(self, unit: FunctionalUnit) -> Source:
+        """Give the first place where a unit was read; one of no network stands in no file."""
+        number = self.network.unit_id(unit)
+        return Source("-", 0) if number is None else self.network.sources[number][0]
 
     @property
     def conditions(self) -> str:
@@ -65,6 +148,9 @@ class Problem:
     def makers(self) -> tuple[tuple[int, ...], ...]:
         """For each object node, the units that make it under the container rule, in order."""
         return network_makers(self.network, self.containers, self.utensils)
+
+    def __repr__(self) -> str:
+        return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"
 
     def rate(self, unit: int) -> Fraction:
         """Give the success rate of a unit: its own where it has one, else that of its motion.

@@ -1,0 +1,87 @@
+"""Names that callers of Python write, looked up in data."""
+
+import difflib
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from foon_asp.errors import UserError
+from foon_asp.network import Network, ObjectNode, node_at_level
+from foon_asp.problem import Names, Number, success_rate
+from foon_asp.text import GoalError, Wording, find_goal
+
+if TYPE_CHECKING:
+    from foon_asp.dataset.dataset import Dataset
+
+
+def node_id(dataset: "Dataset", name: str | ObjectNode, what: str) -> int:
+    """Find an object node by name, by id in the whole network; ``what`` it is: ``goal``, ``kitchen item``.
+
+    Raises :class:`UserError` with candidates for a name that means no object node, or several.
+    """
+    names = dataset.names
+    if isinstance(name, ObjectNode):
+        found = names.object_id(node_at_level(name, names.level))
+        if found is None:
+            raise UserError(f"no object node of the network is the {what} {str(name)!r}")
+        return found
+    try:
+        return find_goal(name, names, dataset.listed if what == "goal" else (), Wording(what, "", ""))
+    except GoalError as error:
+        raise UserError(in_python(error)) from None
+
+
+def node_ids(dataset: "Dataset", names: Names, what: str) -> list[int]:
+    """Find object nodes by name, as :func:`node_id` does each."""
+    return [node_id(dataset, name, what) for name in listed(names)]
+
+
+def item_ids(dataset: "Dataset", name: str | ObjectNode) -> list[int]:
+    """Give the kitchen items that a name stands for: a label for all that have it."""
+    names = dataset.names
+    if isinstance(name, str) and ";" not in name:
+        count, found = (
+            (len(ids := names.by_label.get(name, ())), ids)
+            if isinstance(names, Network)
+            else names.labelled(name)
+        )
+        if count > len(found):
+            raise UserError(f"{count} object nodes have the label {name!r}: name those you mean in full")
+        if count:
+            there = [o for o in found if dataset.at_hand(o)]
+            if not there:
+                raise UserError(f"the kitchen has nothing with the label {name!r}")
+            return there
+    found_one = node_id(dataset, name, "kitchen item")
+    if not dataset.at_hand(found_one):
+        raise UserError(f"the kitchen does not have {str(name)!r}")
+    return [found_one]
+
+
+def changed_rates(
+    known: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None
+) -> Mapping[str, Fraction] | None:
+    """Give success rates by motion with some of them changed."""
+    if changed is None:
+        return known
+    rates = dict(known or {})
+    for motion, given in changed.items():
+        rate = success_rate(given, f"the success rate of {motion!r}")
+        if known is not None and motion not in known:
+            near = difflib.get_close_matches(motion, known, n=3, cutoff=0.6)
+            similar = f"; similar are {', '.join(map(repr, near))}" if near else ""
+            raise UserError(f"no motion {motion!r} has a success rate{similar}")
+        rates[motion] = rate
+    return rates
+
+
+def listed(names: Names) -> list[str | ObjectNode]:
+    """Give one name or several as a list."""
+    # a node is a tuple, and so could pass for several names
+    return [names] if isinstance(names, str | ObjectNode) else list(names)
+
+
+def in_python(error: GoalError) -> str:
+    """Give the candidates of an error as Python has them."""
+    lines = [error.said, *(f"  {candidate!r}" for candidate in error.candidates)]
+    return "\n".join(lines + ([f"  ... and {error.more} more"] if error.more else []))

@@ -1,0 +1,197 @@
+"""Data that was loaded: a FOON, a kitchen and what stands beside them."""
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from os import PathLike
+from pathlib import Path
+from typing import Self
+
+from foon_asp.dataset import Dataset, dataset_files, read_dataset
+from foon_asp.dataset.names import in_python
+from foon_asp.dataset.paths import File, Files, files
+from foon_asp.errors import UserError
+from foon_asp.network import Network, ObjectNode
+from foon_asp.problem import Names, Number, Problem
+from foon_asp.text import Data, GoalError
+from foon_asp.warning import warn
+
+
+def load(
+    source: Files | None = None,
+    *,
+    kitchen: File | None = None,
+    rates: File | None = None,
+    utensils: File | None = None,
+    goals: File | None = None,
+    level: int = 3,
+    lenient: bool = False,
+) -> "Foon":
+    """Load a FOON and what stands beside it.
+
+    ``source`` is a folder with all of it, a network (FOON text or JSON), several of them, which are merged,
+    or a store; without it, the bundled kitchen. The other files take the place of those of the folder.
+    ``level`` says what counts of an object node: 3 all of it, 2 without contents, 1 the label. With
+    ``lenient`` lines that are not understood are left out.
+
+    Of a store, nothing but its indexes is read yet; :meth:`Foon.problem` reads what can matter for the
+    goals. What was assumed while reading is warned of (:class:`FoonWarning`) and in :attr:`Foon.warnings`.
+    Raises :class:`UserError` for what cannot be read.
+    """
+    if level not in {1, 2, 3}:
+        raise UserError(f"found level={level!r}, expected 1, 2 or 3")
+    paths = () if source is None else files(source)
+    one = isinstance(source, str | PathLike)
+    folder = paths[0] if one and paths[0].is_dir() else None
+    if source is not None and not paths:
+        raise UserError("expected the path of a FOON, found an empty list")
+    beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals)]
+    dataset = read_dataset(dataset_files(folder, () if folder else paths, *beside), lenient, level)
+    name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
+    foon = Foon(dataset, name)
+    for remark in foon.warnings:
+        warn(remark)
+    return foon
+
+
+def build(
+    network: Network,
+    *,
+    kitchen: Names = (),
+    rates: Mapping[str, Number] | None = None,
+    utensils: Iterable[str] = (),
+) -> "Foon":
+    """Give a network that was put together by hand, with what stands beside it, as data to ask.
+
+    ``kitchen`` is at hand, ``rates`` are the success rates of all motions, ``utensils`` the labels that the
+    container rule ``implied`` looks at. Raises :class:`UserError` for names that mean nothing or too much.
+    """
+    data = Data(network, frozenset(), (), (), None, frozenset(utensils), (), 0)
+    return Foon(Dataset(data, 0.0).vary(kitchen=kitchen, rates=rates), "a network")
+
+
+class Foon:
+    """A FOON, a kitchen, and what stands beside them; it never changes.
+
+    :func:`load` makes one. Object nodes go by name: a label that only one node has (or one entry of the goals
+    file), the one-line notation, or an :class:`ObjectNode`.
+
+    A store stays open while questions may read from it. ``with load(...) as foon:`` closes it at the end, as
+    :meth:`close` does; so does Python when nothing refers to the data any more.
+    """
+
+    def __init__(self, dataset: Dataset, name: str) -> None:
+        self._dataset = dataset
+        self._name = name
+
+    @classmethod
+    def of(cls, problem: Problem) -> Self:
+        """Give the data that a problem was posed of, with the kitchen that it has.
+
+        Those of a problem that was put together by hand are its pieces.
+        """
+        if isinstance(problem.origin, Dataset):
+            return cls(problem.origin.with_kitchen_of(problem), "a problem")
+        rates = None if problem.rates is None else dict(problem.rates)
+        data = Data(problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0)
+        return cls(Dataset(data, 0.0), "a problem")
+
+    def close(self) -> None:
+        """Close the store, for all that vary these data too; data that were read whole stay.
+
+        To read more of a closed store raises :class:`UserError`.
+        """
+        self._dataset.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def problem(self, *goals: str | ObjectNode, containers: str = "strict") -> Problem:
+        """Ask for goals, all of which one tree has to make; without any, for the one of the goals file.
+
+        ``containers`` is ``strict`` or ``implied``. Raises :class:`UserError` with candidates for a name that
+        means no object node, or several.
+        """
+        return self._dataset.problem(self._dataset.named_goals(goals), containers)
+
+    def vary(
+        self,
+        *,
+        kitchen: Names | Path | None = None,
+        adding: Names = (),
+        without: Names = (),
+        rates: Mapping[str, Number] | None = None,
+    ) -> "Foon":
+        """Give the same data with another kitchen or other success rates.
+
+        ``kitchen`` is all that is at hand: names, or the path of a kitchen file as a :class:`~pathlib.Path`.
+        Then what is named in ``adding`` comes in and what is named in ``without`` goes out, where a label
+        stands for every item of the kitchen that has it. ``rates`` are new rates of some motions, above 0
+        and at most 1.
+        """
+        varied = self._dataset.vary(kitchen, adding, without, rates)
+        return self if varied is self._dataset else Foon(varied, self._name)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What was assumed while reading, with files and lines; empty when nothing was."""
+        advice = () if self._dataset.has_kitchen else (_NO_KITCHEN,)
+        return (*self._dataset.remarks, *advice)
+
+    @property
+    def level(self) -> int:
+        """What counts of an object node: 3 all of it, 2 without contents, 1 the label."""
+        return self._dataset.names.level
+
+    @property
+    def network(self) -> Network:
+        """The whole network; of a store, all of it is read."""
+        return self._dataset.data.network
+
+    @property
+    def kitchen(self) -> tuple[ObjectNode, ...]:
+        """Everything at hand, in the order of the network; of a store, all of it is read."""
+        data = self._dataset.data
+        return tuple(data.network.objects[o] for o in sorted(data.kitchen))
+
+    @property
+    def goals(self) -> tuple[ObjectNode, ...]:
+        """The object nodes of the goals file; raises :class:`UserError` for an entry that matches none."""
+        try:
+            return tuple(map(self._node, dict.fromkeys(self._dataset.each_goal(()))))
+        except GoalError as error:
+            raise UserError(in_python(error)) from None
+
+    @property
+    def rates(self) -> dict[str, Fraction] | None:
+        """The success rates by motion, exact; ``None`` where none are known."""
+        rates = self._dataset.rates
+        return None if rates is None else dict(rates)
+
+    @property
+    def utensils(self) -> frozenset[str]:
+        """The labels that the container rule ``implied`` looks at."""
+        return self._dataset.utensils
+
+    def nodes(self, label: str) -> tuple[ObjectNode, ...]:
+        """Give the object nodes that have a label; of a store, the first dozen or more."""
+        names = self._dataset.names
+        found = names.by_label.get(label, ()) if isinstance(names, Network) else names.labelled(label)[1]
+        return tuple(map(self._node, found))
+
+    @property
+    def dataset(self) -> Dataset:
+        """What the rooms below ask the data with."""
+        return self._dataset
+
+    def _node(self, o: int) -> ObjectNode:
+        names = self._dataset.names
+        return names.objects[o] if isinstance(names, Network) else names.node(o)
+
+    def __repr__(self) -> str:
+        return f"<Foon of {self._name}>"
+
+
+_NO_KITCHEN = "no kitchen is given, so nothing is at hand: load(..., kitchen=FILE)"

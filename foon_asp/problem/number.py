@@ -1,0 +1,25 @@
+"""Exact numbers that callers write."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+from foon_asp.errors import UserError
+
+Number = int | str | float | Decimal | Fraction
+"""An exact number; a float is taken as it is printed, so 0.9 is nine tenths."""
+
+
+def exact(given: Number, what: str) -> Fraction:
+    """Read an exact number; raises :class:`UserError` that says ``what`` it was to be."""
+    try:
+        return Fraction(repr(given) if isinstance(given, float) else given)
+    except (ValueError, ZeroDivisionError, OverflowError):
+        raise UserError(f"found {given!r} for {what}, expected a number such as '0.85'") from None
+
+
+def success_rate(given: Number, what: str) -> Fraction:
+    """Read an exact success rate; raises :class:`UserError` that says ``what`` it was to be."""
+    rate = exact(given, what)
+    if not 0 < rate <= 1:
+        raise UserError(f"found {given} for {what}, expected a number above 0 and at most 1")
+    return rate

@@ -1,0 +1,16 @@
+"""Warnings in Python's own way, as if the line of the caller had raised them."""
+
+import inspect
+import warnings
+
+from foon_asp.errors import FoonWarning
+
+
+def warn(message: str) -> None:
+    """Warn of something in the data or in a constraint, at the first line outside the package."""
+    frame = inspect.currentframe()
+    level = 0
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "foon_asp":
+        frame = frame.f_back
+        level += 1
+    warnings.warn(message, FoonWarning, stacklevel=level + 1)
