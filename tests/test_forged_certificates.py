@@ -195,7 +195,6 @@ FORGED: dict[str, Forged] = {
         proof={"weights": [[0, ["1/2"]], [0, ["1/2"]]]}
     ),
     "_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
-    "_count: expected a whole number": plain(costs=[True]),
     "_rational: expected a number such as 3/2": plain(proof={"weights": [[0, ["one"]]]}, stays=KIND),
     "_rational: expected a fraction in lowest terms": plain(proof={"weights": [[0, ["2/2"]]]}),
     "_rational: a fraction has more than … digits": plain(
@@ -209,13 +208,13 @@ FORGED: dict[str, Forged] = {
     "__init__: an objective stands twice": plain(
         objective=["units", "units"], costs=[1, 1], proof={"weights": [[0, ["1", "1"]]]}
     ),
-    "__init__: success is claimed, but no rates are given": plain(
+    "_costly: success is claimed, but no rates are given": plain(
         **{**SUCCESS, **NOTHING}, at=PLAIN._replace(rates=None), stays=WORDS
     ),
-    "__init__: a motion has no success rate": plain(
+    "_costly: a motion has no success rate": plain(
         **{**SUCCESS, **NOTHING}, at=PLAIN._replace(rates={"pour": Fraction(1, 2)}), stays=KIND
     ),
-    "__init__: a rate is not between 0 and 1": plain(
+    "_costly: a rate is not between 0 and 1": plain(
         **{**SUCCESS, **NOTHING, "claim": "optimal", "bound": None, "costs": ["2"]},
         at=PLAIN._replace(rates=dict.fromkeys(("pour", "mix", "bake", "dig"), Fraction(2))),
     ),
@@ -311,10 +310,7 @@ FORGED: dict[str, Forged] = {
     "_branch: expected the id of a unit": plain(
         proof={"branch": {"unit": False}, "without": LEAF, "using": {"weights": []}}
     ),
-    "_by_objective: expected one of … for each objective": plain(costs=[1, 1], stays=KIND),
-    "_read: expected one part of a weight for each objective": plain(
-        proof={"weights": [[0, ["1", "1"]]]}, stays=KIND
-    ),
+    "_read: expected one part of a weight for each objective": plain(proof={"weights": [[0, ["1", "1"]]]}),
     "_read: expected rates of motions in a weight, and none of 0 or 1": plain(
         **SUCCESS, proof={"weights": [[0, [{"99/100": "1"}]]]}
     ),

@@ -4,9 +4,9 @@ import random
 
 import pytest
 
-from foon_asp.network import FunctionalUnit, ObjectNode, TaskTree
-from foon_asp.problem import ContainerRule
-from foon_asp.proof import Obstacle, Verdict, simulate
+from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source, TaskTree
+from foon_asp.problem import ContainerRule, Problem
+from foon_asp.proof import Obstacle, Verdict, simulate, simulate_for
 from tests import oracle
 from tests.random_problems import random_problem
 
@@ -47,6 +47,44 @@ def test_a_cycle_is_named_and_only_when_it_is_to_blame() -> None:
     assert verdict(lacking, [A], C) == (Verdict.NEVER, (), Obstacle(0, B), Obstacle(0, B))
     itself = [unit([B], [B])]
     assert verdict(itself, [A], B) == (Verdict.NEVER, (), Obstacle(0, B), Obstacle(0, B, (0,)))
+
+
+def test_the_missing_input_is_the_first_that_is_not_at_hand() -> None:
+    missing = Obstacle(0, C)
+    assert verdict([unit([A, B, C, D], [E])], [A, B], E) == (Verdict.NEVER, (), missing, missing)
+
+
+def test_a_cycle_is_found_behind_what_nobody_makes() -> None:
+    """The first unit waits for a unit that lacks something, and after that one for a circle."""
+    first, dead, turning = unit([B, C], [E]), unit([D], [B]), unit([C], [C])
+    ring = Obstacle(0, B, (2,))
+    assert verdict([first, dead, turning], [A], E) == (Verdict.NEVER, (), Obstacle(0, B), ring)
+
+
+def test_many_ways_to_the_same_missing_input_are_gone_once() -> None:
+    """Each of two units waits for both of the next two: there are 2 ** 60 ways, and no circle."""
+    steps = [(ObjectNode.of("left", [str(n)]), ObjectNode.of("right", [str(n)])) for n in range(61)]
+    units = [unit(list(steps[n]), [made]) for n in range(60) for made in steps[n + 1]][::-1]
+    missing = Obstacle(0, steps[59][0])
+    assert verdict(units, [A], steps[60][0]) == (Verdict.NEVER, (), missing, missing)
+
+
+def test_a_problem_has_its_own_kitchen_and_goals() -> None:
+    builder = NetworkBuilder()
+    for line, step in enumerate((unit([A], [B]), unit([C], [D]))):
+        builder.add(step.motion, step.inputs, step.outputs, Source("plain", line))
+    network = builder.build()
+    a, b, c, d = (network.object_id(node) for node in (A, B, C, D))
+    assert (a, b, c, d) == (0, 1, 2, 3)
+    problem = Problem(network, frozenset({0}), (1,), None, frozenset())
+    assert simulate_for(problem, TaskTree((unit([A], [B]),))) == (Verdict.AS_LISTED, (0,), None, None)
+    missing = Obstacle(0, C)
+    found = simulate_for(problem, TaskTree((unit([C], [D]), unit([A], [B]))))
+    assert found == (Verdict.NEVER, (1,), missing, missing)
+    goal = Obstacle(None, B)
+    assert simulate_for(problem, TaskTree(())) == (Verdict.NEVER, (), goal, goal)
+    foreign = Obstacle(0, E)  # the network does not have it, so the kitchen has none
+    assert simulate_for(problem, TaskTree((unit([E], [B]),))) == (Verdict.NEVER, (), foreign, foreign)
 
 
 @pytest.mark.parametrize("rule", list(ContainerRule))

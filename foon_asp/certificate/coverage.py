@@ -29,8 +29,7 @@ class Coverage(NamedTuple):
         return frozenset(
             unit
             for unit, motion in enumerate(network.motions)
-            if motion in self.motions
-            or (nodes and not nodes.isdisjoint((*network.inputs[unit], *network.outputs[unit])))
+            if motion in self.motions or not nodes.isdisjoint((*network.inputs[unit], *network.outputs[unit]))
         )
 
 

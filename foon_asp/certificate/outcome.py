@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from operator import sub
 from typing import Any
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
@@ -82,11 +83,11 @@ def _costs_at_odds(
     cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
     if certificate.claim == "bound":
         least = _read(arrays, content["bound"])
-        if arrays.order.sign(_minus(cost, least)) < 0:
+        if arrays.order.sign([*map(sub, cost, least)]) < 0:
             return f"the certificate proves the bound {content['bound']}, and the tree costs less"
         return None
     proved = arrays.order.total(arrays.costs[a] for a in arrays.actions(content["tree"]))
-    if arrays.order.sign(_minus(cost, proved)) != 0:
+    if arrays.order.sign([*map(sub, cost, proved)]) != 0:
         return f"the certificate proves another tree optimal, {_tree(outcome, content['tree'])}"
     return None
 
@@ -100,10 +101,6 @@ def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
         else:
             vector.append(Fraction(part))
     return tuple(vector)
-
-
-def _minus(one: Vector, other: Vector) -> Vector:
-    return tuple(a - b for a, b in zip(one, other, strict=True))
 
 
 def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:

@@ -20,6 +20,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
+from functools import cache
 from itertools import accumulate
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -96,9 +97,9 @@ def load_certificate(file: Path) -> Any:
     :func:`read_certificate`.
     """
     with file.open("rb") as stream:
-        raw = stream.read(_LETTERS + 1)
-    if len(raw) > _LETTERS:
-        raise LimitError(f"it has more than {_LETTERS:,} letters")
+        raw = stream.read(_LETTERS)
+        if stream.peek():
+            raise LimitError(f"it has more than {_LETTERS:,} letters")
     return read_certificate(raw.decode("utf-8"))
 
 
@@ -191,22 +192,15 @@ class _Check:
     ) -> None:
         self.allowed = _STEPS + _STEPS_EACH * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
-        self.logarithms: dict[Fraction, tuple[Fraction, Fraction]] = {}
+        self.minus_log = cache(self._minus_log)  # of a rate
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
-        self.rates, self.utensils = rates, utensils
+        self.rates, self.utensils = rates or {}, utensils
         self.containers = certificate["containers"]
         _require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
         self.objectives = tuple(_list(certificate["objective"]))
         _require(all(objective in OBJECTIVES for objective in self.objectives), "an objective is unknown")
         _require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
-        self.costly: frozenset[Fraction] = frozenset()  # the rates that cost something
-        if "success" in self.objectives:
-            _require(rates is not None, "success is claimed, but no rates are given")
-            known = rates or {}
-            motions = set(network.motions)
-            _require(motions <= known.keys(), "a motion has no success rate")
-            _require(all(0 <= known[motion] <= 1 for motion in motions), "a rate is not between 0 and 1")
-            self.costly = frozenset(known[motion] for motion in motions) - {0, 1}
+        self.costly = self._costly(rates) if "success" in self.objectives else frozenset()
         self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
         _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         forbidden = _object(certificate["forbidden"], ("motions", "objects"))
@@ -215,11 +209,19 @@ class _Check:
         self.not_covered = _names(certificate["not_covered"])
         # these are nobody's labels, and could say anything in lines of their own
         _require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
-        self.needs: dict[int, frozenset[int]] = {}
-        self.gives: dict[int, frozenset[int]] = {}
+        self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit
         self.cuts = [frozenset(_numbers(cut, len(network.objects))) for cut in _list(certificate["cuts"])]
         self.members = [frozenset(self._members(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
+
+    def _costly(self, given: Mapping[str, Fraction] | None) -> frozenset[Fraction]:
+        """Give the rates that cost something."""
+        _require(given is not None, "success is claimed, but no rates are given")
+        motions = set(self.network.motions)
+        _require(motions <= self.rates.keys(), "a motion has no success rate")
+        found = frozenset(self.rates[motion] for motion in motions)
+        _require(all(0 <= rate <= 1 for rate in found), "a rate is not between 0 and 1")
+        return found - {0, 1}
 
     def claim(self) -> Verified:
         """Check tree, costs and proof."""
@@ -229,10 +231,8 @@ class _Check:
         if listed is not None:
             _require(bool(self.objectives), "a tree is given, but no objective")
             amount, costs = self._tree(_list(listed))
-            stated = [
-                c if objective == "success" else _count(c) for objective, c in self._by_objective("costs")
-            ]
-            computed = [str(c) if isinstance(c, Fraction) else c for c in costs]
+            computed = json.dumps([str(c) if isinstance(c, Fraction) else c for c in costs])
+            stated = json.dumps(self.certificate["costs"])  # which tells 1 from True and from 1.0
             _require(stated == computed, f"the tree costs {computed}, not what is stated")
         else:
             _require(self.certificate["costs"] is None, "costs are given, but no tree")
@@ -245,7 +245,7 @@ class _Check:
             _require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
         elif claim == "bound":
             _require(bool(self.objectives), "expected objectives")
-            bound = self._amount("bound")
+            bound = self._read(self.certificate["bound"])
             _require(
                 listed is None or self._sign(self._sum([amount, _negative(bound)])) >= 0, "the bound is false"
             )
@@ -273,16 +273,16 @@ class _Check:
         at_hand = set(self.kitchen)
         for unit in _numbers(units, len(self.network), ascending=False):
             _require(unit not in self.ruled_out, f"unit {unit} of the tree is forbidden")
-            _require(self._needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input in its turn")
-            at_hand.update(self._gives(unit))
+            _require(self.needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input in its turn")
+            at_hand.update(self.gives(unit))
         _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
-        items = {o for unit in units for o in self._needs(unit) if o in self.kitchen}
+        items = {o for unit in units for o in self.needs(unit) if o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
         total = self._sum(map(self._cost, members))
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
-                rates = [(self.rates or {})[self.network.motions[u]] for u in units]
+                rates = [self.rates[self.network.motions[u]] for u in units]
                 _require(0 not in rates, "a tree that never succeeds is no better than another")
                 if sum(rate.denominator.bit_length() for rate in rates) > _WRITTEN:
                     raise LimitError("the success rate of the tree is too long a number to be written")
@@ -340,7 +340,7 @@ class _Check:
         self.met.add(place)
         cut = self.cuts[place]
         before = any(goal in cut and goal not in self.kitchen for goal in self.goals) or any(
-            not cut.isdisjoint(self._needs(member)) for member in used if member < len(self.network)
+            not cut.isdisjoint(self.needs(member)) for member in used if member < len(self.network)
         )
         _require(before, f"cut {number} holds neither a goal nor what a used unit needs")
         return self.members[place] - without
@@ -355,7 +355,7 @@ class _Check:
                 yield len(network) + o
                 continue
             for unit in network.producers[o]:
-                if o in self._gives(unit) and cut.isdisjoint(self._needs(unit)):
+                if o in self.gives(unit) and cut.isdisjoint(self.needs(unit)):
                     yield unit
 
     def _needs(self, unit: int) -> frozenset[int]:
@@ -365,16 +365,13 @@ class _Check:
         located in the utensil, is another input of the unit. Below level 3 nodes do not say what they hold:
         a unit needs what all the units need that it stands for.
         """
-        found = self.needs.get(unit)
-        if found is None:
-            network = self.network
-            found = frozenset(network.inputs[unit])
-            if self.containers == "implied":
-                whole = network.detailed or network
-                for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
-                    needed = self._needed(map(whole.objects.__getitem__, whole.inputs[detail]))
-                    found &= {network.object_id(node_at_level(node, network.level)) for node in needed}
-            self.needs[unit] = found
+        network = self.network
+        found = frozenset(network.inputs[unit])
+        if self.containers == "implied":
+            whole = network.detailed or network
+            for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
+                needed = self._needed(map(whole.objects.__getitem__, whole.inputs[detail]))
+                found &= {network.object_id(node_at_level(node, network.level)) for node in needed}
         return found
 
     def _gives(self, unit: int) -> frozenset[int]:
@@ -382,22 +379,20 @@ class _Check:
 
         Below level 3 a unit makes what any of the units makes that it stands for.
         """
-        found = self.gives.get(unit)
-        if found is None:
-            network = self.network
-            found = frozenset(network.outputs[unit])
-            if self.containers == "implied":
-                whole = network.detailed or network
-                made: set[int | None] = set()
-                for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
-                    inputs = [whole.objects[o] for o in whole.inputs[detail]]
-                    skipped = set(inputs).difference(self._needed(inputs))
-                    for node in map(whole.objects.__getitem__, whole.outputs[detail]):
-                        if node not in skipped:
-                            made.add(network.object_id(node_at_level(node, network.level)))
-                found &= made
-            self.gives[unit] = found
-        return found
+        network = self.network
+        if self.containers == "strict":
+            return frozenset(network.outputs[unit])
+        whole = network.detailed or network
+        made: set[ObjectNode] = set()
+        for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
+            inputs = [whole.objects[o] for o in whole.inputs[detail]]
+            skipped = set(inputs).difference(self._needed(inputs))
+            made.update(
+                node_at_level(node, network.level)
+                for node in map(whole.objects.__getitem__, whole.outputs[detail])
+                if node not in skipped
+            )
+        return frozenset(o for o in network.outputs[unit] if network.objects[o] in made)
 
     def _needed(self, inputs: Iterable[ObjectNode]) -> list[ObjectNode]:
         """Leave out the inputs of a unit that the rule ``implied`` takes as given."""
@@ -418,11 +413,10 @@ class _Check:
         network = self.network
         motions, labels = set(self.motions), set(self.labels)
         nodes = {o for o, node in enumerate(network.objects) if node.label in labels}
-        if motions or nodes:
-            for unit, motion in enumerate(network.motions):
-                touched = (*network.inputs[unit], *network.outputs[unit])
-                if motion in motions or not nodes.isdisjoint(touched):
-                    yield unit
+        for unit, motion in enumerate(network.motions):
+            touched = (*network.inputs[unit], *network.outputs[unit])
+            if motion in motions or not nodes.isdisjoint(touched):
+                yield unit
 
     def _cost(self, member: int) -> Amount:
         """Give what a unit or an item costs by each objective."""
@@ -435,7 +429,7 @@ class _Check:
             elif objective == "units":
                 cost[level, None] = Fraction(1)
             elif objective == "success":
-                cost[level, (self.rates or {})[network.motions[member]]] = Fraction(1)
+                cost[level, self.rates[network.motions[member]]] = Fraction(1)
             else:
                 _require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
                 inputs = network.inputs[member]
@@ -445,16 +439,13 @@ class _Check:
                 cost[level, None] = Fraction(count)
         return cost
 
-    def _sign(self, amount: Amount) -> int:
-        """Give -1, 0 or 1 for an amount below, equal to or above zero; the first objective not 0 decides."""
+    def _sign(self, amount: Amount) -> Fraction | int:
+        """Give a number with the sign of an amount; the first objective that is not 0 decides."""
         for level, objective in enumerate(self.objectives):
             if objective == "success":
-                sign = self._minus_log_sign(
-                    {r: e for (at, r), e in amount.items() if at == level and r is not None}
-                )
+                sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
             else:
-                value = amount.get((level, None), Fraction(0))
-                sign = (value > 0) - (value < 0)
+                sign = amount.get((level, None), 0)
             if sign:
                 return sign
         return 0
@@ -471,46 +462,37 @@ class _Check:
         _require(type(unit) is int and 0 <= unit < len(network), "expected the id of a unit")
         return int(unit)
 
-    def _by_objective(self, key: str) -> list[tuple[str, Any]]:
-        found = _list(self.certificate[key])
-        _require(len(found) == len(self.objectives), f"expected one of {key} for each objective")
-        return list(zip(self.objectives, found, strict=True))
-
-    def _amount(self, key: str) -> Amount:
-        return self._read(self.certificate[key])
-
     def _read(self, stated: Any) -> Amount:
         """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
         amount: Amount = {}
         parts = _list(stated)
         _require(len(parts) == len(self.objectives), "expected one part of a weight for each objective")
-        for level, (objective, part) in enumerate(zip(self.objectives, parts, strict=True)):
+        for level, objective in enumerate(self.objectives):
             if objective == "success":
-                for name, exponent in _object(part).items():
+                for name, exponent in _object(parts[level]).items():
                     rate = _rational(name)
                     _require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
                     amount[level, rate] = _rational(exponent)
             else:
-                amount[level, None] = _rational(part)
+                amount[level, None] = _rational(parts[level])
         return amount
 
-    def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> int:
-        """Give the sign of the sum of ``e * -log(rate)``: is the product of ``rate ** e`` below 1, or above?
+    def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
+        """Give a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
 
         Bounds of the logarithms decide where they can. Otherwise, with the exponents over one denominator,
-        the product is below 1 exactly when its power by that denominator is, and that one is a quotient of
-        whole numbers. A rate of 0 costs more than any weight.
+        the product of ``rate ** e`` is below 1 exactly when its power by that denominator is, and that one is
+        a quotient of whole numbers. A rate of 0 costs more than any weight.
         """
-        if exponents.get(Fraction(0)):
-            return 1 if exponents[Fraction(0)] > 0 else -1
+        if never := exponents.get(Fraction(0)):
+            return never
         exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
         for size in accumulate(map(_bits, exponents.values())):
             self._spend_on(4000 + size)  # bounds of logarithms have hundreds of bits themselves
-        bounds = [(e, *self._minus_log(rate)) for rate, e in exponents.items()]
-        if sum(e * (low if e > 0 else high) for e, low, high in bounds) > 0:
-            return 1
-        if sum(e * (high if e > 0 else low) for e, low, high in bounds) < 0:
-            return -1
+        bounds = [[e * bound for bound in self.minus_log(rate)] for rate, e in exponents.items()]
+        low, high = sum(map(min, bounds)), sum(map(max, bounds))
+        if low > 0 or high < 0:
+            return low
         common = math.lcm(*(e.denominator for e in exponents.values()))
         powers = {rate: int(e * common) for rate, e in exponents.items()}
         bits = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
@@ -519,10 +501,10 @@ class _Check:
         self._spend(bits * math.isqrt(bits) // 64)
         above, below = 1, 1
         for rate, power in powers.items():
-            over, under = rate.numerator ** abs(power), rate.denominator ** abs(power)
-            above *= over if power > 0 else under
-            below *= under if power > 0 else over
-        return (above < below) - (above > below)
+            up, down = max(power, 0), max(-power, 0)
+            above *= rate.numerator**up * rate.denominator**down
+            below *= rate.denominator**up * rate.numerator**down
+        return below - above
 
     def _minus_log(self, rate: Fraction) -> tuple[Fraction, Fraction]:
         """Give bounds of ``-log(rate)`` from below and above.
@@ -531,8 +513,6 @@ class _Check:
         Those of the denominator and of the numerator of a rate next to 1 share their first digits, and more
         are computed (one for three bits).
         """
-        if rate in self.logarithms:
-            return self.logarithms[rate]
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
         precise = Context(prec=_DIGITS + min(shared, _NINES))
         self._spend((precise.prec // 10) ** 3)
@@ -542,7 +522,6 @@ class _Check:
             unit = Fraction(10) ** (logarithm.adjusted() + 1 - precise.prec) if logarithm else Fraction(0)
             low += sign * Fraction(logarithm) - unit
             high += sign * Fraction(logarithm) + unit
-        self.logarithms[rate] = low, high
         return low, high
 
     def _add(self, total: Amount, amount: Amount) -> None:
@@ -579,15 +558,11 @@ def _negative(amount: Amount) -> Amount:
 def _described(network: Network) -> list[Any]:
     """List all that a claim about a network can depend on; below level 3 also what it was made from."""
     nodes = [
-        (label, _sorted(states), _sorted(relations), contents)
+        (label, sorted(states), sorted(relations), contents)
         for label, states, relations, contents in network.objects
     ]
     below = [] if network.detailed is None else [_described(network.detailed), network.stands_for]
     return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
-
-
-def _sorted(values: frozenset[Any]) -> list[Any]:
-    return sorted(values) if len(values) > 1 else [*values]
 
 
 def _digest(value: object) -> str:
@@ -646,11 +621,6 @@ def _goal(value: Any, network: Network) -> int:
     (found,) = _numbers([goal["id"]], len(network.objects))
     _require(str(network.objects[found]) == goal["node"], "a goal is not the node of its id")
     return found
-
-
-def _count(value: Any) -> int:
-    _require(type(value) is int, "expected a whole number")
-    return int(value)
 
 
 def _rational(value: Any) -> Fraction:

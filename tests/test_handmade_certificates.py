@@ -1,0 +1,758 @@
+"""What the verifier says of certificates written by hand: what is proved, what is refused, in how many steps.
+
+tests/test_forged_certificates.py has a certificate for every check; here is what the checks compute.
+"""
+
+import hashlib
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source, network_at_level
+from foon_asp.problem import ContainerRule, Problem
+from foon_asp.proof import verify
+from foon_asp.proof.verify import LimitError, RefusedError, digests, load_certificate, read_certificate
+from tests.handmade_certificate import Content, check, handmade
+
+
+def network(*units: tuple[str, list[ObjectNode], list[ObjectNode]]) -> Network:
+    builder = NetworkBuilder()
+    for line, (motion, inputs, outputs) in enumerate(units):
+        builder.add(motion, inputs, outputs, Source("handmade", line + 1))
+    return builder.build()
+
+
+def accepted(problem: Problem, **values: Any) -> verify.Verified:
+    return check(handmade(problem, **values), problem)
+
+
+def refusal(problem: Problem, **values: Any) -> str:
+    """Give why a certificate with these values is refused."""
+    with pytest.raises(RefusedError) as refused:
+        accepted(problem, **values)
+    return str(refused.value)
+
+
+START, RARE = ObjectNode.of("start"), ObjectNode.of("rare")
+SALT = ObjectNode.of("salt", [], [], [("contains", ["grain", "iodine"])])
+MIDDLE, END, OTHER = (ObjectNode.of(label) for label in ("middle", "end", "other"))
+# The end is poured of the start, or baked of a middle that is mixed; what is rare nobody has.
+POUR, MIX, BAKE, DIG = range(4)
+PLAIN = Problem(
+    network(
+        ("pour", [START], [END]),
+        ("mix", [START, SALT], [MIDDLE]),
+        ("bake", [MIDDLE], [END]),
+        ("dig", [RARE], [OTHER]),
+    ),
+    frozenset({0, 2}),
+    (1,),
+    {"pour": Fraction(1, 2), "mix": Fraction(3, 4), "bake": Fraction(1), "dig": Fraction(0)},
+    frozenset(),
+)
+START_ID, END_ID, SALT_ID, MIDDLE_ID, RARE_ID, OTHER_ID = range(6)
+BOUND: Content = {"claim": "bound", "bound": ["0"]}
+NO_TREE: Content = {"claim": "infeasible", "objective": []}
+POURED: Content = {"tree": [POUR], "costs": [1]}
+NO_POURING: Content = {"forbidden": {"motions": ["pour"], "objects": []}}
+ONE = {"weights": [[0, ["1"]]]}
+BOTH = {"weights": [[0, ["1"]], [1, ["1"]]]}
+
+
+# --- what is proved
+
+
+@pytest.mark.parametrize(
+    ("objective", "tree", "costs", "cuts", "weights"),
+    [
+        (["units"], [POUR], [1], [[END_ID]], [["1"]]),
+        (["inputs"], [POUR], [1], [[END_ID]], [["1"]]),
+        (["inputs+ingredients"], [POUR], [1], [[END_ID]], [["1"]]),
+        # with the middle, the members are pouring and mixing
+        (["success"], [MIX, BAKE], ["3/4"], [[END_ID, MIDDLE_ID]], [[{"3/4": "1"}]]),
+        (
+            ["success", "units"],
+            [MIX, BAKE],
+            ["3/4", 2],
+            [[END_ID], [END_ID, MIDDLE_ID]],
+            [[{}, "1"], [{"3/4": "1"}, "1"]],
+        ),
+        # what pours and what mixes asks for the start
+        (["kitchen"], [POUR], [1], [[START_ID, END_ID, MIDDLE_ID]], [["1"]]),
+        (
+            ["kitchen", "units"],
+            [POUR],
+            [1, 1],
+            [[END_ID], [START_ID, END_ID, MIDDLE_ID]],
+            [["0", "1"], ["1", "0"]],
+        ),
+    ],
+)
+def test_an_optimum_by_each_objective(
+    objective: list[str], tree: list[int], costs: list[Any], cuts: list[Any], weights: list[Any]
+) -> None:
+    values: Content = {"objective": objective, "tree": tree, "costs": costs, "cuts": cuts}
+    values["proof"] = {"weights": [list(pair) for pair in enumerate(weights)]}
+    found = accepted(PLAIN, **values)
+    assert found == verify.Verified(
+        "optimal",
+        (END_ID,),
+        "strict",
+        3,
+        tuple(objective),
+        *((), (), ()),
+        tuple(tree),
+        tuple(Fraction(cost) for cost in costs),
+        len(cuts),
+    )
+    assert [str(cost) for cost in found.costs or ()] == [str(cost) for cost in costs]
+    assert accepted(PLAIN, **values, version=1) == found  # it says the same of strict containers
+
+
+@pytest.mark.parametrize(
+    ("objective", "cost"),
+    [("units", 2), ("inputs", 3), ("inputs+ingredients", 5), ("success", Fraction(3, 4)), ("kitchen", 2)],
+)
+def test_costs_of_a_tree(objective: str, cost: int | Fraction) -> None:
+    stated = str(cost) if isinstance(cost, Fraction) else cost
+    bound: list[Any] = [{}] if objective == "success" else ["0"]
+    values: Content = {"claim": "bound", "objective": [objective], "bound": bound, "tree": [MIX, BAKE]}
+    assert accepted(PLAIN, **values, costs=[stated]).costs == (cost,)
+    computed = f'["{stated}"]' if objective == "success" else f"[{stated}]"
+    said = f"the tree costs {computed}, not what is stated"
+    others: list[Any] = [[], [stated, stated], ["1"], [True], [1.0], None, {}, 1]
+    for other in others:
+        assert refusal(PLAIN, **values, costs=other) == said
+    assert refusal(PLAIN, **values, costs=[str(cost) + "0"]) == said
+    if objective != "success":
+        assert refusal(PLAIN, **values, costs=[float(cost)]) == said
+
+
+def test_a_cost_of_1_is_not_true() -> None:
+    values: Content = {**BOUND, "tree": [POUR]}
+    assert accepted(PLAIN, **values, costs=[1]).costs == (1,)
+    for other in (True, 1.0, "1"):
+        assert refusal(PLAIN, **values, costs=[other]) == "the tree costs [1], not what is stated"
+
+
+@pytest.mark.parametrize(
+    ("objective", "weight", "proved", "too_much"),
+    [
+        (["units"], ["1"], ["1"], ["1001/1000"]),
+        (["units"], ["1/3"], ["1/3"], ["1/2"]),
+        (["units", "inputs"], ["1", "0"], ["1", "0"], ["1", "1/9"]),
+        (["units", "inputs"], ["1", "0"], ["1/2", "7"], ["2", "-7"]),
+        (["units", "inputs"], ["1", "-1"], ["1", "-1"], ["1", "0"]),
+        # of the rates 1/2 and 1 the greater one costs nothing, but for a unit
+        (["success", "units"], [{}, "1"], [{}, "1"], [{}, "2"]),
+        (["success", "units"], [{}, "1"], [{"1/2": "-1"}, "9"], [{"1/2": "1/9"}, "-9"]),
+    ],
+)
+def test_bounds(objective: list[str], weight: list[Any], proved: list[Any], too_much: list[Any]) -> None:
+    """The cut is crossed by pouring and by baking, and both cost 1 by units and by inputs."""
+    values: Content = {"claim": "bound", "objective": objective, "cuts": [[END_ID]]}
+    values["proof"] = {"weights": [[0, weight]]}
+    assert accepted(PLAIN, **values, bound=proved).claim == "bound"
+    assert refusal(PLAIN, **values, bound=too_much) == "the weights do not add up to enough"
+
+
+def test_a_bound_and_the_tree_beside_it() -> None:
+    values: Content = {"claim": "bound", "cuts": [[END_ID]], "proof": ONE, **POURED}
+    assert accepted(PLAIN, **values, bound=["1"]).tree == (POUR,)
+    assert refusal(PLAIN, **values, bound=["2"]) == "the bound is false"
+
+
+def test_no_tree_at_all() -> None:
+    nobody = {**NO_TREE, "goals": [{"id": OTHER_ID, "node": "other"}], "proof": {"hopeless": 0}}
+    found = accepted(PLAIN, **nobody, cuts=[[RARE_ID, OTHER_ID]])
+    assert (found.claim, found.goals, found.objectives, found.tree, found.costs, found.cuts) == (
+        *("infeasible", (OTHER_ID,), (), None, None),
+        1,
+    )
+    crossed = "a cut said to be hopeless is crossed"
+    assert refusal(PLAIN, **nobody, cuts=[[OTHER_ID]]) == crossed  # by digging
+    tree: Content = {**nobody, **POURED, "objective": ["units"]}
+    assert refusal(PLAIN, **{**tree, "goals": [{"id": END_ID, "node": "end"}]}) == "there cannot be a tree"
+
+
+def test_what_is_forbidden_is_no_member() -> None:
+    values: Content = {"tree": [MIX, BAKE], "costs": [2], "cuts": [[END_ID], [END_ID, MIDDLE_ID]]}
+    found = accepted(PLAIN, **values, **NO_POURING, proof=BOTH)
+    assert (found.claim, found.motions, found.labels) == ("optimal", ("pour",), ())
+    assert refusal(PLAIN, **values, proof=BOTH) == "unit or item 0 carries more than it costs"
+    salty: Content = {"forbidden": {"motions": [], "objects": ["salt"]}}
+    assert accepted(PLAIN, **POURED, cuts=[[END_ID]], proof=ONE, **salty).labels == ("salt",)
+    assert refusal(PLAIN, **values, proof=BOTH, **salty) == "unit 1 of the tree is forbidden"
+    assert refusal(PLAIN, **POURED, **NO_POURING) == "unit 0 of the tree is forbidden"
+    for label in ("middle", "end"):  # an input of one, an output of the other
+        gone: Content = {"forbidden": {"motions": [], "objects": [label]}}
+        unit = MIX if label == "middle" else BAKE
+        assert refusal(PLAIN, **values, **gone) == f"unit {unit} of the tree is forbidden"
+
+
+def test_what_is_not_covered_is_passed_on() -> None:
+    found = accepted(PLAIN, **BOUND, not_covered=["a.lp 1", "b=2"])
+    assert found.not_covered == ("a.lp 1", "b=2")
+
+
+def test_the_tree_is_executed_in_its_order() -> None:
+    lacks = "unit 2 of the tree lacks an input in its turn"
+    assert refusal(PLAIN, **BOUND, tree=[BAKE, MIX], costs=[2]) == lacks
+    assert refusal(PLAIN, **BOUND, tree=[MIX], costs=[1]) == "the tree does not make every goal"
+    goals = [{"id": END_ID, "node": "end"}, {"id": MIDDLE_ID, "node": "middle"}]
+    assert refusal(PLAIN, **BOUND, **POURED, goals=goals) == "the tree does not make every goal"
+    assert accepted(PLAIN, **BOUND, tree=[POUR, MIX], costs=[2], goals=goals).goals == (END_ID, MIDDLE_ID)
+    at_hand = [{"id": START_ID, "node": "start"}]
+    assert accepted(PLAIN, tree=[], costs=[0], goals=at_hand).costs == (0,)
+
+
+def test_goals_at_hand_stand_behind_no_cut() -> None:
+    """Not even where items count, and a cut may hold them."""
+    goals = [{"id": START_ID, "node": "start"}, {"id": MIDDLE_ID, "node": "middle"}]
+    values: Content = {**BOUND, "objective": ["kitchen"], "goals": goals, "proof": ONE}
+    said = "cut 0 holds neither a goal nor what a used unit needs"
+    assert refusal(PLAIN, **values, cuts=[[START_ID]]) == said
+    assert accepted(PLAIN, **values, cuts=[[START_ID, MIDDLE_ID]]).cuts == 1
+
+
+# --- members and what they carry
+
+
+def test_a_unit_that_needs_a_node_of_the_cut_is_no_member() -> None:
+    """With both nodes in the cut, baking carries nothing of it; and mixing is the only other member."""
+    values: Content = {**NO_POURING, **BOUND, "cuts": [[END_ID], [END_ID, MIDDLE_ID]]}
+    assert accepted(PLAIN, **{**values, "bound": ["2"]}, proof=BOTH).cuts == 2
+    for weights, unit in (((1, 2), MIX), ((2, 1), BAKE)):
+        proof = {"weights": [[0, [str(weights[0])]], [1, [str(weights[1])]]]}
+        said = f"unit or item {unit} carries more than it costs"
+        assert refusal(PLAIN, **values, proof=proof) == said
+
+
+def test_items_are_members_of_their_own() -> None:
+    """Items are numbered behind the units; by units first, what has no cost by kitchen may carry it."""
+    values: Content = {**BOUND, "objective": ["units", "kitchen"], "bound": ["0", "1"]}
+    for item in (START_ID, SALT_ID):
+        cut = sorted({END_ID, MIDDLE_ID, item})
+        for number in ("1", "1/2"):
+            enough = {**values, "bound": ["0", number]}
+            proof = {"weights": [[0, ["0", number]]]}
+            assert accepted(PLAIN, **enough, cuts=[cut], proof=proof).claim == "bound"
+        said = f"unit or item {4 + item} carries more than it costs"
+        assert refusal(PLAIN, **values, cuts=[cut], proof={"weights": [[0, ["0", "2"]]]}) == said
+
+
+def test_after_an_item_the_other_members_of_a_cut_are_found() -> None:
+    values: Content = {**BOUND, "objective": ["kitchen"], "cuts": [[START_ID, END_ID]], "proof": ONE}
+    assert refusal(PLAIN, **values) == "unit or item 2 carries more than it costs"  # baking
+
+
+def test_weights_are_above_zero() -> None:
+    for weight in ("0", "-1"):
+        proof = {"weights": [[0, [weight]]]}
+        assert refusal(PLAIN, **BOUND, cuts=[[END_ID]], proof=proof) == "a weight is not above zero"
+
+
+def test_a_weight_speaks_of_rates_between_0_and_1() -> None:
+    """The motions have the rates 0, 1/2, 3/4 and 1."""
+    values: Content = {**BOUND, "bound": [{}], "objective": ["success"], "cuts": [[END_ID, MIDDLE_ID]]}
+    for rate in ("0", "1", "1/3", "2"):
+        proof = {"weights": [[0, [{rate: "1"}]]]}
+        said = "expected rates of motions in a weight, and none of 0 or 1"
+        assert refusal(PLAIN, **values, proof=proof) == said
+    for rate, unit in (("1/2", MIX), ("3/4", None)):
+        proof = {"weights": [[0, [{rate: "1"}]]]}
+        if unit is None:
+            assert accepted(PLAIN, **values, proof=proof).claim == "bound"
+        else:
+            said = f"unit or item {unit} carries more than it costs"
+            assert refusal(PLAIN, **values, proof=proof) == said
+
+
+def test_a_rate_of_0_costs_more_than_any_weight() -> None:
+    values: Content = {**BOUND, "bound": [{"1/2": "1000"}], "objective": ["success"]}
+    goals = [{"id": OTHER_ID, "node": "other"}]
+    at_hand = Problem(PLAIN.network, PLAIN.kitchen | {RARE_ID}, (OTHER_ID,), PLAIN.rates, frozenset())
+    values |= {"goals": goals, "cuts": [[OTHER_ID]], "proof": {"weights": [[0, [{"1/2": "1000"}]]]}}
+    assert accepted(at_hand, **values).claim == "bound"
+    branch = {"branch": {"unit": DIG}, "without": {"hopeless": 0}, "using": {"weights": []}}
+    assert accepted(at_hand, **{**values, "proof": branch}).claim == "bound"
+    assert refusal(at_hand, **{**values, "bound": [{}]}, tree=[DIG], costs=["0"]) == (
+        "a tree that never succeeds is no better than another"
+    )
+
+
+def test_rates_outside_of_0_and_1_are_refused() -> None:
+    for rate in (Fraction(-1, 10), Fraction(11, 10)):
+        odd = Problem(
+            PLAIN.network, PLAIN.kitchen, (END_ID,), {**(PLAIN.rates or {}), "dig": rate}, frozenset()
+        )
+        said = "a rate is not between 0 and 1"
+        assert refusal(odd, claim="bound", objective=["success"], bound=[{}]) == said
+        assert accepted(odd, **BOUND).claim == "bound"  # by units, rates are nobody's business
+
+
+def test_without_rates_all_but_success_is_proved() -> None:
+    plain = Problem(PLAIN.network, PLAIN.kitchen, (END_ID,), None, frozenset())
+    assert accepted(plain, **POURED, cuts=[[END_ID]], proof=ONE).claim == "optimal"
+    values: Content = {"claim": "bound", "objective": ["success"], "bound": [{}]}
+    assert refusal(plain, **values) == "success is claimed, but no rates are given"
+
+
+# --- branches
+
+
+def test_a_branch_on_a_unit() -> None:
+    """Without baking nothing makes the end; with it, it is paid for, and what it needs has to be made."""
+    using = {"weights": [[1, ["1"]]]}
+    proof = {"branch": {"unit": BAKE}, "without": {"hopeless": 0}, "using": using}
+    values: Content = {**BOUND, **NO_POURING, "cuts": [[END_ID], [MIDDLE_ID]], "bound": ["2"]}
+    assert accepted(PLAIN, **values, proof=proof).cuts == 2
+    not_used = "cut 1 holds neither a goal nor what a used unit needs"
+    assert refusal(PLAIN, **values, proof={**proof, "branch": {"unit": DIG}}) == not_used
+    more = {**values, "bound": ["3"]}
+    assert refusal(PLAIN, **more, proof=proof) == "the weights do not add up to enough"
+    paid = {**proof, "using": {"weights": [[0, ["1"]], [1, ["1"]]]}}
+    assert refusal(PLAIN, **values, proof=paid) == "unit or item 2 carries more than it costs"
+    twice = {**proof, "using": proof}
+    assert refusal(PLAIN, **values, proof=twice) == "a branch is taken twice"
+    forbidden = {**proof, "branch": {"unit": POUR}}
+    assert refusal(PLAIN, **values, proof=forbidden) == "a branch is taken twice"
+    crossed = {**proof, "without": {"hopeless": 1}}
+    assert refusal(PLAIN, **values, proof=crossed) == not_used
+
+
+def test_a_branch_on_an_item() -> None:
+    values: Content = {**BOUND, "objective": ["kitchen"], "bound": ["1"]}
+    values["cuts"] = [[START_ID, END_ID, MIDDLE_ID], [MIDDLE_ID]]
+    proof: Content = {"branch": {"item": START_ID}, "without": {"hopeless": 0}, "using": {"weights": []}}
+    assert accepted(PLAIN, **{**values, "cuts": values["cuts"][:1]}, proof=proof).claim == "bound"
+    using = {**proof, "using": {"weights": [[1, ["1"]]]}}  # an item needs nothing
+    not_used = "cut 1 holds neither a goal nor what a used unit needs"
+    assert refusal(PLAIN, **values, proof=using) == not_used
+    other = {**proof, "branch": {"item": SALT_ID}}
+    assert refusal(PLAIN, **values, proof=other) == "a cut said to be hopeless is crossed"
+    twice = {**proof, "using": proof}
+    assert refusal(PLAIN, **values, proof=twice) == "a branch is taken twice"
+
+
+@pytest.mark.parametrize(
+    ("branch", "said"),
+    [
+        ({"unit": 4}, "expected the id of a unit"),
+        ({"unit": -1}, "expected the id of a unit"),
+        ({"unit": True}, "expected the id of a unit"),
+        ({"unit": None}, "expected the id of a unit"),
+        ({"item": MIDDLE_ID}, "expected the id of a kitchen item"),
+        ({"item": False}, "expected the id of a kitchen item"),
+        ({"item": 2.0}, "expected the id of a kitchen item"),
+        ({"item": 0, "unit": 0}, "expected the keys unit"),
+        ({}, "expected the keys unit"),
+        ([], "expected an object"),
+    ],
+)
+def test_what_is_no_branch(branch: Any, said: str) -> None:
+    leaf: Content = {"weights": []}
+    proof = {"branch": branch, "without": leaf, "using": leaf}
+    assert refusal(PLAIN, **BOUND, objective=["kitchen"], proof=proof) == said
+
+
+# --- values of other kinds
+
+NO_ID = "expected ids of the network"
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"version": 0}, "expected version 2 of the format"),
+        ({"version": 3}, "expected version 2 of the format"),
+        ({"version": True}, "expected version 2 of the format"),
+        ({"version": 2.0}, "expected version 2 of the format"),
+        ({"version": "2"}, "expected version 2 of the format"),
+        ({"level": 2}, "not a claim about level 3"),
+        ({"level": 3.0}, "not a claim about level 3"),
+        ({"level": None}, "not a claim about level 3"),
+        ({"goals": []}, "expected goals, each of them once"),
+        ({"goals": [{"id": END_ID, "node": "end"}] * 2}, "expected goals, each of them once"),
+        ({"goals": [{"id": 6, "node": "end"}]}, NO_ID),
+        ({"goals": [{"id": -5, "node": "end"}]}, NO_ID),
+        ({"goals": [{"id": True, "node": "end"}]}, NO_ID),
+        ({"goals": [{"id": END_ID, "node": "start"}]}, "a goal is not the node of its id"),
+        ({"tree": [4]}, NO_ID),
+        ({"tree": [-1]}, NO_ID),
+        ({"tree": [0.0]}, NO_ID),
+        ({"tree": [POUR, POUR]}, "an id stands twice"),
+        ({"cuts": [[6]]}, NO_ID),
+        ({"cuts": [[-1]]}, NO_ID),
+        ({"cuts": [[]]}, "expected ids in order"),
+        ({"cuts": [[3, 1]]}, "expected ids in order"),
+        ({"cuts": [[1, 1]]}, "an id stands twice"),
+        ({"cuts": [[START_ID, END_ID]]}, "a cut holds a kitchen item"),
+        ({"proof": ONE}, "expected the number of a cut"),
+        ({"proof": {"weights": [[-1, ["1"]]]}}, "expected the number of a cut"),
+        ({"proof": {"weights": [[True, ["1"]]]}}, "expected the number of a cut"),
+        ({"proof": {"weights": [[0, ["1"]], [0, ["1"]]]}}, "expected cuts in order, each of them once"),
+        ({"proof": {"weights": [[1, ["1"]], [0, ["1"]]]}}, "expected cuts in order, each of them once"),
+        ({"proof": {"weights": [[0]]}}, "expected a cut and its weight"),
+        ({"proof": {"weights": ["ab"]}}, "expected a cut and its weight"),
+        ({"proof": {"hopeless": 0}}, "expected the number of a cut"),
+        ({"proof": {"hopeless": -1}}, "expected the number of a cut"),
+        ({"proof": {}}, "expected weights, a hopeless cut or a branch"),
+        ({"objective": ["units", "units"]}, "an objective stands twice"),
+        ({"objective": ["unit"]}, "an objective is unknown"),
+        ({"objective": []}, "expected objectives"),
+        ({"bound": []}, "expected one part of a weight for each objective"),
+        ({"bound": ["0", "0"]}, "expected one part of a weight for each objective"),
+        ({"bound": [0]}, "expected a number such as 3/2"),
+        ({"bound": ["1.5"]}, "expected a number such as 3/2"),
+        ({"bound": ["+1"]}, "expected a number such as 3/2"),
+        ({"bound": ["-0"]}, "expected a fraction in lowest terms"),
+        ({"bound": ["2/4"]}, "expected a fraction in lowest terms"),
+        ({"bound": ["1/1"]}, "expected a fraction in lowest terms"),
+        ({"bound": ["\u0661"]}, "expected a number such as 3/2"),
+        ({"costs": [0]}, "costs are given, but no tree"),
+        ({"claim": "optimal"}, "expected the tree that is optimal"),
+        ({"claim": "infeasible"}, "there cannot be a tree"),
+        ({"forbidden": {"motions": ["b", "a"], "objects": []}}, "expected names in order, each of them once"),
+        ({"forbidden": {"motions": [], "objects": ["a", "a"]}}, "expected names in order, each of them once"),
+        ({"forbidden": {"motions": [1], "objects": []}}, "expected names"),
+        ({"not_covered": ["a\nb"]}, "a constraint has no printable name"),
+        ({"containers": "loose"}, "expected the containers strict or implied"),
+        ({"containers": "implied", "version": 1}, verify._VERSION_1),
+    ],
+)
+def test_what_is_refused(values: Content, said: str) -> None:
+    assert refusal(PLAIN, **{**BOUND, **values}) == said
+
+
+def test_a_level_is_a_number() -> None:
+    plain = network_at_level(PLAIN.network, 1)
+    level_1 = Problem(plain, frozenset({0, 2}), (1,), PLAIN.rates, frozenset())
+    assert accepted(level_1, **BOUND).level == 1
+    assert refusal(level_1, **BOUND, level=True) == "not a claim about level 1"
+
+
+def test_what_holds_itself_is_refused() -> None:
+    proof: Content = {"branch": {"unit": 0}, "without": {"weights": []}}
+    proof["using"] = proof
+    with pytest.raises(RefusedError, match="branches within branches without end"):
+        check({**handmade(PLAIN, **BOUND), "proof": proof}, PLAIN)
+
+
+# --- the container rule
+
+CUP = ObjectNode.of("cup", [], [], [("contains", ["salt"])])
+IN_CUP = ObjectNode.of("salt", [], [("in", "cup")])
+
+
+def asked(
+    inputs: list[ObjectNode], lacking: int | None, goal: ObjectNode = END, rule: str = "implied"
+) -> str | None:
+    """Give why a unit does not make a goal where one of its inputs is lacking; ``None`` where it does.
+
+    It puts out its inputs as well. The cup is a utensil.
+    """
+    made = network(("pour", inputs, [END, *inputs]))
+    at_hand = frozenset(range(len(inputs))) - {lacking}
+    goals = (made.object_id(goal) or 0,)
+    problem = Problem(made, at_hand, goals, None, frozenset({"cup"}), ContainerRule(rule))
+    try:
+        accepted(problem, **BOUND, **POURED)
+    except RefusedError as refused:
+        return str(refused)
+    return None
+
+
+LACKS = "unit 0 of the tree lacks an input in its turn"
+
+
+@pytest.mark.parametrize(
+    ("vessel", "others", "given"),
+    [
+        (CUP, [IN_CUP], True),
+        (CUP, [START, IN_CUP], True),
+        (CUP, [ObjectNode.of("salt", ["dry"], [("on", "table"), ("under", "cup")])], True),  # any relation
+        (CUP, [], False),
+        (CUP, [SALT], False),  # nowhere
+        (CUP, [ObjectNode.of("salt", [], [("in", "bowl")])], False),
+        (CUP, [ObjectNode.of("flour", [], [("in", "cup")])], False),
+        (ObjectNode.of("cup"), [IN_CUP], False),  # of nothing
+        (ObjectNode.of("cup", [], [], [("contains", ["salt", "salt"])]), [IN_CUP], False),  # of two
+        (ObjectNode.of("bowl", [], [], [("contains", ["salt"])]), [IN_CUP], False),  # no utensil
+        (
+            ObjectNode.of("bowl", [], [], [("contains", ["salt"])]),
+            [ObjectNode.of("salt", [], [("in", "bowl")])],
+            False,
+        ),
+        (ObjectNode.of("cup", [], [("in", "cup")], [("contains", ["cup"])]), [], False),  # in itself
+    ],
+)
+def test_which_vessels_are_taken_as_given(vessel: ObjectNode, others: list[ObjectNode], given: bool) -> None:
+    inputs = [vessel, *others]
+    assert asked(inputs, lacking=None) is None
+    assert asked(inputs, lacking=0) == (None if given else LACKS)
+    assert asked(inputs, lacking=0, rule="strict") == LACKS
+    for place in range(1, len(inputs)):
+        assert asked(inputs, lacking=place) == LACKS
+    if given:  # nothing comes from nothing
+        said = "the tree does not make every goal"
+        assert asked(inputs, lacking=0, goal=vessel) == said
+        assert asked(inputs, lacking=None, goal=vessel) is None
+
+
+def test_a_unit_that_does_not_make_a_node_is_no_member() -> None:
+    made = network(("pour", [CUP, IN_CUP], [END, CUP]))
+    for rule, said in (("implied", None), ("strict", "a cut said to be hopeless is crossed")):
+        problem = Problem(made, frozenset({1}), (0,), None, frozenset({"cup"}), ContainerRule(rule))
+        # under strict the pouring needs the cup, so that it is a member only with another goal
+        proof = {"hopeless": 0}
+        assert accepted(problem, **NO_TREE, cuts=[[0]], proof=proof).claim == "infeasible"
+        ends = Problem(made, frozenset({1}), (2,), None, frozenset({"cup"}), ContainerRule(rule))
+        if said is None:
+            assert refusal(ends, **NO_TREE, cuts=[[2]], proof=proof) == "a cut said to be hopeless is crossed"
+            assert refusal(ends, **NO_TREE, cuts=[[0, 2]], proof=proof) == (
+                "a cut said to be hopeless is crossed"
+            )
+        else:
+            assert refusal(ends, **NO_TREE, cuts=[[2]], proof=proof) == said
+            assert accepted(ends, **NO_TREE, cuts=[[0, 2]], proof=proof).claim == "infeasible"
+
+
+SUGAR_CUP = ObjectNode.of("cup", [], [], [("contains", ["sugar"])])
+PEPPER_CUP = ObjectNode.of("cup", [], [], [("contains", ["pepper"])])
+PEPPER = ObjectNode.of("pepper", [], [("in", "cup")])
+PASTE = ObjectNode.of("paste")
+# Below level 3, the first two are one unit. The first takes its cup as given, the second does not, since
+# sugar is not among its inputs. The third does.
+DETAILED = network(
+    ("pour", [IN_CUP, CUP], [END, CUP]),
+    ("pour", [IN_CUP, SUGAR_CUP], [END, SUGAR_CUP]),
+    ("stir", [PEPPER, PEPPER_CUP], [PASTE, PEPPER_CUP]),
+)
+
+
+@pytest.mark.parametrize("level", [1, 2])
+def test_below_level_3_a_unit_needs_what_all_need_and_makes_what_any_makes(level: int) -> None:
+    merged = network_at_level(DETAILED, level)
+    assert merged.stands_for == ((0, 1), (2,))
+    salt, cup, end, pepper, paste = range(5)
+    labels = [node.label for node in merged.objects]
+    assert labels == ["salt", "cup", "end", "pepper", "paste"]
+
+    def tried(kitchen: set[int], tree: list[int], goal: int) -> str | None:
+        utensils = frozenset({"cup"})
+        problem = Problem(merged, frozenset(kitchen), (goal,), None, utensils, ContainerRule.IMPLIED)
+        try:
+            accepted(problem, **BOUND, tree=tree, costs=[len(tree)])
+        except RefusedError as refused:
+            return str(refused)
+        return None
+
+    assert tried({salt}, [0], end) is None
+    assert tried({salt}, [0], cup) is None  # that of sugar, which is made
+    assert tried({cup}, [0], end) == LACKS
+    assert tried({pepper}, [1], paste) is None
+    assert tried({pepper}, [1], cup) == "the tree does not make every goal"
+    assert tried({cup}, [1], paste) == LACKS.replace("0", "1")
+
+
+# --- digests
+
+
+def sha(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def test_digests_are_those_of_canonical_json() -> None:
+    """Written out by hand: a certificate of today has to fit the same data forever."""
+    bowl = ObjectNode.of(
+        "bowl", ["clean", "big", "red"], [("on", "tray"), ("in", "oven"), ("at", "home")], []
+    )
+    dish = ObjectNode.of("plat\u00e9", [], [], [("contains", ["salt", "egg", "egg"])])
+    small = network(("pour", [bowl, dish], [END]), ("mix", [END], [dish]))
+    written = (
+        '[3,[["bowl",["big","clean","red"],[["at","home"],["in","oven"],["on","tray"]],[]],'
+        '["plat\\u00e9",[],[],[["contains",["egg","egg","salt"]]]],["end",[],[],[]]],'
+        '["pour","mix"],[[0,1],[2]],[[2],[1]]]'
+    )
+    rates = {"pour": Fraction(1, 2), "mix": Fraction(3)}
+    assert digests(small, {2, 0}, rates, {"cup", "bowl"}) == {
+        "network": sha(written),
+        "kitchen": sha("[0,2]"),
+        "rates": sha('[["mix","3"],["pour","1/2"]]'),
+        "utensils": sha('["bowl","cup"]'),
+    }
+    assert digests(small, (), None, ())["rates"] == sha("null")
+    level_1 = network_at_level(small, 1)
+    assert digests(level_1, (), {}, ())["network"] == sha(
+        '[1,[["bowl",[],[],[]],["plat\\u00e9",[],[],[]],["end",[],[],[]]],'
+        f'["pour","mix"],[[0,1],[2]],[[2],[1]],{written},[[0],[1]]]'
+    )
+
+
+def test_a_seal_is_the_digest_of_all_else_with_sorted_keys() -> None:
+    assert verify.seal({"b": [1, "x"], "seal": "any", "a": None}) == sha('{"a":null,"b":[1,"x"]}')
+
+
+# --- steps and other limits
+
+
+def steps(monkeypatch: pytest.MonkeyPatch, needed: int, problem: Problem, **values: Any) -> None:
+    """Hold a certificate against the fewest steps that it needs, and against one less."""
+    monkeypatch.setattr(verify, "_STEPS_EACH", 0)
+    monkeypatch.setattr(verify, "_STEPS", needed)
+    accepted(problem, **values)
+    monkeypatch.setattr(verify, "_STEPS", needed - 1)
+    assert refusal(problem, **values) == f"to check it takes more than {needed - 1:,} steps"
+
+
+def rated(*rates: str) -> Problem:
+    """Make the end of the start, by a motion of each rate."""
+    made = network(*((f"go {number}", [START], [END]) for number in range(len(rates))))
+    known = {f"go {number}": Fraction(rate) for number, rate in enumerate(rates)}
+    return Problem(made, frozenset({0}), (1,), known, frozenset())
+
+
+def below(exponents: dict[str, str]) -> Content:
+    """Claim a bound by success that is proved without weights, as it is not above nothing."""
+    return {"claim": "bound", "objective": ["success"], "bound": [exponents]}
+
+
+def test_steps_of_looks_and_short_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    # a leaf; the bound, taken from the sum of nothing
+    steps(monkeypatch, 1 + 5, PLAIN, **BOUND)
+    # the cut, a node that two units make; the tree's cost; the leaf; the weight, added to nothing, and where
+    # the cut stands: its number, a goal, two members; their loads; the bound and its two sides
+    optimum: Content = {**POURED, "cuts": [[END_ID]], "proof": ONE}
+    steps(monkeypatch, 3 + 5 + 1 + 5 + 4 + 10 + 5 + 10, PLAIN, **optimum)
+    # what a load leaves of a cost is two numbers for each of the members
+    half = {"weights": [[0, ["1/2"]]]}
+    steps(monkeypatch, 3 + 1 + 5 + 4 + 10 + 20 + 5 + 10, PLAIN, **BOUND, cuts=[[END_ID]], proof=half)
+    # an item in a cut is one look, and one for the unit that makes it
+    items: Content = {**BOUND, "objective": ["kitchen"], "cuts": [[START_ID, END_ID, MIDDLE_ID]]}
+    steps(monkeypatch, 1 + 3 + 2 + 1 + 5 + 3 + 5 + 5 + 10, PLAIN, **items, proof=ONE)
+
+
+def test_steps_of_branches(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With and without digging, baking is branched on, where pouring is forbidden."""
+    bake = {"branch": {"unit": BAKE}, "without": {"hopeless": 0}, "using": {"weights": [[1, ["1"]]]}}
+    dig = {"branch": {"unit": DIG}, "without": bake, "using": bake}
+    values: Content = {**BOUND, **NO_POURING, "bound": ["2"], "cuts": [[END_ID], [MIDDLE_ID]], "proof": dig}
+    cuts = 3 + 2
+    root = 1 + 0 + 1  # a look, those used, those left out
+    using = 1 + 1 + 1
+    without_bake = (1 + 1 + 2) + (1 + 1 + 1 + 2)  # a cut's number, its goal, those used, its members
+    using_bake = (1 + 2 + 1) + 5 + (1 + 1 + 2 + 1) + 5 + 15 + 10  # what is used is paid for twice
+    with_dig = using + without_bake + using_bake
+    without = 1 + 0 + 2
+    without_bake = (1 + 0 + 3) + (1 + 1 + 0 + 2)
+    using_bake = (1 + 1 + 2) + 5 + (1 + 1 + 1 + 1) + 5 + 10 + 10
+    without_dig = without + without_bake + using_bake
+    steps(monkeypatch, cuts + root + with_dig + without_dig, PLAIN, **values)
+
+
+def test_steps_of_logarithms(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each exponent is 5 and the square of its 4,000 bits and more by 512, each logarithm 5 ** 3, once."""
+    e, log = 5 + 7**2, 5**3
+    steps(monkeypatch, 1 + 5 + e + log, PLAIN, **below({"1/2": "-1"}))
+    # an exponent of 0 and a rate of 1 take nothing
+    steps(monkeypatch, 1 + 5, PLAIN, **below({"1/2": "0"}))
+    tree: Content = {**below({}), "tree": [MIX, BAKE], "costs": ["3/4"]}
+    steps(monkeypatch, 10 + 10 + e + log + 1, PLAIN, **tree)
+    # mixing carries what it costs, and pouring less
+    weight = {"weights": [[0, [{"3/4": "1"}]]]}
+    values: Content = {**below({}), "cuts": [[END_ID, MIDDLE_ID]], "proof": weight}
+    packed = (e + log) + 5 + 4 + 10 + (10 + 2 * e + log)
+    steps(monkeypatch, 5 + 1 + packed + 5 + 5 + e, PLAIN, **values)
+    # 4,000 bits and 94 of the numerator and one of the denominator are below 8 * 512
+    steps(monkeypatch, 1 + 5 + e + log, PLAIN, **below({"1/2": str(-(2**93))}))
+    steps(monkeypatch, 1 + 5 + 5 + 8**2 + log, PLAIN, **below({"1/2": str(-(2**94))}))
+    # a rate with 33 bits in common takes 11 digits more
+    near = str(1 - Fraction(1, 10**10))
+    steps(monkeypatch, 1 + 5 + e + 6**3, rated(near), **below({near: "-1"}))
+
+
+def test_steps_of_products(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here 200 * 2 and 100 * 3 bits, whose root is 26: 700 * 26 / 64 is 284.4."""
+    equal = below({"1/2": "-200", "1/4": "100"})
+    steps(monkeypatch, 1 + 10 + 2 * 54 + 2 * 125 + 284, rated("1/2", "1/4"), **equal)
+
+
+def test_steps_of_long_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A number of 1,536 bits over 1: the square of three times 512."""
+    steps(monkeypatch, 1 + 5 + 3**2, PLAIN, **BOUND | {"bound": [str(-(2**1535))]})
+
+
+def test_a_check_has_five_million_steps_and_more_for_a_large_network() -> None:
+    """Rates with 420 nines and more, whose logarithms have 450 digits, which are 45 ** 3 steps each."""
+    rates = [str(1 - Fraction(1, 10**nines)) for nines in range(420, 476)]
+    said = "to check it takes more than 5,011,600 steps"  # for 56 units and two object nodes
+    assert refusal(rated(*rates), **below(dict.fromkeys(rates, "-1"))) == said
+
+
+def test_fractions_have_2_000_digits() -> None:
+    assert accepted(PLAIN, **BOUND | {"bound": ["-" + "9" * 1999]}).claim == "bound"
+    with pytest.raises(LimitError) as refused:
+        accepted(PLAIN, **BOUND | {"bound": ["-" + "9" * 2000]})
+    assert str(refused.value) == "a fraction has more than 2,000 digits"
+
+
+def test_sums_of_fractions_have_40_000_bits() -> None:
+    """Six exponents of 36,000 bits together, and 4,000 for their logarithms."""
+    rates = ["1/2", "1/3", "1/4", "1/5", "1/6", "1/7"]
+    bound = {rate: str(-(2**5998)) for rate in rates}  # of 5,999 bits, and 1 of the denominator
+    assert accepted(rated(*rates), **below(bound)).claim == "bound"
+    bound["1/7"] = str(-(2**5999))
+    with pytest.raises(LimitError) as refused:
+        accepted(rated(*rates), **below(bound))
+    assert str(refused.value) == "its fractions add up to numbers that are too long"
+
+
+def test_success_rates_have_13_000_bits() -> None:
+    """Together, in the denominators of the rates."""
+    once, twice = Fraction(1, 2**12_997), Fraction(1, 3)
+    for last in (twice, twice / 2):
+        made = network(("one", [START], [MIDDLE]), ("two", [MIDDLE], [END]))
+        rates = {"one": once, "two": last}
+        problem = Problem(made, frozenset({0}), (2,), rates, frozenset())
+        values: Content = {**below({}), "tree": [0, 1], "costs": [str(once * last)]}
+        if last == twice:
+            assert accepted(problem, **values).costs == (once * last,)
+            continue
+        with pytest.raises(LimitError) as refused:
+            accepted(problem, **values)
+        assert str(refused.value) == "the success rate of the tree is too long a number to be written"
+
+
+# --- reading
+
+
+def test_a_file_has_sixteen_million_letters(tmp_path: Path) -> None:
+    text = "[]" + " " * 15_999_998
+    file = tmp_path / "proof.json"
+    file.write_text(text)
+    assert load_certificate(file) == []
+    text += " "
+    file.write_text(text)
+    with pytest.raises(LimitError) as refused:
+        load_certificate(file)
+    assert str(refused.value) == "it has more than 16,000,000 letters"
+    with pytest.raises(LimitError, match="it has more than 16,000,000 letters or 1,000,000 brackets"):
+        read_certificate(text)
+
+
+def test_a_file_has_a_million_brackets() -> None:
+    text = '"' + "[" * 600_000 + "{" * 400_000 + '"'
+    assert len(read_certificate(text)) == 1_000_000
+    with pytest.raises(LimitError) as refused:
+        read_certificate(text + "[")
+    assert str(refused.value) == "it has more than 16,000,000 letters or 1,000,000 brackets"
+
+
+def test_a_number_is_quoted_as_far_as_it_can_be_read() -> None:
+    with pytest.raises(RefusedError) as refused:
+        read_certificate("[1." + "0" * 60 + "]")
+    said = "expected whole numbers, and fractions in quotes"
+    assert str(refused.value) == f"found the number 1.{'0' * 48}, {said}"
