@@ -145,12 +145,116 @@ def test_products_of_long_rates_are_shown_in_full(cli: Cli, tmp_path: Path) -> N
         )
 
 
-def test_exponents_that_clingo_could_not_add_up_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("exponent", "units"), [(2**31 - 1, 1), (-(2**31) + 1, 1), (2**30 - 1, 2)])
+def test_exponents_that_clingo_can_add_up_are_taken(
+    exponent: int, units: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = two_ways(["0.1", "0.3"], ["0.2"])
+    monkeypatch.setattr(exact_success, "_exponents", lambda rates: {rate: {0: exponent} for rate in rates})
+    assert set(exact_success.problem_scale(problem, range(units)).weights) == {
+        problem.rate(unit) for unit in range(units)
+    }
+
+
+@pytest.mark.parametrize(("exponent", "units"), [(2**31, 1), (-(2**31), 1), (2**30, 2), (2**31 // 3 + 1, 3)])
+def test_exponents_that_clingo_could_not_add_up_are_refused(
+    exponent: int, units: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     problem = two_ways(["0.1", "0." + "0" * 200 + "1"], ["0.2"])
     assert solve(problem, (Objective.SUCCESS,)).status is Status.OPTIMAL
-    monkeypatch.setattr(exact_success, "_exponents", lambda rates: {rate: {0: 2**30} for rate in rates})
-    with pytest.raises(UserError, match="too far apart"):
-        exact_success.problem_scale(problem, range(len(problem.network)))
+    monkeypatch.setattr(
+        exact_success, "_exponents", lambda rates: {rate: {0: 0, 1: exponent} for rate in rates}
+    )
+    with pytest.raises(UserError) as refused:
+        exact_success.problem_scale(problem, range(units))
+    assert str(refused.value) == (
+        "the success rates of the motions are too far apart: written as powers of common factors, "
+        f"the exponents of {units} units add up to more than clingo's numbers hold"
+    )
+
+
+def test_no_units_have_a_scale_too() -> None:
+    scale = exact_success.problem_scale(two_ways(["0.5"], ["0.4"]), [])
+    assert scale == (10**8, {}, {})
+
+
+@pytest.mark.parametrize(
+    ("rates", "scale", "weights"),
+    [
+        ([], 10**8, []),
+        (["1"], 10**8, [0]),
+        (["0.5", "1"], 10**8, [69_314_718, 0]),  # ln 2 = 0.693147180...
+        (["0.1", "0.5"], 10**8, [230_258_509, 69_314_718]),  # ln 10 = 2.302585092...
+        (["1/1000000000"], 10**8, [2_072_326_583]),
+        (["1/10000000000"], 10**7, [230_258_509]),  # on the next finer scale 2,302,585,092 > 2^31
+        (["1/10000000000", "0.99"], 10**7, [230_258_509, 100_503]),  # -ln 0.99 = 0.010050335...
+        (["0.99999"], 10**8, [1000]),  # -ln = 0.000010000050...
+        (["0.999990001"], 10**9, [9999]),  # -ln = 0.0000099990499...
+        (["0.999990001", "0.5"], 10**9, [9999, 693_147_180]),
+        (["0.999990001", "0.1"], 10**8, [999, 230_258_509]),  # 10^9 does not fit
+        (["0.9999", "0.999999"], 10**9, [100_005, 1000]),
+        (["0.9999999", "0.999999"], 10**10, [1000, 10_000]),
+    ],
+)
+def test_scales_and_weights_by_hand(rates: list[str], scale: int, weights: list[int]) -> None:
+    found = rate_scale(list(map(Fraction, rates)))
+    assert found.scale == scale
+    assert [found.weights[Fraction(rate)] for rate in rates] == weights
+
+
+@pytest.mark.parametrize(("weight", "scale"), [("2147483646.5", 10**8), ("2147483647.5", 10**7)])
+def test_weights_are_below_what_clingo_holds(weight: str, scale: int) -> None:
+    """The greatest weight that is given out is 2^31 - 2 on a scale of 10^8."""
+    rate = Fraction(Context(prec=60).exp(-Decimal(weight) / 10**8))
+    found = rate_scale({rate})
+    assert found.scale == scale
+    assert found.weights[rate] == int(Decimal(weight) * scale / 10**8)
+
+
+# The digits that a rate has in common with the power of e which would weigh a whole number.
+@pytest.mark.parametrize("common", [12, 37, 41, 43, 60, 81, 84, 130, 260])
+@pytest.mark.parametrize(
+    "logarithm",
+    ["1", "3", "1e-8", "7.9431e-20", "8.1234567e-40", "1.12358e-40", "9.8765e-41", "8.7654321e-80", "1e-81"],
+)
+def test_a_whole_number_is_just_reached_or_just_missed(logarithm: str, common: int) -> None:
+    """Of two neighbours of such a power of e one weighs less than the whole number, the other does not."""
+    context = Context(prec=2 * common + 200)
+    middle = context.exp(-Decimal(logarithm))
+    off = Decimal(logarithm).scaleb(-common)
+    scale = 10 ** (9 - Decimal(logarithm).adjusted())
+    whole = int(Decimal(logarithm) * scale)
+    assert exact_success._weight(Fraction(context.add(middle, off)), scale) == whole - 1
+    assert exact_success._weight(Fraction(context.subtract(middle, off)), scale) == whole
+
+
+@pytest.mark.parametrize("zeros", [1, 8, 30, 39, 40, 41, 100])
+def test_weights_next_to_1_are_rounded_down(zeros: int) -> None:
+    for tenths in (1, 5, 9, 11, 15, 19):
+        assert (
+            exact_success._weight(1 - Fraction(tenths, 10 ** (zeros + 9)), 10 ** (zeros + 8)) == tenths // 10
+        )
+
+
+def test_exponents_by_hand() -> None:
+    """0.3 is 3/10 and 0.09 is 3^2/10^2; 0.7 brings 7 along, and 0.5 takes 10 apart."""
+    three, nine, seven, half = Fraction("0.3"), Fraction("0.09"), Fraction("0.7"), Fraction("0.5")
+    two = rate_scale({three, nine, Fraction(1)})
+    assert sorted(two.exponents[three].values()) == [-1, 1]
+    assert sorted(two.exponents[nine].values()) == [-2, 2]
+    assert two.exponents[Fraction(1)] == {}
+    assert two.product_exponents([]) == {0: 0, 1: 0}
+    assert two.product_exponents([three, three]) == two.product_exponents([nine]) == two.exponents[nine]
+    assert sorted(two.product_exponents([three, nine, three, Fraction(1)]).values()) == [-4, 4]
+    four = rate_scale([three, seven, half])
+    assert sorted(four.exponents[three].values()) == sorted(four.exponents[seven].values()) == [-1, -1, 1]
+    assert list(four.exponents[half].values()) == [-1]
+    assert sorted(four.product_exponents([three, seven, half]).values()) == [-3, -2, 1, 1]
+    (of_two,) = four.exponents[half]
+    assert four.exponents[three][of_two] == -1
+    assert rate_scale({Fraction(8, 27), Fraction(4, 9)}).product_exponents([Fraction(8, 27)] * 2) == (
+        rate_scale({Fraction(8, 27), Fraction(4, 9)}).product_exponents([Fraction(4, 9)] * 3)
+    )
 
 
 @pytest.mark.parametrize("rate", [Fraction(0), Fraction(-1, 2), Fraction(3, 2)])
@@ -193,8 +297,9 @@ def test_a_scale_is_as_fine_as_the_dearest_rate_lets_it_be() -> None:
 
 def test_a_scale_is_finer_next_to_1_alone() -> None:
     assert rate_scale({Fraction(17, 20), Fraction(1)}).scale == 10**8
-    near = {1 - Fraction(n, 10**30) for n in (1, 2, 7)}
-    assert list(rate_scale(near).weights.values()) == [70_000, 20_000, 10_000]
+    for zeros in (30, 60, 500):
+        near = {1 - Fraction(n, 10**zeros) for n in (1, 2, 7)}
+        assert list(rate_scale(near).weights.values()) == [70_000, 20_000, 10_000]
     assert min(rate_scale({*near, Fraction(1, 2)}).weights.values()) == 0
 
 
@@ -221,8 +326,7 @@ def test_rounding_alone_would_choose_the_worse_tree() -> None:
 def test_a_coarse_scale_still_gives_the_exact_optimum(
     scale: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(exact_success, "_SCALES", (scale,))
-    monkeypatch.setattr(exact_success, "_ENOUGH", 0)
+    monkeypatch.setattr(exact_success, "_scale", lambda _: scale)
     for seed in range(3000, 3150):
         problem = random_problem(seed, rule)
         found = list(oracle.trees(problem))
@@ -267,6 +371,28 @@ def test_the_bound_on_success_holds(rates: list[Fraction]) -> None:
     scale = rate_scale(set(rates))
     bound = scale.success_bound(sum(scale.weights[rate] for rate in rates))
     assert math.prod(rates) <= bound <= 1
+
+
+@pytest.mark.parametrize(
+    ("scale", "weight", "bound"),
+    [
+        (10, 0, "1"),
+        (10**30, 1, "1"),
+        (10, 5, "0.606530659712633425"),  # e^-0.5 = 0.606530659712633423603...
+        (10**8, 69_314_718, "0.500000000279972656"),  # 0.500000000279972654784...
+        (1, 1, "0.367879441171442323"),  # 0.367879441171442321595...
+        (1, 10, "0.0000453999297624848517"),  # 0.0000453999297624848515355...
+    ],
+)
+def test_bounds_on_success_by_hand(scale: int, weight: int, bound: str) -> None:
+    """Rounded up at the eighteenth digit, and one more."""
+    assert exact_success.RateScale(scale, {}, {}).success_bound(weight) == Fraction(bound)
+
+
+def test_a_bound_on_next_to_nothing_is_close() -> None:
+    """A thousand units of 10^-999 and more are below what decimals have by default."""
+    bound = exact_success.RateScale(1, {}, {}).success_bound(2_303_000)  # ln 2 * 3,322,526.7
+    assert bound.denominator.bit_length() - bound.numerator.bit_length() >= 3_322_526
 
 
 def test_tiny_rates_still_fit() -> None:

@@ -243,7 +243,7 @@ def test_trees_out_of_order_are_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(Ranked, "_is_settled", lambda *_: True)
         near = two_ways(["0.9999999895"], ["0.999999991"] * 5)
-        patch.setattr("foon_asp.asp.exact_success._ENOUGH", 0)
+        patch.setattr("foon_asp.asp.exact_success._scale", lambda _: 10**8)
         with pytest.raises(BugError, match="better than one that was given before"):
             list(Ranked(near, SUCCESS, Settings()))
     with monkeypatch.context() as patch:

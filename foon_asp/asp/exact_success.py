@@ -11,11 +11,12 @@ from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from typing import NamedTuple
 
+from foon_asp.bounds.coprime_base import coprime_base, powers
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 
 _LARGEST = 2**31 - 1
-_SCALES = tuple(10**k for k in range(8, -1, -1))
+_FINE = 10**8  # as fine as there is use for, but next to 1
 _ENOUGH = 1000  # what a rate should weigh at least: next to 1 a finer scale is taken where it fits
 _DIGITS = 40  # of a logarithm, at first
 _CONTEXT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN)
@@ -47,8 +48,9 @@ class RateScale(NamedTuple):
         Since rounding went down, such a tree has ``-ln(success) >= weight / scale``.
         """
         value = _CONTEXT.exp(_CONTEXT.divide(Decimal(-weight), Decimal(self.scale)))
-        places = Decimal(1).scaleb(value.adjusted() - 17)
-        return min(Fraction(1), Fraction(value.quantize(places, rounding=ROUND_CEILING)) + Fraction(places))
+        places = _CONTEXT.scaleb(Decimal(1), value.adjusted() - 17)
+        above = _CONTEXT.add(value.quantize(places, ROUND_CEILING, _CONTEXT), places)
+        return Fraction(min(Decimal(1), above))
 
 
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
@@ -60,15 +62,18 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
     logarithms = {rate: _minus_log(rate, _DIGITS) for rate in sorted(rates)}
-    largest = max(logarithms.values(), default=Decimal(0))
-    smallest = min(filter(None, logarithms.values()), default=largest)
-    scale = next(s for s in _SCALES if largest * s < _LARGEST)
-    if 0 < smallest * scale < _ENOUGH:
-        useful = (_ENOUGH / smallest).adjusted() + 1
-        fitting = (_LARGEST / largest).adjusted()
-        scale = max(scale, 10 ** min(useful, fitting))
+    scale = _scale([logarithm for logarithm in logarithms.values() if logarithm])
     weights = {rate: _weight(rate, scale) for rate in logarithms}
     return RateScale(scale, weights, _exponents(weights))
+
+
+def _scale(logarithms: Collection[Decimal]) -> int:
+    """Give the power of ten by which logarithms above 0 become weights."""
+    if not logarithms:
+        return _FINE
+    fitting: int = 10 ** (_LARGEST / max(logarithms)).adjusted()
+    useful: int = 10 ** ((_ENOUGH / min(logarithms)).adjusted() + 1)
+    return min(fitting, max(_FINE, useful))
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
@@ -78,8 +83,7 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
     """
     units = list(units)
     scale = rate_scale(problem.different_rates(units))
-    most = max((abs(e) for rate in scale.exponents.values() for e in rate.values()), default=0)
-    if most * len(units) > _LARGEST:
+    if any(len(units) * abs(e) > _LARGEST for rate in scale.exponents.values() for e in rate.values()):
         raise UserError(
             "the success rates of the motions are too far apart: written as powers of common factors, "
             f"the exponents of {len(units)} units add up to more than clingo's numbers hold"
@@ -90,10 +94,9 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
 def _minus_log(rate: Fraction, digits: int) -> Decimal:
     """Give ``-ln`` of a rate to so many digits: it is off by less than 10^-digits of itself."""
     lost = 1 - rate
-    context = Context(prec=2 * digits + 5, Emax=MAX_EMAX, Emin=MIN_EMIN)
-    if lost < Fraction(1, 10 ** (digits + 1)):  # lost < -ln(1 - lost) < lost / (1 - lost)
-        return context.divide(Decimal(lost.numerator), Decimal(lost.denominator))
-    # The logarithm of 1 + x has as many digits fewer than 1 + x as x is small: fewer than half of them.
+    zeros = -_CONTEXT.divide(Decimal(lost.numerator), Decimal(lost.denominator)).adjusted()
+    # The logarithm of 1 + x has as many digits fewer than 1 + x as x begins with zeros.
+    context = Context(prec=digits + zeros + 2, Emax=MAX_EMAX, Emin=MIN_EMIN)
     return context.ln(context.divide(Decimal(rate.denominator), Decimal(rate.numerator)))
 
 
@@ -102,53 +105,22 @@ def _weight(rate: Fraction, scale: int) -> int:
 
     The logarithm of a rational number other than 1 is irrational, so enough digits always settle the floor.
     """
-    lost = 1 - rate
-    low, high = math.floor(scale * lost), math.floor(scale * lost / rate)
+    lost = scale * (1 - rate)
+    low, high = lost, lost / rate  # which is enough next to 1
     digits = _DIGITS
-    while low < high:
-        value, off = Fraction(_minus_log(rate, digits)) * scale, Fraction(1, 10**digits)
-        low, high = math.floor(value * (1 - off)), math.floor(value * (1 + off))
+    while math.floor(low) < math.floor(high):
+        value = scale * Fraction(_minus_log(rate, digits))
+        off = value / 10**digits
+        low, high = value - off, value + off
         digits *= 2
-    return low
+    return math.floor(low)
 
 
-def _exponents(rates: Iterable[Fraction]) -> dict[Fraction, dict[int, int]]:
-    rates = list(rates)
-    base = _coprime_base(n for rate in rates for n in (rate.numerator, rate.denominator))
+def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
+    base = coprime_base(number for rate in rates for number in rate.as_integer_ratio())
+    numbers = {factor: number for number, factor in enumerate(base)}
     found: dict[Fraction, dict[int, int]] = {}
     for rate in rates:
-        exponents: dict[int, int] = {}
-        for number, factor in enumerate(base):
-            up, down = _multiplicity(rate.numerator, factor), _multiplicity(rate.denominator, factor)
-            if up != down:
-                exponents[number] = up - down
-        found[rate] = exponents
+        up, down = (powers(number, base) for number in rate.as_integer_ratio())  # no factor is in both
+        found[rate] = {numbers[f]: e for f, e in up.items()} | {numbers[f]: -e for f, e in down.items()}
     return found
-
-
-def _coprime_base(numbers: Iterable[int]) -> list[int]:
-    """Give pairwise coprime factors > 1 of which every number is a product of powers (no factoring)."""
-    base: list[int] = []
-    for number in sorted(set(numbers)):
-        pending = [number]
-        while pending:
-            a = pending.pop()
-            if a == 1:
-                continue
-            for index, b in enumerate(base):
-                common = math.gcd(a, b)
-                if common > 1:
-                    del base[index]
-                    pending += [a // common, b // common, common]
-                    break
-            else:
-                base.append(a)
-    return sorted(base)
-
-
-def _multiplicity(number: int, factor: int) -> int:
-    count = 0
-    while number % factor == 0:
-        number //= factor
-        count += 1
-    return count
