@@ -1,7 +1,9 @@
 """Trees in order of their costs, one by one, none of which holds another."""
 
+from bisect import insort
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from typing import NamedTuple
 
 from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
@@ -15,6 +17,12 @@ from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach, relevant
 
 Rounded = tuple[int, ...]  # costs as clingo adds them up: success in rounded logarithms
+
+
+class _Tree(NamedTuple):
+    units: tuple[int, ...]
+    costs: Costs
+    rounded: Rounded
 
 
 class Ranked:
@@ -68,47 +76,37 @@ class Ranked:
         """Give tree after tree.
 
         clingo gives them in the order of rounded costs. A tree is given out when no tree that clingo may
-        still find can come before it: where rates multiply, one whose weight is higher by no more than there
-        are units whose rates were rounded may (docs/exact-success.md).
+        still find can come before it: where rates multiply, one whose weight is higher by less than there are
+        units whose rates were rounded may (docs/exact-success.md).
         """
         if self.complete:
             return
-        found: list[tuple[Costs, Rounded, tuple[int, ...]]] = []
-        known: list[frozenset[int]] = []
-        last: Rounded = ()
+        waiting: list[_Tree] = []
+        known: list[_Tree] = []
         avoided = ""
-        number = 0
         while True:
             ended = self._next(avoided)
-            if ended.units is None and ended.exhausted:
+            if ended.units is None:
                 break
-            units = () if ended.units is None else self._in_order(ended.units)
-            costs = self.problem.costs(units)
-            rounded = self._rounded(units, costs)
+            tree = self._tree(ended.units)
+            insort(waiting, tree, key=lambda each: (each.costs.key(self.levels), sorted(each.units)))
             if not ended.exhausted:
-                if ended.units is not None:
-                    found.append((costs, rounded, units))
-                found.sort(key=lambda each: (each[0].key(self.levels), sorted(each[2])))
-                self.known = [(tree, its) for its, _, tree in found]
-                return
-            self._check(ended, rounded, last, units, known)
-            last = rounded
-            known.append(frozenset(units))
-            while found and self._is_settled(found[0], rounded):
-                yield self._next_in_order(found)
-            found.append((costs, rounded, units))
-            found.sort(key=lambda each: (each[0].key(self.levels), sorted(each[2])))
-            avoided += write_avoided(number, map(self.problem.network.unit_number, units))
-            number += 1
-            if not units:  # every other tree holds it
                 break
+            self._check(ended, tree, known)
+            while waiting and self._is_settled(waiting[0], tree.rounded):
+                yield self._next_in_order(waiting)
+            if not tree.units:  # every other tree holds it
+                break
+            avoided += write_avoided(len(known), map(self.problem.network.unit_number, tree.units))
+            known.append(tree)
+        if not ended.exhausted:
+            self.known = [(tree.units, tree.costs) for tree in waiting]
+            return
         self.complete = True
-        while found:
-            yield self._next_in_order(found)
+        while waiting:
+            yield self._next_in_order(waiting)
 
     def _next(self, avoided: str) -> Run:
-        if self._deadline.passed:
-            return Run()
         try:
             with self._deadline.watched("writing facts"):
                 facts = write_facts(
@@ -126,29 +124,30 @@ class Ranked:
             endless=self._program.endless,
         )
 
-    def _in_order(self, numbers: frozenset[int]) -> tuple[int, ...]:
+    def _tree(self, numbers: frozenset[int]) -> _Tree:
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]
         known = [unit for unit in units if unit is not None]
         if len(known) < len(units):
             raise UserError("a tree was found with units that the network has not: check the encodings")
-        return self._holds.tree(known)
+        order = self._holds.tree(known)
+        costs = self.problem.costs(order)
+        rounded = (
+            sum(map(self._weight, order)) if multiplies(objective) else int(costs.measure(objective))
+            for objective in self.levels
+        )
+        return _Tree(order, costs, tuple(rounded))
 
-    def _check(
-        self,
-        ended: Run,
-        rounded: Rounded,
-        last: Rounded,
-        units: Sequence[int],
-        known: Sequence[frozenset[int]],
-    ) -> None:
+    def _check(self, ended: Run, tree: _Tree, known: Sequence[_Tree]) -> None:
         """Require that clingo measures a tree as we do, after the one before it, and that it holds none.
 
         Raises :class:`UserError` where other encodings measure something else: then its order is not ours.
         """
+        units, _, rounded = tree
         agree = len(rounded) == len(ended.cost) and all(
             (ours - theirs) % 2**32 == 0 for ours, theirs in zip(rounded, ended.cost, strict=True)
         )
+        last = known[-1].rounded if known else ()
         if not (agree and last <= rounded) and self._program.replaced:
             raise UserError(
                 f"{self._program.files[1]} does not measure what the objectives {', '.join(self.levels)} "
@@ -161,15 +160,13 @@ class Ranked:
             last <= rounded, lambda: f"the tree {units} costs {rounded}, but comes after one for {last}"
         )
         self._holds.require(
-            not any(map(frozenset(units).issuperset, known)),
+            not any(set(units).issuperset(before.units) for before in known),
             lambda: f"the tree {units} holds one that was found before",
         )
 
-    def _next_in_order(
-        self, found: list[tuple[Costs, Rounded, tuple[int, ...]]]
-    ) -> tuple[tuple[int, ...], Costs]:
+    def _next_in_order(self, waiting: list[_Tree]) -> tuple[tuple[int, ...], Costs]:
         """Take the first of the trees found, which is no better than those given before."""
-        costs, _, units = found.pop(0)
+        units, costs, _ = waiting.pop(0)
         key = costs.key(self.levels)
         self._holds.require(
             self._given <= key, lambda: f"the tree {units} is better than one that was given before it"
@@ -177,26 +174,16 @@ class Ranked:
         self._given = key
         return units, costs
 
-    def _rounded(self, units: Sequence[int], costs: Costs) -> Rounded:
-        return tuple(
-            sum(self._weight(unit) for unit in units)
-            if multiplies(objective)
-            else int(costs.measure(objective))
-            for objective in self.levels
-        )
-
-    def _is_settled(self, tree: tuple[Costs, Rounded, tuple[int, ...]], last: Rounded) -> bool:
+    def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
         """Whether all trees from these rounded costs on come after a tree, or are as good as it."""
         if Objective.SUCCESS not in self.levels:
             return True
         place = self.levels.index(Objective.SUCCESS)
-        _, rounded, units = tree
-        if last[:place] > rounded[:place]:
+        if last[:place] > tree.rounded[:place]:
             return True
-        doubt = sum(self.problem.rate(unit) != 1 for unit in units)  # also those that weigh 0
-        return last[place] > rounded[place] + doubt
+        doubt = sum(self.problem.rate(unit) != 1 for unit in tree.units)  # also those that weigh 0
+        return last[place] >= tree.rounded[place] + doubt
 
     def _weight(self, unit: int) -> int:
-        if self._scale is None:
-            return 0
+        assert self._scale is not None
         return self._scale.weights[self.problem.rate(unit)]
