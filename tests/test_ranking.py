@@ -130,7 +130,7 @@ def test_nothing_is_searched_where_a_goal_cannot_be_made(monkeypatch: pytest.Mon
     ("chains", "objectives", "first", "searches"),
     [
         ((["0.5"], ["0.5", "0.5"]), [UNITS], (0,), 1),  # there clingo's order is ours
-        ((["0.5"], ["0.5", "0.5"]), [UNITS, SUCCESS], (0,), 2),  # the next one has more units
+        ((["0.5"], ["0.9", "0.9"]), [UNITS, SUCCESS], (0,), 2),  # the next one has more units
         ((["1"], ["0.5", "0.5"]), [SUCCESS], (0,), 1),  # nothing is better than certain
         # 0.5 weighs 69314718 and 0.499999995 one more: what is better may weigh the same
         ((["0.5"], ["0.499999995"], ["0.4"]), [SUCCESS], (0,), 2),
@@ -249,9 +249,9 @@ def says(*answers: Run) -> Callable[..., Run]:
 
 
 def test_answers_that_contradict_our_own_costs_are_bugs(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem = ways(["0.5"], ["0.5", "0.2"])
-    numbers = [problem.network.unit_number(unit) for unit in range(3)]
-    one, two = frozenset(numbers[:1]), frozenset(numbers[1:])
+    problem = ways(["0.5"], ["0.5", "0.2"], ["0.5", "0.2", "0.1"])
+    numbers = [problem.network.unit_number(unit) for unit in range(6)]
+    one, two, three = frozenset(numbers[:1]), frozenset(numbers[1:3]), frozenset(numbers[3:])
     wrong = [
         ([Run(one, (1 + 64,), True)], r"reports the costs \[65\], the units \(0,\) cost \(1,\)"),
         ([Run(one, (1 + 2**31,), True)], "reports the costs"),
@@ -261,6 +261,10 @@ def test_answers_that_contradict_our_own_costs_are_bugs(monkeypatch: pytest.Monk
             [Run(two, (2,), True), Run(one, (1,), True)],
             r"the tree \(0,\) costs \(1,\), but comes after one for \(2,\)",
         ),
+        (
+            [Run(one, (1,), True), Run(three, (3,), True), Run(two, (2,), True)],
+            r"the tree \(1, 2\) costs \(2,\), but comes after one for \(3,\)",
+        ),
         ([Run(one, (1,), True)] * 2, r"the tree \(0,\) holds one that was found before"),
         ([Run(one, (1,), True), Run(one | two, (3,), True)], "holds one that was found before"),
     ]
@@ -268,6 +272,15 @@ def test_answers_that_contradict_our_own_costs_are_bugs(monkeypatch: pytest.Monk
         monkeypatch.setattr(ranking, "run", says(*answers))
         with pytest.raises(BugError, match=message):
             list(Ranked(problem, [UNITS], Settings()))
+
+
+def test_every_cost_is_held_against_our_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = ways(["0.5"])
+    unit = frozenset({problem.network.unit_number(0)})
+    for costs in ((1, 1), (69_314_718, 2)):
+        monkeypatch.setattr(ranking, "run", says(Run(unit, costs, True)))
+        with pytest.raises(BugError, match=r"the units \(0,\) cost \(69314718, 1\)"):
+            list(Ranked(problem, [SUCCESS], Settings()))
 
 
 def test_sums_beyond_32_bits_are_in_order() -> None:
@@ -281,9 +294,9 @@ def test_sums_beyond_32_bits_are_in_order() -> None:
 def test_encodings_that_measure_something_else_are_refused(old: str, new: str, tmp_path: Path) -> None:
     own = tmp_path / "own"
     shutil.copytree(encodings_folder(), own)
-    problem = ways(["0.5"], ["0.5", "0.2"])
+    problem = ways(["0.5"], ["0.5", "0.2"], ["0.4", "0.2"])
     settings = Settings(encodings=own)
-    assert units_of(list(Ranked(problem, [UNITS], settings))) == [(0,), (1, 2)]
+    assert sorted(units_of(list(Ranked(problem, [UNITS], settings)))) == [(0,), (1, 2), (3, 4)]
     text = (own / "objectives.lp").read_text()
     assert old in text
     (own / "objectives.lp").write_text(text.replace(old, new))

@@ -55,7 +55,6 @@ class Ranked:
             raise UserError(
                 "the objective success needs the success rates of the motions; give a rates file with --rates"
             )
-        self._units: tuple[int, ...] = ()
         try:
             with self._deadline.watched("cutting the network"):
                 self._cut(problem)
@@ -66,7 +65,7 @@ class Ranked:
         reached = reach(problem)
         if all(reached.available[goal] for goal in problem.goals):
             own = self._program.own
-            self._units = relevant(problem, reached) if own else tuple(sorted(reached.units))
+            self._units: tuple[int, ...] = relevant(problem, reached) if own else tuple(sorted(reached.units))
             if problem.rates is not None:
                 self._scale = problem_scale(problem, self._units)
         else:
@@ -144,9 +143,7 @@ class Ranked:
         Raises :class:`UserError` where other encodings measure something else: then its order is not ours.
         """
         units, _, rounded = tree
-        agree = len(rounded) == len(ended.cost) and all(
-            (ours - theirs) % 2**32 == 0 for ours, theirs in zip(rounded, ended.cost, strict=True)
-        )
+        agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in ended.cost]
         last = known[-1].rounded if known else ()
         if not (agree and last <= rounded) and self._program.replaced:
             raise UserError(
@@ -179,7 +176,7 @@ class Ranked:
         if Objective.SUCCESS not in self.levels:
             return True
         place = self.levels.index(Objective.SUCCESS)
-        if last[:place] > tree.rounded[:place]:
+        if last[:place] > tree.rounded:  # where they begin alike it is less
             return True
         doubt = sum(self.problem.rate(unit) != 1 for unit in tree.units)  # also those that weigh 0
         return last[place] >= tree.rounded[place] + doubt
