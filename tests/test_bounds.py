@@ -246,7 +246,7 @@ def test_what_is_forbidden_is_out_of_every_proof() -> None:
     proof = prover.prove([0, 3, 2])
     assert isinstance(proof, Packing)
     assert all(1 not in cut.members for cut, _ in proof.weights)
-    lost = Prover(KITCHEN, [4], ones(KITCHEN), COUNT, frozenset({1, 3})).hopeless()
+    lost = Cutter(KITCHEN, [4], frozenset({1, 3})).hopeless
     assert lost is not None
     assert lost.members == ()
 

@@ -95,10 +95,6 @@ class Prover:
         values = self._order.approximate(vector)
         return sum(value * scale for value, scale in zip(values, self._scales, strict=True))
 
-    def hopeless(self) -> Cut | None:
-        """Give a cut without members if the targets cannot be reached, or else ``None``."""
-        return Cutter(self._graph, self._targets, self._forbidden).hopeless
-
     def prove(self, derivation: Iterable[int]) -> Proof | None:
         """Prove that no derivation costs less than this one; ``None`` where that takes too long.
 

@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from foon_asp.bounds import CheaperError, Cut, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds import CheaperError, Cut, Cutter, Hopeless, Packing, Proof, Prover
 from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.errors import BugError
@@ -103,7 +103,7 @@ def certify(
 def certify_infeasible(problem: Problem, covered: Coverage = NOTHING) -> Certificate | None:
     """Prove that there is no tree; ``None`` where only constraints that are not covered leave none."""
     arrays = Arrays(problem, (), covered)
-    cut = _prover(arrays, lambda: False).hopeless()
+    cut = Cutter(arrays.graph, arrays.goals, arrays.forbidden).hopeless
     return None if cut is None else _write(arrays, covered, "infeasible", None, Hopeless(cut))
 
 

@@ -23,9 +23,9 @@ from fractions import Fraction
 from functools import cache
 from itertools import accumulate
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
-from foon_asp.network import Network, ObjectNode, node_at_level
+from foon_asp.network import Network, node_at_level
 
 FORMAT = "foon-asp certificate"
 VERSION = 2
@@ -51,7 +51,7 @@ _LARGEST = 250_000  # bits of a product of rates
 _WRITTEN = 13_000  # bits of a success rate: Python writes numbers of up to 4,300 digits
 
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
-Amount = dict[tuple[int, Fraction | None], Fraction]
+Amount: TypeAlias = "dict[tuple[int, Fraction | None], Fraction]"
 
 # Why version 1 is refused under implied containers; under strict ones it says what version 2 does.
 _VERSION_1 = (
@@ -270,13 +270,13 @@ class _Check:
 
     def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
         """Execute the tree as listed; give what it costs as an amount and as figures."""
-        at_hand = set(self.kitchen)
+        at_hand: set[int | None] = set(self.kitchen)
         for unit in _numbers(units, len(self.network), ascending=False):
             _require(unit not in self.ruled_out, f"unit {unit} of the tree is forbidden")
             _require(self.needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input in its turn")
             at_hand.update(self.gives(unit))
         _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
-        items = {o for unit in units for o in self.needs(unit) if o in self.kitchen}
+        items = {o for unit in units for o in self.kitchen & self.needs(unit)}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
         total = self._sum(map(self._cost, members))
         costs: list[int | Fraction] = []
@@ -358,55 +358,50 @@ class _Check:
                 if o in self.gives(unit) and cut.isdisjoint(self.needs(unit)):
                     yield unit
 
-    def _needs(self, unit: int) -> frozenset[int]:
-        """Give the inputs that the container rule asks for.
+    def _needs(self, unit: int) -> frozenset[int | None]:
+        """Give the inputs that a unit needs; below level 3 what all need that it stands for."""
+        return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
 
-        Under ``implied`` a utensil with exactly one ingredient is taken as given when that ingredient,
-        located in the utensil, is another input of the unit. Below level 3 nodes do not say what they hold:
-        a unit needs what all the units need that it stands for.
+    def _gives(self, unit: int) -> frozenset[int | None]:
+        """Give the outputs that a unit makes; below level 3 what any makes that it stands for."""
+        return frozenset.union(*(made for _, made in self._details(unit)))
+
+    def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
+        """Give what each unit needs and makes that a unit stands for, which at level 3 is itself.
+
+        What a unit is let skip it neither needs nor makes.
         """
         network = self.network
-        found = frozenset(network.inputs[unit])
-        if self.containers == "implied":
-            whole = network.detailed or network
-            for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
-                needed = self._needed(map(whole.objects.__getitem__, whole.inputs[detail]))
-                found &= {network.object_id(node_at_level(node, network.level)) for node in needed}
-        return found
-
-    def _gives(self, unit: int) -> frozenset[int]:
-        """Give the outputs that a unit makes: all but the inputs that the container rule lets it skip.
-
-        Below level 3 a unit makes what any of the units makes that it stands for.
-        """
-        network = self.network
-        if self.containers == "strict":
-            return frozenset(network.outputs[unit])
         whole = network.detailed or network
-        made: set[ObjectNode] = set()
         for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
-            inputs = [whole.objects[o] for o in whole.inputs[detail]]
-            skipped = set(inputs).difference(self._needed(inputs))
-            made.update(
-                node_at_level(node, network.level)
-                for node in map(whole.objects.__getitem__, whole.outputs[detail])
-                if node not in skipped
-            )
-        return frozenset(o for o in network.outputs[unit] if network.objects[o] in made)
+            inputs = set(whole.inputs[detail])
+            skipped = self._skipped(whole, inputs) if self.containers == "implied" else set()
+            yield self._at_level(inputs - skipped), self._at_level(set(whole.outputs[detail]) - skipped)
 
-    def _needed(self, inputs: Iterable[ObjectNode]) -> list[ObjectNode]:
-        """Leave out the inputs of a unit that the rule ``implied`` takes as given."""
-        nodes = list(inputs)
-        return [
-            vessel
-            for vessel in nodes
-            if vessel.label not in self.utensils
-            or len(vessel.ingredients) != 1
-            or not any(
-                other is not vessel and other.label == vessel.ingredients[0] and other.is_in(vessel.label)
-                for other in nodes
+    def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
+        """Give the inputs of a unit that the rule ``implied`` takes as given.
+
+        These are utensils with exactly one ingredient that, located in the utensil, is another input.
+        """
+        nodes = [(o, whole.objects[o]) for o in inputs]
+        return {
+            o
+            for o, vessel in nodes
+            if vessel.label in self.utensils
+            and len(vessel.ingredients) == 1
+            and any(
+                other != o and node.label == vessel.ingredients[0] and node.is_in(vessel.label)
+                for other, node in nodes
             )
-        ]
+        }
+
+    def _at_level(self, nodes: set[int]) -> frozenset[int | None]:
+        """Give the ids at the network's level of nodes of level 3."""
+        network = self.network
+        if network.detailed is None:
+            return frozenset(nodes)
+        found = (node_at_level(network.detailed.objects[o], network.level) for o in nodes)
+        return frozenset(map(network.object_id, found))
 
     def _ruled_out(self) -> Iterator[int]:
         """Give the units with a forbidden motion or a node with a forbidden label."""
@@ -420,7 +415,8 @@ class _Check:
 
     def _cost(self, member: int) -> Amount:
         """Give what a unit or an item costs by each objective."""
-        network, cost = self.network, Amount()
+        network = self.network
+        cost: Amount = {}
         item = member >= len(network)
         for level, objective in enumerate(self.objectives):
             if item or objective == "kitchen":
