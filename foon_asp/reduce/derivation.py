@@ -72,8 +72,7 @@ def derive(
     nobody: list[int] = []
     while figures:
         figure = heappop(figures)
-        bucket = buckets[figure]
-        for action in bucket:  # grows while it is walked through, where actions cost nothing
+        for action in buckets[figure]:  # grows while it is walked through, where actions cost nothing
             before[action] = figure
             for o in gives[action]:
                 if o in costs or o in start:
@@ -95,5 +94,4 @@ def derive(
                             heappush(figures, total)
                         else:
                             waiting.append(taker)
-        del buckets[figure]
     return Derivations(costs, maker, before)

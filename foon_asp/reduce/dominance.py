@@ -14,7 +14,7 @@ def undominated(graph: Graph, actions: Collection[int], cost: Callable[[int], in
     """
     start = graph.start
     needed = {a: frozenset(o for o in graph.needs[a] if o not in start) for a in actions}
-    wanted = set(graph.goals).union(*needed.values()) if needed else set(graph.goals)
+    wanted = set(graph.goals).union(*needed.values())
     given = {a: frozenset(o for o in graph.gives[a] if o in wanted) for a in actions}
     left = set(actions)
     makers: dict[int, list[int]] = {}
@@ -27,14 +27,13 @@ def undominated(graph: Graph, actions: Collection[int], cost: Callable[[int], in
             left.discard(action)
             continue
         rarest = min(gives, key=lambda o: (len(makers[o]), o))
-        for other in makers[rarest]:
-            if (
-                other != action
-                and other in left
-                and needed[other] <= needed[action]
-                and gives <= given[other]
-                and cost(other) <= cost(action)
-            ):
-                left.discard(action)
-                break
+        if any(
+            other != action
+            and other in left
+            and needed[other] <= needed[action]
+            and gives <= given[other]
+            and cost(other) <= cost(action)
+            for other in makers[rarest]
+        ):
+            left.discard(action)
     return left

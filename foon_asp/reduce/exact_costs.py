@@ -1,18 +1,21 @@
 """What actions cost under a lexicographic list of objectives, as whole numbers."""
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
+from itertools import pairwise
 
 from foon_asp.bounds import Cuts, Lexicographic
+from foon_asp.bounds.coprime_base import coprime_base, powers
 from foon_asp.problem import Objective, Problem, multiplies, unit_count
 
 _COARSE = 1000  # steps of -ln(rate) to 1, where a cost need not be exact
 _SCALE = 10**40  # steps of logarithms where rounding must not decide
 _ROUNDED = 10**20  # of these, more than rounding can add up to
 _FINEST = 10**9  # the largest number in a rate that is told apart from others without asking how far
-
+_FINE = Context(prec=60, rounding=ROUND_CEILING)
+_SHOWN = Context(prec=18, rounding=ROUND_CEILING)  # of bounds on success
 _LONGEST = 50_000  # factors of the products of rates that are compared
 
 
@@ -33,19 +36,13 @@ class ExactCosts:
         self._problem, self._objectives = problem, tuple(objectives)
         self._multiplied = frozenset(filter(multiplies, self._objectives))
         self._units = units = len(problem.network)
-        self._weights: dict[Fraction, int] = {}
-        if Objective.SUCCESS in objectives:
-            self._weights = _weights(problem.different_rates(a for a in actions if a < units))
-        self._factors: list[int] = []
-        factor = 1
-        self.doubt = 0
-        for objective in reversed(self._objectives):
-            self._factors.append(factor)
-            if objective in self._multiplied:
-                self.doubt = _ROUNDED * factor
-            if objective is not self._objectives[0]:
-                factor *= 1 + self._most(objective, actions)
-        self._factors.reverse()
+        chosen = (a for a in actions if a < units)
+        self._weights = _weights(problem.different_rates(chosen) if self._multiplied else set())
+        last_first = self._objectives[::-1]
+        self._factors = {last_first[0]: 1}
+        for after, objective in pairwise(last_first):
+            self._factors[objective] = self._factors[after] * (1 + self._most(after, actions))
+        self.doubt = sum(_ROUNDED * self._factors[objective] for objective in self._multiplied)
         self._known: dict[int, int] = {}
 
     def _most(self, objective: Objective, actions: Collection[int]) -> int:
@@ -60,55 +57,50 @@ class ExactCosts:
         """Give what an action costs."""
         cost = self._known.get(action)
         if cost is None:
-            figures = (self._figure(objective, action) for objective in self._objectives)
-            cost = sum(figure * factor for figure, factor in zip(figures, self._factors, strict=True))
+            cost = sum(self._figure(o, action) * factor for o, factor in self._factors.items())
             self._known[action] = cost
         return cost
 
     def first(self, total: int) -> int | Fraction:
         """Turn a lower bound on sums into one on the first objective (on success: from above)."""
-        figure = total // self._factors[0]
+        figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
             return figure
-        context = Context(prec=60, rounding=ROUND_CEILING)
-        exponent = context.divide(Decimal(min(0, _ROUNDED - figure)), Decimal(_SCALE))
-        value = context.next_plus(context.exp(exponent))
-        places = Decimal(1).scaleb(value.adjusted() - 17)
-        return min(Fraction(1), Fraction(value.quantize(places, rounding=ROUND_CEILING, context=context)))
+        value = _FINE.next_plus(_FINE.exp(_FINE.divide(Decimal(_ROUNDED - figure), Decimal(_SCALE))))
+        return min(Fraction(1), Fraction(_SHOWN.plus(value)))
 
     def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Whether cuts prove that no tree is better than this one, without any rounding.
 
         Weights are sums and differences of costs: each is what its cheapest member had left. Where rates
-        multiply they are computed again as exponents of rates, which are exact, and what is within rounding
-        of overloading an action is looked at anew.
+        multiply they are computed again as exponents of rates, which are exact, and so is what is left of
+        the costs.
         """
         total = sum(map(self, tree))
         if not self.doubt:
             return cuts.bound >= total
         if cuts.bound + self.doubt < total:
             return False
-        rates = sorted({rate for rate in self._weights if rate != 1})
+        rates = [rate for rate, weight in self._weights.items() if weight]
         order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])
         places = {rate: place for place, rate in enumerate(rates)}
         vectors = _Vectors(self, places)
-        tight = {a for a, left in cuts.left.items() if left <= self.doubt} | {c.cheapest for c in cuts.cuts}
-        rests = {action: vectors.of(action) for action in tight}
+        rests = {action: vectors.of(action) for action in cuts.left}
         proved = [0] * order.width
         for cut in cuts.cuts:
             weight = tuple(rests[cut.cheapest])
-            if _large(weight) or (cut.weight <= self.doubt and order.sign(weight) < 0):
+            if _large(weight) or order.sign(weight) < 0:
                 return False
             for place, part in enumerate(weight):
                 if part:
                     proved[place] += part
                     for action in cut.members:
-                        if action in tight:
-                            rests[action][place] -= part
+                        rests[action][place] -= part
         if any(_large(rest) or order.sign(rest) < 0 for rest in rests.values()):
             return False
         for action in tree:
-            proved = [have - need for have, need in zip(proved, vectors.of(action), strict=True)]
+            for place, part in enumerate(vectors.of(action)):
+                proved[place] -= part
         return not _large(proved) and order.sign(proved) >= 0
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
@@ -117,9 +109,7 @@ class ExactCosts:
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
         """Whether rounded logarithms add up to that of a product of rates."""
-        fine = Context(prec=60)
-        exact = fine.subtract(fine.ln(Decimal(product.denominator)), fine.ln(Decimal(product.numerator)))
-        return abs(figure - int(fine.multiply(exact, Decimal(_SCALE)))) < _ROUNDED
+        return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
         """Give the rate of an action; taking an item from the kitchen never fails."""
@@ -164,11 +154,9 @@ class CoarseCosts:
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
         self._multiplied = multiplies(objective)
-        self._by_motion: dict[str, int] = {}
-        self._by_unit: dict[int, int] = {}
-        if self._multiplied:
-            self._by_motion = {motion: _coarse(rate) for motion, rate in (problem.rates or {}).items()}
-            self._by_unit = {unit: _coarse(rate) for unit, rate in problem.own_rates.items()}
+        rates, own = (problem.rates, problem.own_rates) if self._multiplied else (None, {})
+        self._by_motion = {motion: _coarse(rate) for motion, rate in (rates or {}).items()}
+        self._by_unit = {unit: _coarse(rate) for unit, rate in own.items()}
 
     def __call__(self, action: int) -> int:
         """Give about what an action costs."""
@@ -190,40 +178,14 @@ def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
     """Give for each rate the sum of the scaled logarithms of its coprime factors, rounded each."""
     if not all(0 < rate <= 1 and rate.denominator <= _FINEST for rate in rates):
         raise TooFineError
-    base = _coprime(n for rate in rates for n in (rate.numerator, rate.denominator))
-    fine = Context(prec=60)
-    logarithms = {f: int(fine.multiply(fine.ln(Decimal(f)), Decimal(_SCALE))) for f in base}
-    return {
-        rate: sum(
-            (_power(rate.denominator, f) - _power(rate.numerator, f)) * logarithm
-            for f, logarithm in logarithms.items()
-        )
-        for rate in rates
-    }
+    base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())
+    logarithms = {factor: _logarithm(factor) for factor in base}
+
+    def weight(number: int) -> int:
+        return sum(power * logarithms[f] for f, power in powers(number, base).items())
+
+    return {rate: weight(rate.denominator) - weight(rate.numerator) for rate in rates}
 
 
-def _coprime(numbers: Iterable[int]) -> list[int]:
-    """Give pairwise coprime factors above 1 of which every number is a product of powers."""
-    base: list[int] = []
-    pending = sorted(set(numbers))
-    while pending:
-        a = pending.pop()
-        if a == 1:
-            continue
-        for place, b in enumerate(base):
-            common = math.gcd(a, b)
-            if common > 1:
-                del base[place]
-                pending += [a // common, b // common, common]
-                break
-        else:
-            base.append(a)
-    return sorted(base)
-
-
-def _power(number: int, factor: int) -> int:
-    count = 0
-    while number % factor == 0:
-        number //= factor
-        count += 1
-    return count
+def _logarithm(number: int) -> int:
+    return int(_FINE.multiply(_FINE.ln(Decimal(number)), Decimal(_SCALE)))

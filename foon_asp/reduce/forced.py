@@ -29,7 +29,6 @@ def beside_forced(graph: Graph, allowed: Container[int]) -> set[int]:
             continue
         action = able[0]
         if action in forced:
-            open_.append(o)
             continue
         forced.add(action)
         goals.extend(needs[action])
@@ -37,8 +36,6 @@ def beside_forced(graph: Graph, allowed: Container[int]) -> set[int]:
         _, upstream = replace(graph, start=frozenset(start), goals=needed).cone(allowed)
         if upstream.isdisjoint(gives[action]):
             start.update(gives[action])
-        else:
-            open_.append(o)
     missing = tuple(o for o in open_ if o not in start)
     rest = replace(graph, start=frozenset(start), goals=missing)
     left, _ = rest.cone(allowed)

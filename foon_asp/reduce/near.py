@@ -23,16 +23,16 @@ def near(
     the limit lets it, and with ``most`` only until it has so many actions.
     """
     needs, makers, start = graph.needs, graph.makers, graph.start
-    distance = dict.fromkeys(graph.goals, 0)
     buckets: dict[int, list[int]] = {0: list(graph.goals)}
     figures = [0]
+    reached = set(start)
     kept: set[int] = set()
     while figures:
         figure = heappop(figures)
-        bucket = buckets[figure]
-        for target in bucket:  # grows while it is walked through
-            if distance[target] < figure:
+        for target in buckets[figure]:  # grows while it is walked through
+            if target in reached:
                 continue
+            reached.add(target)
             for action in makers[target]:
                 if action in kept or action not in allowed:
                     continue
@@ -44,16 +44,10 @@ def near(
                     if least is None or figure + least > limit:
                         continue
                 kept.add(action)
-                for o in needs[action]:
-                    if o not in start and distance.get(o, total + 1) > total:
-                        distance[o] = total
-                        waiting = buckets.get(total)
-                        if waiting is None:
-                            buckets[total] = [o]
-                            heappush(figures, total)
-                        else:
-                            waiting.append(o)
-        del buckets[figure]
+                if total not in buckets:
+                    buckets[total] = []
+                    heappush(figures, total)
+                buckets[total] += needs[action]
         if most is not None and len(kept) >= most:
             break
     return kept

@@ -7,21 +7,18 @@ from foon_asp.reduce.graph import Graph
 
 
 def without_spare(graph: Graph, tree: Iterable[int], cost: Callable[[int], int]) -> set[int]:
-    """Leave out actions one by one, dear ones first, as long as the others still make the goals."""
+    """Leave out actions one by one, dear ones first, as long as the others still make the goals.
+
+    All of the actions can run.
+    """
     left = set(tree)
-    left = derive(graph, left, lambda _: 1, added=False).tree(graph, graph.goals) or left
     needed: set[int] = set()  # and needed in every smaller tree as well
-    again = True
-    while again:
-        again = False
-        for action in replaceable(graph, left, cost):
-            if action in left and action not in needed:
-                smaller = derive(graph, left - {action}, lambda _: 1, added=False).tree(graph, graph.goals)
-                if smaller is None:
-                    needed.add(action)
-                else:
-                    left = smaller
-                    again = True
+    while spare := [a for a in replaceable(graph, left, cost) if a not in needed]:
+        smaller = derive(graph, left - {spare[0]}, cost, added=True).tree(graph, graph.goals)
+        if smaller is None:
+            needed.add(spare[0])
+        else:
+            left = smaller
     return left
 
 
@@ -59,40 +56,21 @@ def improved(
     best = tree
     total = sum(map(cost, best))
 
-    def offer(found: set[int] | None) -> bool:
+    def offer(actions: Collection[int], price: Callable[[int], int], added: bool) -> None:
         nonlocal best, total
-        if found is None:
-            return False
-        spare = replaceable(
-            graph, found, cost
-        )  # without these and what only they need is the least it can cost
-        if not spare and sum(map(cost, found)) >= total:
-            return False
-        slim = without_spare(graph, found, cost)
-        price = sum(map(cost, slim))
-        if price >= total:
-            return False
-        best, total = slim, price
-        return True
+        found = derive(graph, actions, price, added).tree(graph, graph.goals)
+        if found is not None:
+            slim = without_spare(graph, found, cost)
+            slim_total = sum(map(cost, slim))
+            if slim_total < total:
+                best, total = slim, slim_total
 
-    large = total + 1
     for added in (True, False):
-        for price in (cost, lambda a: rest(a) * large + cost(a)):
-            offer(derive(graph, actions, price, added).tree(graph, graph.goals))
+        offer(actions, cost, added)
+        offer(actions, lambda a: rest(a) * total + cost(a), added)
     tried: set[int] = set()
-    again = thorough
-    while again and not expired():
-        again = False
-        for action in sorted(best, key=lambda a: (-rest(a), -cost(a), a)):
-            if action in tried or expired():
-                continue
-            tried.add(action)
-            others = [a for a in actions if a != action]
-            prices = dict.fromkeys(others, 0)
-            prices.update((a, cost(a)) for a in others if a not in best)
-            found = derive(graph, others, prices, added=True)
-            if offer(found.tree(graph, graph.goals)):
-                again = True
-                tried &= best
-                break
+    while thorough and not expired() and (untried := best - tried):
+        action = max(untried, key=lambda a: (rest(a), cost(a), -a))
+        tried.add(action)
+        offer([a for a in actions if a != action], lambda a: 0 if a in best else cost(a), added=True)
     return best

@@ -1,0 +1,181 @@
+"""Trees found fast: nothing in them can be left out, and a better one is taken where one is found."""
+
+import random
+from collections.abc import Iterator
+
+import pytest
+
+from foon_asp.reduce.derivation import derive
+from foon_asp.reduce.graph import Graph
+from foon_asp.reduce.upper_bound import improved, replaceable, without_spare
+from tests.plain_graphs import executes, plain, random_graph
+
+
+def never() -> bool:
+    return False
+
+
+def solvable(seeds: range) -> Iterator[tuple[Graph, dict[int, int], list[int]]]:
+    """Give graphs with a tree, prices of actions, and the actions that can run."""
+    met = 0
+    for seed in seeds:
+        rng = random.Random(seed)
+        graph = random_graph(seed, actions=14)
+        price = {a: rng.randint(1, 6) for a in range(14)}
+        made = derive(graph, range(14), price, added=False)
+        if made.tree(graph, graph.goals):
+            met += 1
+            yield graph, price, list(made.before)
+    assert met > len(seeds) // 3
+
+
+def test_nothing_more_can_be_left_out_of_a_tree() -> None:
+    for graph, price, able in solvable(range(60)):
+        tree = without_spare(graph, able, price.__getitem__)
+        assert executes(graph, tree)
+        made = (derive(graph, tree - {a}, price, added=True) for a in tree)
+        assert all(each.tree(graph, graph.goals) is None for each in made)
+
+
+@pytest.mark.parametrize(
+    ("prices", "expected"),
+    [
+        ([2, 3, 1, 1], {0, 3}),  # the dear one of two goes, and what only it needs
+        ([3, 2, 1, 1], {1, 2, 3}),
+        ([2, 2, 1, 1], {1, 2, 3}),  # the first of those that cost the same
+    ],
+)
+def test_dear_ones_go_first(prices: list[int], expected: set[int]) -> None:
+    graph = plain([([0], [1]), ([2], [1]), ([0], [2]), ([1], [3])], [3], [0])
+    assert replaceable(graph, range(4), prices.__getitem__) == sorted([0, 1], key=lambda a: (-prices[a], a))
+    assert without_spare(graph, range(4), prices.__getitem__) == expected
+
+
+def test_what_is_of_no_use_is_replaceable_and_what_alone_gives_something_in_use_is_not() -> None:
+    # 1 gives what nobody needs, 2 the start, 3 alone gives 4, of which it gives 5 besides as 4 does
+    graph = plain([([0], [1]), ([0], [2]), ([0], [0]), ([1], [4, 5]), ([0], [5]), ([4, 5], [6])], [6], [0])
+    assert replaceable(graph, range(6), lambda _: 1) == [1, 2, 4]
+    assert replaceable(graph, [0, 3, 4, 5], lambda _: 1) == [4]
+    assert replaceable(graph, [0, 3, 5], lambda _: 1) == []
+    assert without_spare(graph, range(6), lambda _: 1) == {0, 3, 5}
+    assert replaceable(graph, [], lambda _: 1) == []
+
+
+def test_what_is_needed_after_all_stays() -> None:
+    # either of 0 and 1 gives 1, but 1 needs 2, which comes of 1
+    graph = plain([([0], [1]), ([2], [1, 3]), ([1], [2, 3])], [3], [0])
+    assert replaceable(graph, range(3), [9, 5, 1].__getitem__) == [0, 1]
+    assert without_spare(graph, range(3), [9, 5, 1].__getitem__) == {0, 2}
+
+
+def test_with_one_out_the_others_are_followed_by_costs_that_add_up() -> None:
+    # without 0, the goal comes of 2, 3 and 4, which cost 9, or of 5 and 6, which cost 8 and are dearer singly
+    makers = [([0], [1]), ([2, 3, 4], [1]), ([0], [2]), ([0], [3]), ([0], [4]), ([5], [1]), ([0], [5])]
+    graph = plain([*makers, ([1], [6])], [6], [0])
+    prices = [20, 1, 3, 3, 3, 2, 6, 1]
+    assert without_spare(graph, range(8), prices.__getitem__) == {5, 6, 7}
+
+
+# The goal 1 comes of 3 and 4, each of which comes of 2 (0 to 3), of 5 and 6 (4 to 6), or at once (7).
+ROUTES = plain(
+    [([], [2]), ([2], [3]), ([2], [4]), ([3, 4], [1]), ([], [5]), ([], [6]), ([5, 6], [1]), ([], [1])], [1]
+)
+SHARING, APART, ONCE = {0, 1, 2, 3}, {4, 5, 6}, {7}
+
+
+@pytest.mark.parametrize(
+    ("prices", "rests", "expected"),
+    [
+        # to add up: 9 and 7, the dearest ways: 5 and 6, of 8 and 7; by what is left it is the other one
+        ([1, 3, 3, 1, 5, 1, 1], [0, 0, 0, 0, 1, 1, 1], APART),
+        # to add up: 13 and 9, the dearest ways: 7 and 8, of 8 and 9; by what is left it is the other one
+        ([5, 1, 1, 1, 7, 1, 1], [1, 1, 1, 1, 0, 0, 0], SHARING),
+        # 13 and 9, 7 and 5, of 8 and 9; what is left adds up to 5 and 6, the dearest ways are 4 and 3
+        ([5, 1, 1, 1, 4, 4, 1], [0, 1, 1, 3, 3, 3, 0], SHARING),
+        # the same, but what is left adds up to 6 and 5, and the dearest ways are 3 and 4
+        ([5, 1, 1, 1, 4, 4, 1], [0, 3, 3, 0, 1, 1, 3], SHARING),
+        # the same, but as much is left of both by either measure, and costs decide
+        ([5, 1, 1, 1, 4, 4, 1], [0, 1, 1, 1, 1, 1, 1], APART),
+    ],
+)
+def test_each_estimate_alone_leads_to_a_better_tree(
+    prices: list[int], rests: list[int], expected: set[int]
+) -> None:
+    price, rest = [*prices, 20].__getitem__, [*rests, 20].__getitem__
+    hand = set(ONCE)
+    assert improved(ROUTES, range(8), hand, price, rest, never, thorough=False) == expected
+    cheap = [*prices, min(sum(prices[a] for a in way) for way in (SHARING, APART))].__getitem__
+    for thorough in (False, True):
+        assert improved(ROUTES, range(8), hand, cheap, rest, never, thorough) is hand
+
+
+# Twice: 1 of 2 (goals are 1 and 3), which costs 6 and 1; and 3 at once, or of 2 for 1.
+TWICE = plain(
+    [
+        ([], [2]),
+        ([2], [1]),
+        ([], [3]),
+        ([2], [3]),
+        ([], [6]),
+        ([6], [5]),
+        ([], [7]),
+        ([6], [7]),
+    ],
+    [1, 3, 5, 7],
+)
+
+
+@pytest.mark.parametrize(
+    ("prices", "rests", "trials", "expected"),
+    [
+        # 0 and 4 are tried first, without which there is no tree, then 2, then 6
+        ((5, 5), {}, 0, {2, 6}),
+        ((5, 5), {}, 2, {2, 6}),
+        ((5, 5), {}, 3, {3, 6}),
+        ((5, 5), {}, 4, {3, 7}),
+        # a dearer one comes before those
+        ((5, 6), {}, 2, {2, 6}),
+        ((5, 6), {}, 3, {2, 7}),
+        ((5, 6), {}, 4, {3, 7}),
+        # and first of all one of which more is left
+        ((5, 5), {6: 9, 7: 10}, 1, {2, 7}),
+        ((5, 5), {2: 9, 3: 10, 6: 8, 7: 10}, 1, {3, 6}),
+        ((5, 5), {2: 9, 3: 10, 6: 8, 7: 10}, 2, {3, 6}),  # what came for 2 is tried next
+        ((5, 5), {2: 9, 3: 10, 6: 8, 7: 10}, 3, {3, 7}),
+    ],
+)
+def test_to_be_thorough_each_is_forbidden_in_turn(
+    prices: tuple[int, int], rests: dict[int, int], trials: int, expected: set[int]
+) -> None:
+    price = [6, 1, prices[0], 1, 6, 1, prices[1], 1].__getitem__
+    hand = {0, 1, 2, 4, 5, 6}
+    for thorough in (False, True):
+        asked = iter([False] * trials + [True] * 9)
+        found = improved(TWICE, range(8), hand, price, lambda a: rests.get(a, 0), asked.__next__, thorough)
+        assert found == ({0, 1, 4, 5} | expected if thorough else hand)
+        assert (found is hand) == (found == hand)
+
+
+def test_a_search_for_better_trees_ends_by_itself() -> None:
+    price = [6, 1, 5, 1, 6, 1, 5, 1].__getitem__
+    hand = {0, 1, 2, 4, 5, 6}
+    assert improved(TWICE, range(8), hand, price, price, never, thorough=True) == {0, 1, 3, 4, 5, 7}
+    # what may not be used is not
+    assert improved(TWICE, range(7), hand, price, price, never, thorough=True) == {0, 1, 3, 4, 5, 6}
+
+
+def test_what_the_tree_has_already_comes_for_nothing() -> None:
+    # the goal 4 comes of 1, 2 and 3, which the goal 3 needs anyway, for 1 more, or at once for 3 or for 2
+    chain = [([], [1]), ([1], [2]), ([2], [3]), ([3], [4]), ([], [4]), ([], [4])]
+    graph = plain(chain, [3, 4])
+    price, rest = [1, 1, 1, 1, 3, 2].__getitem__, [0, 0, 0, 1, 1, 0].__getitem__
+    asked = iter([False, True])
+    assert improved(graph, range(6), {0, 1, 2, 5}, price, rest, asked.__next__, thorough=True) == {0, 1, 2, 3}
+
+
+def test_the_rest_of_a_tree_is_completed_by_costs_that_add_up() -> None:
+    # the goal 2 comes at once for 6, of the goal 1 for 5, or of 3 and 4 for 1, which cost 3 each
+    graph = plain([([], [1]), ([], [2]), ([1], [2]), ([3, 4], [2]), ([], [3]), ([], [4])], [1, 2])
+    price, rest = [6, 6, 5, 1, 3, 3].__getitem__, [0, 0, 9, 9, 9, 9].__getitem__
+    asked = iter([False, False, True])  # without 0 there is no tree
+    assert improved(graph, range(6), {0, 1}, price, rest, asked.__next__, thorough=True) == {0, 2}
