@@ -13,38 +13,105 @@ docs/api.md has a function for each question, with examples.
 import importlib
 from typing import TYPE_CHECKING
 
+from foon_asp.questions.index import INDEX, module_name
+
 if TYPE_CHECKING:
-    from foon_asp.api.alternatives import Alternatives, alternatives
-    from foon_asp.api.answer import Answer, SoftAnswer, solve, solve_soft
-    from foon_asp.api.assist import Assistance, assist
-    from foon_asp.api.certified import Certified, VerifiedCertificate, certify, verify
-    from foon_asp.api.check import Checked, check
-    from foon_asp.api.clash import Clash, clash
-    from foon_asp.api.comparison import Compared, compare_searches
-    from foon_asp.api.cross_check import CrossChecked, cross_check
-    from foon_asp.api.difference import Difference, diff
-    from foon_asp.api.explanation import Explanation, why_not
-    from foon_asp.api.menu import Menu, menu
-    from foon_asp.api.pareto import Front, pareto
-    from foon_asp.api.regret import Regrets, regret
-    from foon_asp.api.retrieval import Retrieved, retrieve
-    from foon_asp.api.shopping import Shopping, shopping_list
-    from foon_asp.api.tree import Tree
-    from foon_asp.asp import Outcome, Reporter, Status
-    from foon_asp.errors import BugError, FoonWarning, UserError
-    from foon_asp.foon import Foon, build, load
-    from foon_asp.network import FunctionalUnit, Network, NetworkBuilder, ObjectNode, Source, TaskTree
-    from foon_asp.problem import ContainerRule, Costs, Objective, Problem
-    from foon_asp.proof import Simulation, Verdict
-    from foon_asp.proof.verify import RefusedError
-    from foon_asp.text import FoonReader, parse_node, write_units
+    from foon_asp.api.alternatives import Alternatives as Alternatives
+    from foon_asp.api.alternatives import alternatives as alternatives
+    from foon_asp.api.assist import Assistance as Assistance
+    from foon_asp.api.assist import assist as assist
+    from foon_asp.api.certified import (
+        Certified as Certified,
+    )
+    from foon_asp.api.certified import (
+        VerifiedCertificate as VerifiedCertificate,
+    )
+    from foon_asp.api.certified import (
+        certify as certify,
+    )
+    from foon_asp.api.certified import (
+        verify as verify,
+    )
+    from foon_asp.api.check import Checked as Checked
+    from foon_asp.api.check import check as check
+    from foon_asp.api.clash import Clash as Clash
+    from foon_asp.api.clash import clash as clash
+    from foon_asp.api.comparison import Compared as Compared
+    from foon_asp.api.comparison import compare_searches as compare_searches
+    from foon_asp.api.cross_check import CrossChecked as CrossChecked
+    from foon_asp.api.cross_check import cross_check as cross_check
+    from foon_asp.api.difference import Difference as Difference
+    from foon_asp.api.difference import diff as diff
+    from foon_asp.api.explanation import Explanation as Explanation
+    from foon_asp.api.explanation import why_not as why_not
+    from foon_asp.api.menu import Menu as Menu
+    from foon_asp.api.menu import menu as menu
+    from foon_asp.api.pareto import Front as Front
+    from foon_asp.api.pareto import pareto as pareto
+    from foon_asp.api.retrieval import Retrieved as Retrieved
+    from foon_asp.api.retrieval import retrieve as retrieve
+    from foon_asp.api.shopping import Shopping as Shopping
+    from foon_asp.api.shopping import shopping_list as shopping_list
+    from foon_asp.api.solve import solve as solve
+    from foon_asp.api.solve import solve_soft as solve_soft
+    from foon_asp.asp import Outcome as Outcome
+    from foon_asp.asp import Reporter as Reporter
+    from foon_asp.asp import Status as Status
+    from foon_asp.errors import BugError as BugError
+    from foon_asp.errors import FoonWarning as FoonWarning
+    from foon_asp.errors import UserError as UserError
+    from foon_asp.foon import Foon as Foon
+    from foon_asp.foon import build as build
+    from foon_asp.foon import load as load
+    from foon_asp.network import (
+        FunctionalUnit as FunctionalUnit,
+    )
+    from foon_asp.network import (
+        Network as Network,
+    )
+    from foon_asp.network import (
+        NetworkBuilder as NetworkBuilder,
+    )
+    from foon_asp.network import (
+        ObjectNode as ObjectNode,
+    )
+    from foon_asp.network import (
+        Source as Source,
+    )
+    from foon_asp.network import (
+        TaskTree as TaskTree,
+    )
+    from foon_asp.problem import (
+        ContainerRule as ContainerRule,
+    )
+    from foon_asp.problem import (
+        Costs as Costs,
+    )
+    from foon_asp.problem import (
+        Objective as Objective,
+    )
+    from foon_asp.problem import (
+        Problem as Problem,
+    )
+    from foon_asp.proof import Simulation as Simulation
+    from foon_asp.proof import Verdict as Verdict
+    from foon_asp.proof.verify import RefusedError as RefusedError
+    from foon_asp.questions.answer import Answer as Answer
+    from foon_asp.questions.answer import SoftAnswer as SoftAnswer
+    from foon_asp.questions.regret import Regrets as Regrets
+    from foon_asp.questions.regret import regret as regret
+    from foon_asp.questions.tree import Tree as Tree
+    from foon_asp.text import FoonReader as FoonReader
+    from foon_asp.text import parse_node as parse_node
+    from foon_asp.text import write_units as write_units
 
 __version__ = "0.1.0"
 
-# Where each public name lives; a room is imported when a name of it is first asked for.
+# Where each public name lives beside the questions; a room is imported when a name of it is first asked for.
 _ROOMS = {
     "api.alternatives": ("Alternatives", "alternatives"),
-    "api.answer": ("Answer", "SoftAnswer", "solve", "solve_soft"),
+    "api.solve": ("solve", "solve_soft"),
+    "questions.answer": ("Answer", "SoftAnswer"),
     "api.assist": ("Assistance", "assist"),
     "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
     "api.check": ("Checked", "check"),
@@ -56,10 +123,9 @@ _ROOMS = {
     "foon": ("Foon", "build", "load"),
     "api.menu": ("Menu", "menu"),
     "api.pareto": ("Front", "pareto"),
-    "api.regret": ("Regrets", "regret"),
     "api.retrieval": ("Retrieved", "retrieve"),
     "api.shopping": ("Shopping", "shopping_list"),
-    "api.tree": ("Tree",),
+    "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
@@ -68,76 +134,18 @@ _ROOMS = {
     "proof.verify": ("RefusedError",),
     "text": ("FoonReader", "parse_node", "write_units"),
 }
+_NAMES = {
+    **{name: room for room, names in _ROOMS.items() for name in names},
+    **{name: f"questions.{module_name(verb)}" for verb, entry in INDEX.items() for name in entry.python},
+}
 
-__all__ = [
-    "Alternatives",
-    "Answer",
-    "Assistance",
-    "BugError",
-    "Certified",
-    "Checked",
-    "Clash",
-    "Compared",
-    "ContainerRule",
-    "Costs",
-    "CrossChecked",
-    "Difference",
-    "Explanation",
-    "Foon",
-    "FoonReader",
-    "FoonWarning",
-    "Front",
-    "FunctionalUnit",
-    "Menu",
-    "Network",
-    "NetworkBuilder",
-    "ObjectNode",
-    "Objective",
-    "Outcome",
-    "Problem",
-    "RefusedError",
-    "Regrets",
-    "Reporter",
-    "Retrieved",
-    "Shopping",
-    "Simulation",
-    "SoftAnswer",
-    "Source",
-    "Status",
-    "TaskTree",
-    "Tree",
-    "UserError",
-    "Verdict",
-    "VerifiedCertificate",
-    "alternatives",
-    "assist",
-    "build",
-    "certify",
-    "check",
-    "clash",
-    "compare_searches",
-    "cross_check",
-    "diff",
-    "load",
-    "menu",
-    "pareto",
-    "parse_node",
-    "regret",
-    "retrieve",
-    "shopping_list",
-    "solve",
-    "solve_soft",
-    "verify",
-    "why_not",
-    "write_units",
-]
+__all__ = [*_NAMES]  # noqa: PLE0604 (what the catalog has)
 
 
 def __getattr__(name: str) -> object:
-    for room, names in _ROOMS.items():
-        if name in names:
-            return getattr(importlib.import_module(f"foon_asp.{room}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name not in _NAMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"foon_asp.{_NAMES[name]}"), name)
 
 
 def __dir__() -> list[str]:

@@ -12,10 +12,9 @@ import pytest
 from foon_asp.asp import Settings, Status
 from foon_asp.explain.alternatives import Alternatives, all_optimal, best_trees, most_different
 from foon_asp.explain.menu import menu
-from foon_asp.explain.regret import Part, regrets
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.report.regret import regrets_text
+from foon_asp.questions.regret import Part, regret
 from tests import oracle
 from tests.random_problems import MOTIONS, RATES, UTENSILS, random_problem
 
@@ -141,29 +140,29 @@ def test_what_a_part_is_worth(rule: ContainerRule) -> None:
         problem = random_problem(seed, rule)
         (objective,) = random.Random(seed).sample(sorted(map(str, Objective)), 1)
         everything = [frozenset(tree) for tree in oracle.trees(problem)]
-        found = regrets(problem, [Objective(objective)], units=range(len(problem.network)))
+        found = regret(problem, objective, units=range(len(problem.network)))
         if not everything:
             assert found.outcome.status is Status.INFEASIBLE
             assert not found.regrets
             continue
         assert {r.id for r in found.regrets if r.part is Part.UNIT} == set(range(len(problem.network)))
-        for regret in found.regrets:
-            if regret.part is Part.UNIT:
-                gone = problem.network.unit(regret.id)
+        for each in found.regrets:
+            if each.part is Part.UNIT:
+                gone = problem.network.unit(each.id)
                 left, without = [tuple(tree) for tree in everything if gone not in tree], problem
             else:
-                without = replace(problem, kitchen=problem.kitchen - {regret.id})
+                without = replace(problem, kitchen=problem.kitchen - {each.id})
                 left = [tuple(tree) for tree in oracle.trees(without)]
             expected = oracle.best(left, without, [objective])
-            assert (regret.costs is None) == (expected is None)
-            if regret.costs is not None and expected is not None:
+            assert (each.costs is None) == (expected is None)
+            if each.costs is not None and expected is not None:
                 sign = -1 if objective == Objective.SUCCESS else 1
-                figure = Fraction(regret.costs.measure(Objective(objective)))
-                assert [sign * figure, regret.costs.units] == list(expected)
+                figure = Fraction(each.costs.measure(Objective(objective)))
+                assert [sign * figure, each.costs.units] == list(expected)
                 assert found.outcome.costs is not None
-                loss = regret.loss(found.outcome.costs, Objective(objective))
+                loss = each.loss(found.outcome.costs, Objective(objective))
                 assert loss is not None
-                made = regret.part is Part.ITEM and objective == Objective.KITCHEN  # and so not taken
+                made = each.part is Part.ITEM and objective == Objective.KITCHEN  # and so not taken
                 assert loss >= -1 if made else loss >= 0
 
 
@@ -176,15 +175,15 @@ def test_an_item_that_is_made_is_not_taken() -> None:
     network = builder.build()
     ids = [o for node in (water, dough, bread) if (o := network.object_id(node)) is not None]
     problem = Problem(network, frozenset(ids[:2]), (ids[2],), None, UTENSILS)
-    found = regrets(problem, [Objective.KITCHEN])
+    found = regret(problem, "kitchen")
     assert found.outcome.costs is not None
     assert found.outcome.costs.kitchen == 2
-    left = {regret.id: regret.costs for regret in found.regrets if regret.part is Part.ITEM}
+    left = {each.id: each.costs for each in found.regrets if each.part is Part.ITEM}
     assert left[ids[0]] is None
     without_dough = left[ids[1]]
     assert without_dough is not None
     assert (without_dough.kitchen, without_dough.units) == (1, 2)
-    assert "  -1 kitchen    dough\n" in regrets_text(found)
+    assert "  -1 kitchen    dough\n" in found.text()
 
 
 @pytest.mark.parametrize("rule", RULES)

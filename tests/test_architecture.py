@@ -26,6 +26,7 @@ FLOORS = (
     {"report"},
     {"batch"},
     {"foon"},
+    {"questions"},
     {"api"},
     {FACE},
     {"cli"},

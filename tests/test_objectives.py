@@ -24,7 +24,6 @@ from foon_asp.errors import BugError
 from foon_asp.explain.alternatives import all_optimal
 from foon_asp.explain.menu import menu
 from foon_asp.explain.pareto import pareto_front
-from foon_asp.explain.regret import regrets
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels, multiplies, unit_count
 from foon_asp.proof import verify
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduction, reduce
@@ -72,7 +71,6 @@ ROOMS: dict[str, Callable[[Problem], object]] = {
     "ranked": lambda p: list(Ranked(p, (FAKE,), Settings())),
     "alternatives": lambda p: all_optimal(p, (Objective.UNITS, FAKE), Settings(), 9),
     "menu": lambda p: menu(p, (FAKE,)),
-    "regrets": lambda p: regrets(p, (Objective.UNITS, FAKE)),
     "pareto": lambda p: pareto_front(p, (Objective.UNITS, FAKE)),
     "pareto, leading": lambda p: pareto_front(p, (FAKE, Objective.UNITS)),
     "solve": asked(FAKE),

@@ -16,8 +16,8 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.explain.assist import assist
 from foon_asp.explain.menu import menu
 from foon_asp.explain.pareto import pareto_front
-from foon_asp.explain.regret import regrets
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels, parse_objectives
+from foon_asp.questions.regret import regret
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduced, reduce
 from foon_asp.resources import encodings_folder
 from tests.conftest import Cli
@@ -300,13 +300,13 @@ def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch
         return outcome._replace(costs=outcome.costs._replace(units=0))
 
     assert menu(problem).separate
-    assert regrets(problem).regrets
+    assert regret(problem).regrets
     monkeypatch.setattr("foon_asp.explain.menu.solve", worse)
-    monkeypatch.setattr("foon_asp.explain.regret.solve", better)
+    monkeypatch.setattr("foon_asp.questions.regret.find", better)
     with pytest.raises(BugError, match="for goal"):
         menu(problem)
     with pytest.raises(BugError, match="with the unit"):
-        regrets(problem)
+        regret(problem)
 
 
 def test_help_that_is_not_given_is_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,23 +3,30 @@
 from collections.abc import Iterable
 from fractions import Fraction
 
-from foon_asp.api.answer import asked_with
-from foon_asp.api.arguments import Constants, Objectives, at_least, chosen_objectives, settings
-from foon_asp.api.shown import Shown, page_bundle
-from foon_asp.api.tree import Tree
-from foon_asp.api.warning import Warner
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import alternatives as explain
 from foon_asp.problem import Problem
+from foon_asp.questions.arguments import (
+    Constants,
+    Objectives,
+    asked_with,
+    at_least,
+    chosen_objectives,
+    settings,
+)
+from foon_asp.questions.caller import caller
+from foon_asp.questions.result import Result
+from foon_asp.questions.tree import Tree
 from foon_asp.report.alternatives import alternatives_json, alternatives_text
 from foon_asp.report.answer import costs_text
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.notebook import page_bundle
 
 _PICTURES = 4  # that a notebook shows
 
 
-class Alternatives(Shown, explain.Alternatives):
+class Alternatives(Result, explain.Alternatives):
     """Trees in order of their costs, the optimal ones first; none holds another.
 
     ``trees`` has for each its ``units`` by id and its ``costs``; :attr:`task_trees` has them as values.
@@ -87,10 +94,10 @@ def alternatives(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     asked = asked_with(problem, how)
     if best is not None:
-        found = explain.best_trees(asked, chosen, how, at_least(best, 1, "best"), Warner())
+        found = explain.best_trees(asked, chosen, how, at_least(best, 1, "best"), caller().reporter)
     elif different is not None:
         count = at_least(different, 2, "different")
-        found = explain.most_different(asked, chosen, how, count, worse, limit, Warner())
+        found = explain.most_different(asked, chosen, how, count, worse, limit, caller().reporter)
     else:
-        found = explain.all_optimal(asked, chosen, how, limit, Warner())
+        found = explain.all_optimal(asked, chosen, how, limit, caller().reporter)
     return Alternatives._make(found)

@@ -5,22 +5,20 @@ from fractions import Fraction
 from os import PathLike
 from pathlib import Path
 
-from foon_asp.api.answer import asked_with
-from foon_asp.api.arguments import Constants, at_least, settings
-from foon_asp.api.shown import Shown
-from foon_asp.api.tree import Tree
-from foon_asp.api.warning import Warner
 from foon_asp.dataset.paths import File, Files
-from foon_asp.errors import UserError
 from foon_asp.explain import assist as explain
 from foon_asp.problem import Number, Problem, success_rate
+from foon_asp.questions.arguments import Constants, asked_with, at_least, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.result import Result
+from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, counted
 from foon_asp.report.assist import assistance_json, assistance_text
 from foon_asp.text import read_rates
 from foon_asp.warning import warn
 
 
-class Assistance(Shown, explain.Assistance):
+class Assistance(Result, explain.Assistance):
     """The best trees of which a person does at most 0, 1, 2, ... units.
 
     Each of ``rows`` has ``most``, ``status``, ``success``, ``costs``, ``units`` by id and ``helped``, the ids
@@ -72,8 +70,6 @@ def assist(
     motion; without it the person can do all and never fails. ``time_limit`` is for all of it. Otherwise as
     :func:`foon_asp.solve`.
     """
-    if problem.rates is None:
-        raise UserError("help needs the success rates of the motions: load(..., rates=FILE)")
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     wanted = None if reach is None else success_rate(reach, "the success to reach")
     rates: dict[str, Fraction] | None = None
@@ -86,4 +82,4 @@ def assist(
             warn(f"the motion {motion!r} has no rate for the robot")
     limit = None if most is None else at_least(most, 0, "most")
     asked = asked_with(problem, how)
-    return Assistance._make(explain.assist(asked, rates, limit, wanted, how, Warner()))
+    return Assistance._make(explain.assist(asked, rates, limit, wanted, how, caller().reporter))

@@ -7,10 +7,6 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from foon_asp.api.answer import Answer
-from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, settings
-from foon_asp.api.shown import Shown
-from foon_asp.api.warning import Warner
 from foon_asp.asp.solver import solve as find
 from foon_asp.certificate import Certificate, certify_outcome
 from foon_asp.dataset.paths import File, Files
@@ -19,6 +15,10 @@ from foon_asp.foon import Foon
 from foon_asp.network import Network
 from foon_asp.problem import Problem
 from foon_asp.proof import verify as proof
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Constants, Objectives, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.result import Result
 from foon_asp.report.answer import outcome_json, outcome_text
 from foon_asp.report.certified import certificate_lines, verified_json, verified_text
 from foon_asp.report.drawing import Drawing
@@ -29,7 +29,7 @@ class _Certified(NamedTuple):
     certificate: Certificate | None
 
 
-class Certified(Shown, _Certified):
+class Certified(Result, _Certified):
     """An ``answer`` and the ``certificate`` that proves it, ``None`` where none was found.
 
     ``certificate.text()`` is what to write into a file; ``certificate.claim`` says what it proves:
@@ -57,7 +57,7 @@ class _VerifiedIn(NamedTuple):
     content: Mapping[str, Any]
 
 
-class VerifiedCertificate(Shown, _VerifiedIn):
+class VerifiedCertificate(Result, _VerifiedIn):
     """What a certificate proves; ``verified`` has its ``claim``, ``goals``, ``tree`` and ``costs``."""
 
     __slots__ = ()
@@ -88,7 +88,7 @@ def certify(
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
-    outcome = find(problem.whole, chosen, how, Warner())
+    outcome = find(problem.whole, chosen, how, caller().reporter)
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), how.begun.watched("looking for a certificate"):
         outcome, certificate = certify_outcome(outcome, how, lambda: how.begun.passed)

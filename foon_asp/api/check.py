@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from os import PathLike
 from typing import NamedTuple
 
-from foon_asp.api.shown import Shown
-from foon_asp.api.tree import Tree
 from foon_asp.network import FunctionalUnit, Source
 from foon_asp.problem import Problem
 from foon_asp.proof import Simulation, Verdict, simulate_for
+from foon_asp.questions.result import Result
+from foon_asp.questions.tree import Tree
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.verdict import verdict_json, verdict_text
 
@@ -18,7 +18,7 @@ class _Checked(NamedTuple):
     simulation: Simulation
 
 
-class Checked(Shown, _Checked):
+class Checked(Result, _Checked):
     """What a simulation of ``tree`` found: ``simulation`` has the ``verdict`` and what stops the tree."""
 
     __slots__ = ()

@@ -2,19 +2,19 @@
 
 from collections.abc import Mapping
 
-from foon_asp.api.answer import Answer
-from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, file_weights, settings
-from foon_asp.api.shown import Shown
-from foon_asp.api.warning import Warner
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import clash as explain
 from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Constants, Objectives, chosen_objectives, file_weights, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.result import Result
 from foon_asp.report.clash import clash_json, clash_text
 from foon_asp.report.drawing import Drawing
 
 
-class Clash(Shown, explain.Clash):
+class Clash(Result, explain.Clash):
     """Whether the constraints of a question leave a tree, and if not, why.
 
     ``smallest`` is a smallest set of ``constraints`` that cannot hold together, ``proved`` to be one;
@@ -64,5 +64,5 @@ def clash(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if not how.constraints:
         raise UserError("name constraints; why_not explains other reasons")
-    found = explain.find_clash(problem.whole, chosen, how, file_weights(weights or {}), Warner())
+    found = explain.find_clash(problem.whole, chosen, how, file_weights(weights or {}), caller().reporter)
     return Clash._make(found)

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from foon_asp.api.retrieval import search_settings, searched
-from foon_asp.api.shown import Shown
 from foon_asp.compare import Comparison, all_proved, compare_goals, comparison_json
 from foon_asp.problem import Problem
+from foon_asp.questions.result import Result
 from foon_asp.report.comparison_table import comparisons_markdown
 from foon_asp.search import SEARCHES
 
@@ -16,7 +16,7 @@ class _Compared(NamedTuple):
     comparisons: tuple[Comparison, ...]
 
 
-class Compared(Shown, _Compared):
+class Compared(Result, _Compared):
     """One comparison for each goal: ``optima`` by objective, and a judgement for each search.
 
     ``comparison.ratio(judgement, objective)`` is a tree's measure over the optimum.

@@ -3,14 +3,15 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from foon_asp.api.answer import Answer, SoftAnswer, solve, solve_soft
-from foon_asp.api.arguments import Constants, Objectives, file_weights, settings
-from foon_asp.api.shown import Shown
+from foon_asp.api.solve import solve, solve_soft
 from foon_asp.dataset.paths import File, Files
 from foon_asp.engines import Asked, Check, DisagreementError
 from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
 from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer, SoftAnswer
+from foon_asp.questions.arguments import Constants, Objectives, file_weights, settings
+from foon_asp.questions.result import Result
 from foon_asp.report.answer import outcome_json, outcome_text
 from foon_asp.report.clash import soft_json, soft_text
 from foon_asp.report.cross_check import check_lines, checked_dict
@@ -22,7 +23,7 @@ class _CrossChecked(NamedTuple):
     checks: tuple[Check, ...]
 
 
-class CrossChecked(Shown, _CrossChecked):
+class CrossChecked(Result, _CrossChecked):
     """An ``answer`` and what other engines say of it.
 
     Each of the ``checks`` has the name of its ``engine``, the ``objectives`` by which it finds the tree best,

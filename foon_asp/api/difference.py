@@ -1,14 +1,14 @@
 """Two trees beside each other."""
 
-from foon_asp.api.answer import Answer
-from foon_asp.api.shown import Shown
-from foon_asp.api.tree import Tree
 from foon_asp.errors import UserError
 from foon_asp.explain import difference as explain
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.result import Result
+from foon_asp.questions.tree import Tree
 from foon_asp.report.difference import difference_json, difference_text
 
 
-class Difference(Shown, explain.Difference):
+class Difference(Result, explain.Difference):
     """Two trees, what only one has (``only_left``, ``only_right``), what both have, and where they part.
 
     ``left`` and ``right`` have the units and the ``costs`` of each; ``partings`` are the object nodes that

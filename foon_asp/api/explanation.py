@@ -1,13 +1,13 @@
 """Why there is no tree."""
 
-from foon_asp.api.shown import Shown
 from foon_asp.explain import why_not as explain
 from foon_asp.foon import Foon
 from foon_asp.problem import Problem
+from foon_asp.questions.result import Result
 from foon_asp.report.explanation import explanation_json, explanation_text
 
 
-class Explanation(Shown, explain.Explanation):
+class Explanation(Result, explain.Explanation):
     """Why some goals cannot be made, or that all can.
 
     ``goals`` are those that cannot, ``roots`` what is behind it (each with its ``object``, ``cause``,

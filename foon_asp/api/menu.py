@@ -1,19 +1,19 @@
 """Several goals by one tree, beside a tree for each."""
 
-from foon_asp.api.answer import Answer, asked_with
-from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, settings
-from foon_asp.api.shown import Shown
-from foon_asp.api.warning import Warner
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import menu as explain
 from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.result import Result
 from foon_asp.report.answer import headline
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.menu import menu_json, menu_text
 
 
-class Menu(Shown, explain.Menu):
+class Menu(Result, explain.Menu):
     """A tree for all goals, and one for each, in the order of the goals.
 
     ``serves`` gives for each unit of the tree for all, by id, the goals that need it; ``shared`` are the
@@ -66,4 +66,4 @@ def menu(
         raise UserError("a menu has several goals: foon.problem(FIRST, SECOND, ...)")
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    return Menu._make(explain.menu(asked_with(problem, how), chosen, how, Warner()))
+    return Menu._make(explain.menu(asked_with(problem, how), chosen, how, caller().reporter))

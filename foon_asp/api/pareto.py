@@ -3,20 +3,18 @@
 from fractions import Fraction
 from pathlib import Path
 
-from foon_asp.api.answer import asked_with
-from foon_asp.api.arguments import Constants, Objectives, chosen_objectives, settings
-from foon_asp.api.shown import Shown
-from foon_asp.api.tree import Tree
-from foon_asp.api.warning import Warner
 from foon_asp.dataset.paths import File, Files
-from foon_asp.errors import UserError
 from foon_asp.explain import pareto as explain
 from foon_asp.problem import Problem
+from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.result import NothingToDrawError, Result
+from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text
 from foon_asp.report.pareto import front_json, front_text
 
 
-class Front(Shown, explain.Front):
+class Front(Result, explain.Front):
     """Trees none of which is as good as another by every objective and better by one.
 
     ``points`` has for each its ``units`` by id and its ``costs``, in order of the first objective;
@@ -56,7 +54,7 @@ class Front(Shown, explain.Front):
         from foon_asp.report.front_chart import write_front_chart  # noqa: PLC0415 - charts are seldom asked for
 
         if not self.points:
-            raise UserError("there is no point to draw")
+            raise NothingToDrawError("there is no point to draw")
         write_front_chart(self, Path(file))
 
 
@@ -76,4 +74,4 @@ def pareto(
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    return Front._make(explain.pareto_front(asked_with(problem, how), chosen, how, Warner()))
+    return Front._make(explain.pareto_front(asked_with(problem, how), chosen, how, caller().reporter))

@@ -2,12 +2,12 @@
 
 from typing import NamedTuple
 
-from foon_asp.api.arguments import at_least, settings
-from foon_asp.api.shown import Shown
-from foon_asp.api.tree import Tree
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof import Simulation, Verdict, simulate_for
+from foon_asp.questions.arguments import at_least, settings
+from foon_asp.questions.result import Result
+from foon_asp.questions.tree import Tree
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.retrieval import retrieval_json, retrieval_text
 from foon_asp.search import SEARCHES, Count, Ending, Retrieval, Search, SearchSettings, Ties
@@ -20,7 +20,7 @@ class _Retrieved(NamedTuple):
     simulation: Simulation | None
 
 
-class Retrieved(Shown, _Retrieved):
+class Retrieved(Result, _Retrieved):
     """What a search returned: ``retrieval`` has its ``ending`` and its ``units`` by id in the order listed.
 
     ``simulation`` says whether the tree executes and what stops it, ``None`` without a tree; ``search`` says

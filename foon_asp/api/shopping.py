@@ -4,22 +4,22 @@ from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 
-from foon_asp.api.answer import Answer
-from foon_asp.api.arguments import Constants, Objectives, at_least, chosen_objectives, settings
-from foon_asp.api.shown import Shown
-from foon_asp.api.warning import Warner
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.explain import shopping_list as explain
 from foon_asp.network import ObjectNode, Source
 from foon_asp.problem import Number, Problem, exact
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Constants, Objectives, at_least, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.result import Result
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.shopping import shopping_json, shopping_text
 from foon_asp.text import LineError, Price, parse_node, read_prices
 from foon_asp.warning import warn
 
 
-class Shopping(Shown, explain.Shopping):
+class Shopping(Result, explain.Shopping):
     """Lists of things to add to the kitchen in order of cost, and the tree that the first makes possible.
 
     Each of ``lists`` has its ``items`` by id, its ``price`` (their number, or the sum of prices) and whether
@@ -80,7 +80,7 @@ def shopping_list(
         listed = read_prices(Path(prices)) if isinstance(prices, str | PathLike) else _given(prices)
         by_id = explain.priced(asked, listed, warn)
     most = at_least(lists, 1, "lists")
-    return Shopping._make(explain.shopping_list(asked, chosen, how, by_id, most, Warner()))
+    return Shopping._make(explain.shopping_list(asked, chosen, how, by_id, most, caller().reporter))
 
 
 def _given(prices: Mapping[str, Number]) -> list[Price]:

@@ -51,10 +51,7 @@ class Ranked:
         self._holds = Postconditions(problem, self.levels, settings, self._program.own)
         self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
         self._scale: RateScale | None = None
-        if Objective.SUCCESS in self.levels and problem.rates is None:
-            raise UserError(
-                "the objective success needs the success rates of the motions; give a rates file with --rates"
-            )
+        problem.require_rates_for(self.levels)
         try:
             with self._deadline.watched("cutting the network"):
                 self._cut(problem)

@@ -97,10 +97,7 @@ class _Solver:
         self._ground: tuple[Sequence[Objective], Grounded] | None = None  # without products of rates
         self._best: Costs | None = None  # the best tree reported
         self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
-        if Objective.SUCCESS in self.levels and problem.rates is None:
-            raise UserError(
-                "the objective success needs the success rates of the motions; give a rates file with --rates"
-            )
+        problem.require_rates_for(self.levels)
         self.program: Program = assemble(settings, reporter.warning)
         self.holds = Postconditions(problem, self.levels, settings, self.program.own)
         if settings.clingo_options:  # looked at now, since clingo may have nothing to do

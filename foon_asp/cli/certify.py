@@ -13,7 +13,6 @@ from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.deadline import Deadline
-from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels, parse_objectives
 from foon_asp.proof import Verdict, simulate_for
@@ -123,10 +122,7 @@ def _certify_tree(
     lenient: bool,
 ) -> ExitCode:
     """Prove a given tree best, with no solver but the linear relaxation."""
-    if Objective.SUCCESS in chosen and problem.rates is None:
-        raise UserError(
-            "the objective success needs the success rates of the motions; name them with --rates"
-        )
+    problem.require_rates_for(chosen)
     # no solver looks at the rules and constants here, so a fault in them would go by without a word
     assemble(settings, lambda message: click.echo(message, err=True))
     covered = coverage(settings)

@@ -11,7 +11,7 @@ import click
 from foon_asp import __version__
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import drop_output, safe_streams
-from foon_asp.cli.verbs import VERBS, verb_command
+from foon_asp.cli.verbs import GROUPS, VERBS, verb_command
 from foon_asp.deadline import LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped, note_line_end
@@ -25,6 +25,11 @@ class _Verbs(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         return verb_command(cmd_name) if cmd_name in VERBS else None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        for group in GROUPS:
+            with formatter.section(group):
+                formatter.write_dl([(verb, each.line) for verb, each in VERBS.items() if each.group == group])
 
 
 @click.group(cls=_Verbs, context_settings={"help_option_names": ["-h", "--help"]})

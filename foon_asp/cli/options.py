@@ -40,15 +40,16 @@ class Held(NamedTuple):
     encodings: Path | None
 
 
-def _with_rules_that_stand(
+def with_rules_that_stand(
     context: click.Context, _: click.Parameter, value: tuple[Path, ...]
 ) -> tuple[Path, ...]:
+    """Add constraints to those that stand in the session, if a verb is asked in one."""
     here = context.find_object(Held)
     standing = () if here is None else here.constraints
     return tuple(dict.fromkeys((*standing, *value)))
 
 
-def _with_constants_that_stand(
+def with_constants_that_stand(
     context: click.Context, _: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
     """Add constants to those that stand; another value for one of these would change a rule that stands."""
@@ -65,7 +66,8 @@ def _with_constants_that_stand(
     return (*standing, *(setting for setting in value if setting not in standing))
 
 
-def _encodings_that_stand(context: click.Context, _: click.Parameter, value: Path | None) -> Path | None:
+def encodings_that_stand(context: click.Context, _: click.Parameter, value: Path | None) -> Path | None:
+    """Give the encodings that stand in the session; others would be of another question."""
     here = context.find_object(Held)
     if here is None or here.encodings is None:
         return value
@@ -107,14 +109,14 @@ _CONSTRAINT_OPTIONS = (
         multiple=True,
         type=_PATH,
         metavar="FILE.lp",
-        callback=_with_rules_that_stand,
+        callback=with_rules_that_stand,
         help="Add an encoding of yours, or one of ours by name; repeatable.",
     ),
     click.option(
         "--encodings",
         type=_PATH,
         metavar="DIR",
-        callback=_encodings_that_stand,
+        callback=encodings_that_stand,
         help="Use the encodings of a folder instead of ours.",
     ),
 )
@@ -157,7 +159,7 @@ constant_option = click.option(
     "constants",
     multiple=True,
     metavar="NAME=VALUE",
-    callback=_with_constants_that_stand,
+    callback=with_constants_that_stand,
     help="Set a #const of an encoding; repeatable.",
 )
 

@@ -1,43 +1,53 @@
-"""The verbs of the command line, and the module that has each."""
+"""The verbs of the command line under headings: questions of the catalog, and what is done with files."""
 
 import importlib
+from collections.abc import Mapping
+from typing import Final
 
 import click
 
-VERBS = (
-    "solve",
-    "optima",
-    "search",
-    "compare",
-    "batch",
-    "check",
-    "certify",
-    "verify",
-    "draw",
-    "why-not",
-    "shopping-list",
-    "clash",
-    "alternatives",
-    "pareto",
-    "regret",
-    "menu",
-    "assist",
-    "diff",
-    "shell",
-    "constraints",
-    "facts",
-    "stats",
-    "lint",
-    "fmt",
-    "convert",
-    "merge",
-    "import",
-)
+from foon_asp.questions.index import INDEX, Entry
+
+# Verbs that ask nothing, and those whose question is not in the catalog.
+_OTHERS: Final[Mapping[str, Entry]] = {
+    "solve": Entry("Find", "Find the best task tree for a goal, and prove that none is better."),
+    "optima": Entry("Find", "Solve every goal of the goals file under several objectives."),
+    "search": Entry("Find", "Retrieve a task tree as the literature does, and say whether it executes."),
+    "compare": Entry("Find", "Hold the searches of the literature against the optimum."),
+    "batch": Entry("Find", "Answer every question of a file, thousands in one run."),
+    "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
+    "check": Entry("Check", "Simulate a task tree: does it execute, and in which order?"),
+    "certify": Entry("Check", "Write a certificate: a proof that verify checks without a solver."),
+    "verify": Entry("Check", "Check a certificate against the data it speaks about."),
+    "why-not": Entry("Explain", "Explain why there is no task tree."),
+    "shopping-list": Entry("Explain", "Find what to add to the kitchen so that there is a tree."),
+    "clash": Entry("Explain", "Find which constraints cannot hold together, and which to drop."),
+    "alternatives": Entry("Explain", "List other trees: all optimal, the next best, the most different."),
+    "pareto": Entry("Explain", "Find the whole Pareto front of two or three objectives."),
+    "menu": Entry("Explain", "Solve several goals by one tree, and goal by goal."),
+    "assist": Entry("Explain", "Find the best success when a person does some of the units."),
+    "draw": Entry("Show", "Draw a task tree, functional units, or a network."),
+    "diff": Entry("Show", "Show what two task trees have in common, and where they part."),
+    "stats": Entry("Show", "Count what is in a network."),
+    "facts": Entry("Show", "Print the facts that clingo is given for a goal."),
+    "constraints": Entry("Show", "List the ready-made constraints."),
+    "lint": Entry("Files", "Find what is wrong with networks, kitchens and lists of objects."),
+    "fmt": Entry("Files", "Bring FOON files into canonical form."),
+    "convert": Entry("Files", "Write FOON files in another dialect."),
+    "merge": Entry("Files", "Merge FOONs into a universal FOON."),
+    "import": Entry("Files", "Merge networks into a store, for networks too large to read."),
+}
+VERBS: Final[Mapping[str, Entry]] = {**_OTHERS, **INDEX}
+GROUPS = ("Find", "Check", "Explain", "Show", "Files")
 _MODULES = {"import": "import_files"}  # of verbs that cannot be the name of a module
 
 
 def verb_command(verb: str) -> click.Command:
     """Give the command of a verb; its module is imported only then."""
+    if verb in INDEX:
+        from foon_asp.cli.question_command import question_command
+
+        return question_command(verb)
     module = _MODULES.get(verb, verb.replace("-", "_"))
     command: click.Command = importlib.import_module(f"foon_asp.cli.{module}").command
     return command

@@ -294,10 +294,8 @@ def _reaches(row: Assisted, wanted: Fraction) -> bool:
 
 
 def _check_rates(problem: Problem, person: Mapping[str, Fraction] | None) -> None:
-    if problem.rates is None:
-        raise UserError(
-            "the success with help needs the success rates of the motions; give a rates file with --rates"
-        )
+    problem.require_rates_for([Objective.SUCCESS])
+    assert problem.rates is not None
     of_person: Sequence[tuple[str, Fraction]] = [] if person is None else list(person.items())
     for motion, rate in (*problem.rates.items(), *of_person):
         if not 0 < rate <= 1:

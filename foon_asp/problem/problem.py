@@ -19,6 +19,7 @@ from foon_asp.problem.containers import (
 )
 from foon_asp.problem.costs import Costs
 from foon_asp.problem.number import Number
+from foon_asp.problem.objective import Objective, multiplies
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
@@ -151,6 +152,14 @@ class Problem:
 
     def __repr__(self) -> str:
         return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"
+
+    def require_rates_for(self, objectives: Iterable[Objective]) -> None:
+        """Raise :class:`UserError` where one of the objectives needs success rates and none are known."""
+        if self.rates is None and any(map(multiplies, objectives)):
+            raise UserError(
+                "the objective success needs the success rates of the motions: "
+                "give a rates file, with --rates FILE or in Python load(..., rates=FILE)"
+            )
 
     def rate(self, unit: int) -> Fraction:
         """Give the success rate of a unit: its own where it has one, else that of its motion.

@@ -6,11 +6,11 @@ from os import PathLike
 from pathlib import Path
 from typing import Self
 
-from foon_asp.api.shown import picture_bundle, svg_text
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Source, TaskTree, unit_at_level
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.report.drawing import Drawing, draw_tree
+from foon_asp.report.notebook import picture_bundle, svg_text
 from foon_asp.report.tree_drawing import given_tree
 from foon_asp.text import FoonReader, summarize, write_units
 from foon_asp.text.answer_file import read_listed_tree

@@ -10,19 +10,19 @@ from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, parse_objectives
+from foon_asp.questions.caller import caller
 
 Objectives = str | Iterable[str]
 """An objective, a list by commas, or several: the first counts most."""
 
-Constants = Mapping[str, object]
-"""Values of ``#const`` by name."""
+Constants = Mapping[str, object] | Iterable[str]
+"""Values of ``#const`` by name, or texts ``NAME=VALUE``."""
 
 
 def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, ...]:
     """Read objectives; ``success`` needs rates."""
     objectives = parse_objectives([given] if isinstance(given, str) else given)
-    if Objective.SUCCESS in objectives and problem.rates is None:
-        raise UserError("the objective success needs the success rates of the motions: load(..., rates=FILE)")
+    problem.require_rates_for(objectives)
     return objectives
 
 
@@ -34,13 +34,24 @@ def settings(
     memory_limit: int | str | None = None,
 ) -> Settings:
     """Put together how to solve; ``time_limit`` is in seconds, ``memory_limit`` in bytes or as ``"2G"``."""
+    given = constants or ()
+    if isinstance(given, Mapping):
+        given = [f"{name}={value}" for name, value in given.items()]
+    who = caller()
     return Settings(
         files(constraints),
         None if encodings is None else Path(encodings),
-        tuple(f"{name}={value}" for name, value in (constants or {}).items()),
+        tuple(given),
         time_limit=None if time_limit is None else seconds(time_limit),
         memory_limit=None if memory_limit is None else memory_size(memory_limit),
+        session=who.session,
+        deadline=who.deadline,
     )
+
+
+def asked_with(problem: Problem, how: Settings) -> Problem:
+    """Give a problem over all that the rules of these settings may be about."""
+    return problem.whole if how.constraints or how.replaced is not None else problem
 
 
 def file_weights(given: Mapping[File, int]) -> dict[Path, int]:

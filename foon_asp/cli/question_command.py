@@ -1,0 +1,116 @@
+"""A command for each question of the catalog, made from what the question says of itself."""
+
+import importlib
+import textwrap
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.output import write_data
+from foon_asp.cli.output_file import check_outputs
+from foon_asp.cli.progress import Progress
+from foon_asp.deadline import Deadline, memory_size, seconds
+from foon_asp.questions.caller import Caller, asked_by
+from foon_asp.questions.contract import Kind, Option, Part, Question
+from foon_asp.questions.index import INDEX, module_name
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.report.chart_file import check_suffix
+
+_CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
+_STANDING = {
+    "constraints": options.with_rules_that_stand,
+    "constants": options.with_constants_that_stand,
+    "encodings": options.encodings_that_stand,
+}
+_LIMITS = frozenset({"time_limit", "memory_limit"})
+
+
+def question_command(verb: str) -> click.Command:
+    """Give the command of a question; its module is imported only then."""
+    name = module_name(verb)
+    question: Question[..., Result] = getattr(importlib.import_module(f"foon_asp.questions.{name}"), name)
+    command: Callable[..., ExitCode] = _asking(question)
+    command = options.data_options(command)
+    command = options.format_option(*question.formats)(command)
+    own = [option for option in question.options if option.name not in _LIMITS]
+    if len(own) < len(question.options):
+        command = options.limit_options(command)
+    for option in reversed(own):
+        command = _parameter(option)(command)
+    help_ = f"{INDEX[verb].line}\n\n{textwrap.dedent(question.help).strip()}"
+    return click.command(verb, help=help_)(command)
+
+
+def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
+    parts = {option.name: option.part for option in question.options}
+
+    def command(format_: str, deadline: Deadline | None = None, **given: Any) -> ExitCode:
+        def those(*wanted: Part) -> dict[str, Any]:
+            return {name: given[name] for name, part in parts.items() if name in given and part in wanted}
+
+        charts = [file for files in those(Part.CHART).values() for file in files]
+        for chart in charts:
+            check_suffix(chart)
+        check_outputs()
+        data = {name: value for name, value in given.items() if name not in parts}
+        dataset = options.read_dataset(**data)
+        posed = those(Part.PROBLEM)
+        with options.reading():
+            goals = dataset.goals(posed["goals_named"])
+            problem = dataset.problem(goals, posed["containers"])
+        with Progress() as progress:
+            who = Caller(progress, options.session_here(), deadline, dataset.read_seconds)
+            with asked_by(who):
+                found = question(problem, **those(Part.QUESTION, Part.COMMAND))
+        for chart in charts:
+            try:
+                found.write_chart(chart)
+                click.echo(f"wrote {chart}", err=True)
+            except NothingToDrawError as nothing:
+                click.echo(f"{chart} is not written: {nothing}", err=True)
+        _show(found, format_, those(Part.TEXT))
+        return _CODES[found.ending]
+
+    return command
+
+
+def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
+    """Write what was found to standard output, and to stderr what its format does not say."""
+    if format_ == "text":
+        click.echo(found.text(**how), nl=False)
+        return
+    if format_ == "json":
+        click.echo(found.json_text(), nl=False)
+    else:
+        write_data(getattr(found, format_)())
+    if found.remark:
+        click.echo(found.remark, err=True)
+
+
+def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[..., ExitCode]]:
+    """Make a parameter of click of an option."""
+    kinds: dict[Kind, Any] = {
+        Kind.TEXT: click.Choice(option.choices) if option.choices else None,
+        Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
+        Kind.FILE: click.Path(path_type=NamedPath),
+        Kind.SECONDS: seconds,
+        Kind.SIZE: memory_size,
+    }
+    words = option.flags or ("--" + option.name.replace("_", "-"),)
+    if option.kind is Kind.FLAG:
+        return click.option(*words, option.name, is_flag=True, help=option.help)
+    return click.option(
+        *words,
+        option.name,
+        type=kinds[option.kind],
+        multiple=option.many,
+        default=option.default,
+        show_default=option.default is not None,
+        metavar=option.metavar,
+        callback=_STANDING.get(option.name),
+        help=option.help,
+    )

@@ -1,0 +1,53 @@
+"""Who asks: a caller of Python, or a command that reports progress and has begun before it read its data."""
+
+import contextlib
+from collections.abc import Iterator
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, NamedTuple
+
+from foon_asp.asp import Reporter
+from foon_asp.deadline import Deadline
+from foon_asp.warning import warn
+
+if TYPE_CHECKING:
+    from foon_asp.asp.session import Session
+
+
+class _Warner(Reporter):
+    """Hears of warnings alone, and passes them on in Python's own way."""
+
+    def warning(self, message: str) -> None:
+        """Warn at the line of the caller."""
+        warn(message)
+
+
+class Caller(NamedTuple):
+    """Who asks.
+
+    ``reporter`` hears of warnings and progress. ``session`` keeps ground programs for the next question.
+    ``deadline`` is that of the whole command. ``read_seconds`` is how long reading took, where somebody wants
+    to know it.
+    """
+
+    reporter: Reporter
+    session: "Session | None" = None
+    deadline: Deadline | None = None
+    read_seconds: float | None = None
+
+
+_CALLER: ContextVar[Caller | None] = ContextVar("caller", default=None)
+
+
+def caller() -> Caller:
+    """Give who asks; by default Python, which is warned and knows of nothing else."""
+    return _CALLER.get() or Caller(_Warner())
+
+
+@contextlib.contextmanager
+def asked_by(who: Caller) -> Iterator[None]:
+    """Let somebody else ask in a ``with`` block."""
+    token = _CALLER.set(who)
+    try:
+        yield
+    finally:
+        _CALLER.reset(token)

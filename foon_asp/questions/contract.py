@@ -1,0 +1,89 @@
+"""What a question is: a function that Python calls, with options that a command line is made from."""
+
+import functools
+from collections.abc import Callable
+from enum import StrEnum
+from typing import Generic, NamedTuple, ParamSpec, TypeVar
+
+from foon_asp.questions.result import Result
+
+P = ParamSpec("P")
+R = TypeVar("R", bound=Result)
+
+
+class Kind(StrEnum):
+    """What the text of an option is read as."""
+
+    TEXT = "text"
+    WHOLE = "whole number"
+    FILE = "file"
+    SECONDS = "seconds"
+    SIZE = "size"
+    FLAG = "flag"
+
+
+class Part(StrEnum):
+    """What an option belongs to."""
+
+    PROBLEM = "problem"
+    """The problem that is asked about, which has it in Python: goals, containers."""
+    QUESTION = "question"
+    """The question: it is a parameter of the function."""
+    COMMAND = "command"
+    """A parameter that holds for a whole command: limits, and rules, to which a session may add."""
+    TEXT = "text"
+    """How what was found is said: a parameter of its text."""
+    CHART = "chart"
+    """Files for a picture of what was found."""
+
+
+class Option(NamedTuple):
+    """One thing that can be chosen, as plain data.
+
+    ``name`` is the parameter; ``flags`` are those of the command line, by default ``--name``, where dashes
+    stand for underscores. ``many`` says that it is given again and again, ``choices`` that it is one of them,
+    ``least`` how small a number may be, ``metavar`` what stands for the value in help.
+    """
+
+    name: str
+    help: str
+    kind: Kind = Kind.TEXT
+    part: Part = Part.QUESTION
+    default: object = None
+    flags: tuple[str, ...] = ()
+    many: bool = False
+    metavar: str | None = None
+    choices: tuple[str, ...] = ()
+    least: int | None = None
+
+
+class Question(Generic[P, R]):
+    """A question: called, it gives what was found. ``options`` and ``help`` are for a command line.
+
+    ``help`` is what follows after the line of the index, with examples and what it exits with. ``formats``
+    are those that the result has, the first by default.
+    """
+
+    def __init__(
+        self, ask: Callable[P, R], options: tuple[Option, ...], help_: str, formats: tuple[str, ...]
+    ) -> None:
+        functools.update_wrapper(self, ask)
+        self.ask, self.options, self.help, self.formats = ask, options, help_, formats
+
+    def __call__(self, *args: P.args, **named: P.kwargs) -> R:
+        """Ask, as Python does."""
+        return self.ask(*args, **named)
+
+    def __repr__(self) -> str:
+        return f"<question {self.ask.__name__}>"
+
+
+def question(
+    *options: Option, help_: str, formats: tuple[str, ...] = ("text", "json")
+) -> Callable[[Callable[P, R]], Question[P, R]]:
+    """Make a question of a function."""
+
+    def decorate(ask: Callable[P, R]) -> Question[P, R]:
+        return Question(ask, options, help_, formats)
+
+    return decorate

@@ -1,0 +1,29 @@
+"""The catalog of questions, for help, completion and names: it imports nothing of ours."""
+
+from collections.abc import Mapping
+from typing import Final, NamedTuple
+
+
+class Entry(NamedTuple):
+    """A question: the heading it stands under, one line of help, and its names in Python, if it has any.
+
+    The module of a question is called like its verb, and so is the question in it.
+    """
+
+    group: str
+    line: str
+    python: tuple[str, ...] = ()
+
+
+INDEX: Final[Mapping[str, Entry]] = {
+    "regret": Entry(
+        "Explain",
+        "Find the optimum without each unit of the best tree, and without each kitchen item it takes.",
+        ("regret", "Regrets"),
+    ),
+}
+
+
+def module_name(verb: str) -> str:
+    """Give the name of a question's module, and of the question in it."""
+    return verb.replace("-", "_")

@@ -1,0 +1,228 @@
+"""What every unit of the best tree, and every item that it takes, is worth: the optimum without it."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.asp import Reporter, Settings, Status
+from foon_asp.asp import solve as find
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.dataset.paths import File, Files
+from foon_asp.errors import UserError
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.result import Ending, Result
+from foon_asp.report.answer import (
+    costs_json,
+    costs_text,
+    fraction_json,
+    goal_lines,
+    headline,
+    outcome_dict,
+    success_text,
+)
+from foon_asp.report.drawing import Drawing
+
+
+class Part(StrEnum):
+    """What is left out: a unit of the network, or an item of the kitchen."""
+
+    UNIT = "unit"
+    ITEM = "item"
+
+
+class Regret(NamedTuple):
+    """The best that is left without one part of a question.
+
+    ``id`` is that of a unit, or of an object node of the kitchen. ``status`` and ``costs`` are those of the
+    optimum without it; ``costs`` is ``None`` where there is no tree.
+    """
+
+    part: Part
+    id: int
+    status: Status
+    costs: Costs | None
+
+    def loss(self, best: Costs, objective: Objective) -> int | Fraction | None:
+        """Say how much worse it is by an objective: by how much more, or for ``success`` by what share.
+
+        ``None`` where there is no tree without this.
+        """
+        if self.costs is None:
+            return None
+        ours, theirs = best.measure(objective), self.costs.measure(objective)
+        if multiplies(objective):
+            return 1 - Fraction(theirs) / Fraction(ours) if ours else Fraction(0)
+        return theirs - ours
+
+
+@dataclass(frozen=True, repr=False)
+class Regrets(Result):
+    """An optimal tree, and what its parts are worth: what is missed most first.
+
+    Each of ``regrets`` has ``part`` (``unit`` or ``item``), the ``id`` of that unit or object node in the
+    problem's network, and ``status`` and ``costs`` of the optimum without it; ``json()`` has names, too.
+    ``regrets`` is empty where there is no tree, or where it was not proved to be the best.
+    """
+
+    outcome: Answer
+    regrets: tuple[Regret, ...]
+
+    @property
+    def ending(self) -> Ending:
+        """Done when every answer is proved."""
+        proved = all(regret.status in {Status.OPTIMAL, Status.INFEASIBLE} for regret in self.regrets)
+        return self.outcome.ending if proved else Ending.LIMIT
+
+    def text(self) -> str:
+        """Give the optimum, and under it what is missed most first."""
+        lines = [*goal_lines(self.outcome.problem), headline(self.outcome)]
+        for part, title in ((Part.UNIT, "without the unit"), (Part.ITEM, "without from the kitchen")):
+            regrets = [regret for regret in self.regrets if regret.part is part]
+            if regrets:
+                lines += ["", title, *(line for regret in regrets for line in _lines(self.outcome, regret))]
+        return "\n".join(lines) + "\n"
+
+    def json_dict(self) -> object:
+        """Give the answer and the regrets."""
+        regrets = [_json(self.outcome, regret) for regret in self.regrets]
+        return {"answer": outcome_dict(self.outcome), "regrets": regrets}
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture of the best tree shows."""
+        return self.outcome.drawing()
+
+
+@question(
+    GOALS,
+    OBJECTIVES,
+    CONTAINERS,
+    Option(
+        "units",
+        "Ask about this unit too; repeatable.",
+        Kind.WHOLE,
+        flags=("--unit",),
+        many=True,
+        metavar="ID",
+    ),
+    *RULES,
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp regret --goal macaroni
+    foon-asp regret --goal macaroni --objective success --unit 17
+
+    What is missed most comes first. Exits with 0 when every answer is proved, 1 when there is no tree at all,
+    3 when a limit came first.
+    """,
+)
+def regret(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    units: Iterable[int] = (),
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Regrets:
+    """Find the optimum without each unit of the best tree, and without each kitchen item it takes.
+
+    ``units`` are ids, as in ``json()``, of further units to ask about. The limits are for all of it.
+    Otherwise as :func:`foon_asp.solve`.
+    """
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    more = tuple(units)
+    problem = problem.whole if more else asked_with(problem, how)
+    found = [problem.network.unit_of_number(number) for number in more]
+    if None in found:
+        raise UserError(f"there is no unit {more[found.index(None)]} in the network")
+    outcome = find(problem, chosen, how, caller().reporter)
+    if outcome.units is None or outcome.status is not Status.OPTIMAL:
+        return Regrets(Answer._make(outcome), ())
+    tree = set(outcome.units)
+    taken = sorted({o for unit in tree for o in problem.needs[unit] if o in problem.kitchen})
+    regrets = []
+    own = how.constraints == () and how.replaced is None  # else rules may ask for what is missing
+    holds = Postconditions(problem, levels(chosen), how)
+
+    def without(part: Part, id_: int, fewer: Problem, how: Settings) -> None:
+        left = find(fewer, chosen, how, Reporter())
+        # an item that is not at hand is not taken, so a tree that makes it has fewer by ``kitchen``
+        if own and (part is Part.UNIT or Objective.KITCHEN not in chosen):
+            holds.no_better(left, outcome, f"with the {part} {id_}")
+        regrets.append(Regret(part, id_, left.status, left.costs))
+
+    for unit in sorted(tree.union(unit for unit in found if unit is not None)):
+        fewer = replace(problem, network=problem.network.without([unit]))
+        alone = how._replace(session=None)  # another network: a program kept for it would be of no use
+        without(Part.UNIT, unit, fewer, alone)
+    for o in taken:
+        without(Part.ITEM, o, replace(problem, kitchen=problem.kitchen - {o}), how)
+    order = (*chosen, Objective.UNITS)
+    regrets.sort(key=lambda each: _worst_first(each, order))
+    return Regrets(Answer._make(outcome), tuple(regrets))
+
+
+def _worst_first(
+    regret: Regret, objectives: tuple[Objective, ...]
+) -> tuple[bool, tuple[int | Fraction, ...], Part, int]:
+    costs = regret.costs
+    key = () if costs is None else tuple(-figure for figure in costs.key(objectives))
+    return costs is not None, key, regret.part, regret.id
+
+
+def _lines(best: Answer, regret: Regret) -> Iterator[str]:
+    network = best.problem.network
+    if regret.part is Part.UNIT:
+        name = f"{network.unit_number(regret.id)}  {network.motions[regret.id]}"
+        name += f"    [{network.sources[regret.id][0]}]"
+    else:
+        name = str(network.objects[regret.id])
+    yield f"  {_loss(best, regret)}    {name}"
+    if regret.costs is not None and best.costs is not None and regret.costs != best.costs:
+        yield f"       the best is then {costs_text(regret.costs)}"
+
+
+def _loss(best: Answer, regret: Regret) -> str:
+    if regret.status is Status.INFEASIBLE:
+        return "no tree "
+    if regret.status is not Status.OPTIMAL:
+        return "unknown "
+    first = best.objectives[0]
+    assert best.costs is not None
+    loss = regret.loss(best.costs, first)
+    if not loss:
+        return "nothing "
+    if multiplies(first):
+        text = success_text(Fraction(loss * 100))
+        return f"≈ -{text[2:]} %" if text.startswith("≈") else f"-{text} %"
+    return f"{int(loss):+} {first}"  # less by ``kitchen`` where an item is made that is not at hand
+
+
+def _json(best: Answer, regret: Regret) -> dict[str, object]:
+    network = best.problem.network
+    assert best.costs is not None
+    losses = {}
+    if regret.status is Status.OPTIMAL:
+        for objective in best.objectives:
+            loss = regret.loss(best.costs, objective)
+            losses[str(objective)] = fraction_json(loss) if isinstance(loss, Fraction) else loss
+    return {
+        "part": str(regret.part),
+        "id": network.unit_number(regret.id)
+        if regret.part is Part.UNIT
+        else network.object_number(regret.id),
+        "name": network.motions[regret.id] if regret.part is Part.UNIT else str(network.objects[regret.id]),
+        "status": str(regret.status),
+        "costs": costs_json(regret.costs),
+        "loss": losses or None,
+    }

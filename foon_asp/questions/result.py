@@ -1,0 +1,101 @@
+"""What a question gives: it says itself as text and as JSON, and shows itself as a picture."""
+
+import json
+from collections.abc import Iterable
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from foon_asp.dataset.paths import File
+from foon_asp.errors import UserError
+from foon_asp.report.notebook import page_bundle, svg_text
+
+if TYPE_CHECKING:
+    from foon_asp.report.drawing import Drawing
+
+
+class Ending(StrEnum):
+    """How a question ended, which is what an exit code says."""
+
+    DONE = "done"
+    """What was asked for was found, and proved where there is something to prove."""
+    NEGATIVE = "negative"
+    """It is proved that there is none, or a check failed."""
+    LIMIT = "limit"
+    """It was stopped at a limit, with what was known by then."""
+
+
+class NothingToDrawError(UserError):
+    """There is nothing to draw."""
+
+
+class Result:
+    """What a question gives. ``print`` shows what the command line prints, a notebook that and a picture."""
+
+    __slots__ = ()
+
+    @property
+    def ending(self) -> Ending:
+        """How the question ended."""
+        return Ending.DONE
+
+    def text(self) -> str:
+        """Give the result in words, as the command line does."""
+        raise NotImplementedError
+
+    def json_dict(self) -> object:
+        """Give the result as plain values, in the order in which JSON has them."""
+        raise NotImplementedError
+
+    def json_text(self) -> str:
+        """Give the result as JSON, as the command line does with ``--format json``."""
+        return json.dumps(self.json_dict(), indent=2, ensure_ascii=False) + "\n"
+
+    def json(self) -> Any:
+        """Give the result as plain values: lists, dictionaries, strings and numbers (docs/json.md)."""
+        return json.loads(self.json_text())
+
+    def foon(self) -> str:
+        """Give the tree as FOON text; raises :class:`UserError` for what is no tree."""
+        raise UserError("this is no tree, which FOON text could hold")
+
+    @property
+    def remark(self) -> str:
+        """What is said beside a format that does not say it; empty where nothing is."""
+        return ""
+
+    def write_chart(self, file: File) -> None:
+        """Draw a chart of what was found into a file, SVG or PNG by its suffix.
+
+        Raises :class:`NothingToDrawError` where there is nothing to draw, and :class:`UserError` for another
+        suffix, without the packages of ``foon-asp[pictures]``, and for a result that has no chart.
+        """
+        raise UserError(f"{file}: there is no chart of this")
+
+    def drawing(self) -> "Drawing | None":
+        """Give what the picture shows, or ``None`` where there is no tree to draw."""
+        return None
+
+    def svg(self) -> str:
+        """Give the picture as SVG.
+
+        Raises :class:`UserError` where there is none: without a tree, without the packages of
+        ``foon-asp[pictures]``, and for a tree too large for a picture.
+        """
+        drawing = self.drawing()
+        if drawing is None:
+            raise UserError("there is no tree to draw")
+        return svg_text(drawing)
+
+    def __str__(self) -> str:
+        return self.text().rstrip("\n")
+
+    def __repr__(self) -> str:
+        lines = [line for line in self.text().split("\n") if line and not line.startswith(("goal:", "  "))]
+        return f"<{type(self).__name__}: {lines[0] if lines else 'nothing'}>"
+
+    def _repr_mimebundle_(
+        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
+    ) -> dict[str, str]:
+        """Give what a notebook shows: the text, and below it the picture where there is one."""
+        pictures = [] if (drawing := self.drawing()) is None else [drawing]
+        return page_bundle(self, pictures)

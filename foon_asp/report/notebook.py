@@ -1,0 +1,41 @@
+"""How values show themselves in a notebook: as text, and as a picture below it."""
+
+import base64
+import contextlib
+import html
+from collections.abc import Iterable
+
+from foon_asp.errors import UserError
+from foon_asp.report.drawing import Drawing
+from foon_asp.report.picture import svg_picture
+
+
+def svg_text(drawing: Drawing) -> str:
+    """Give a drawing as SVG that can stand inside a page: from its first tag on."""
+    text = svg_picture(drawing).decode()
+    return text[text.index("<svg") :]
+
+
+def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
+    """Give by media type what shows a value as a picture; as text where no picture can be drawn."""
+    try:
+        return {"text/plain": repr(value), "image/svg+xml": svg_text(drawing)}
+    except UserError:
+        return page_bundle(value, ())
+
+
+def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
+    """Give by media type what shows a value as text, with pictures below it as far as they can be drawn.
+
+    A cell of a notebook shows the page; lists of values and consoles show the short form.
+    """
+    parts = [f"<pre>{html.escape(str(value))}</pre>"]
+    with contextlib.suppress(UserError):
+        parts += [_image(svg_text(drawing)) for drawing in drawings]
+    return {"text/plain": repr(value), "text/html": "\n".join(parts)}
+
+
+def _image(svg: str) -> str:
+    # as an image, so that the style and the names in one picture stay its own
+    coded = base64.b64encode(svg.encode()).decode()
+    return f'<img alt="task tree" src="data:image/svg+xml;base64,{coded}"/>'

@@ -1,0 +1,127 @@
+"""The catalog of questions against the questions: names, options, parameters, help."""
+
+import ast
+import importlib
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import foon_asp
+from foon_asp.cli.verbs import VERBS
+from foon_asp.questions import index
+from foon_asp.questions.contract import Option, Part, Question
+from foon_asp.questions.index import INDEX, module_name
+from foon_asp.questions.result import Result
+from tests.conftest import Cli
+
+FACE = Path(foon_asp.__file__)
+QUESTIONS = FACE.parent / "questions"
+# what stands beside the questions in their room
+BESIDE = {"__init__", "answer", "arguments", "caller", "contract", "index", "options", "result", "tree"}
+# parameters that the command line has no option for: it has them from elsewhere
+PYTHON_ONLY = {"problem", "reporter"}
+
+
+def question_of(verb: str) -> Question[..., Result]:
+    name = module_name(verb)
+    found: Question[..., Result] = getattr(importlib.import_module(f"foon_asp.questions.{name}"), name)
+    return found
+
+
+def parameters(verb: str) -> dict[str, inspect.Parameter]:
+    return dict(inspect.signature(question_of(verb)).parameters)
+
+
+def asked_for(verb: str) -> dict[str, Option]:
+    parts = {Part.QUESTION, Part.COMMAND}
+    return {option.name: option for option in question_of(verb).options if option.part in parts}
+
+
+def test_every_file_is_in_the_index() -> None:
+    files = {path.stem for path in QUESTIONS.iterdir() if path.stem != "__pycache__"}
+    assert files - BESIDE == {module_name(verb) for verb in INDEX}
+
+
+def test_the_index_imports_nothing_of_ours() -> None:
+    tree = ast.parse(Path(index.__file__).read_text())
+    names = [n.module for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)]
+    assert not [name for name in names if name is None or name.startswith("foon_asp")]
+
+
+@pytest.mark.parametrize("verb", INDEX)
+def test_a_question_is_a_verb(verb: str) -> None:
+    assert verb in VERBS
+    assert isinstance(question_of(verb), Question)
+
+
+@pytest.mark.parametrize("verb", INDEX)
+def test_options_are_parameters(verb: str) -> None:
+    taken = {name for name in parameters(verb) if name not in PYTHON_ONLY}
+    assert set(asked_for(verb)) == taken
+
+
+@pytest.mark.parametrize("verb", INDEX)
+def test_defaults_are_the_same(verb: str) -> None:
+    def plain(value: Any) -> Any:
+        return tuple(value.split(" ")) if isinstance(value, str) else value or None
+
+    for name, option in asked_for(verb).items():
+        default = parameters(verb)[name].default
+        if option.many:
+            assert plain(option.default) == plain(default), name
+        else:
+            assert (option.default or None) == (default or None), name
+
+
+@pytest.mark.parametrize("verb", INDEX)
+def test_an_option_has_a_sentence_of_help(verb: str) -> None:
+    for option in question_of(verb).options:
+        assert option.help[0].isupper(), option.name
+        assert option.help.endswith("."), option.name
+
+
+@pytest.mark.parametrize("verb", INDEX)
+def test_help_begins_with_the_line_of_the_index(verb: str, cli: Cli) -> None:
+    ran = cli(verb, "--help")
+    assert ran.code == 0
+    assert INDEX[verb].line in " ".join(ran.out.split())
+    assert f"foon-asp {verb}" in ran.out
+    assert "xits with 0" in ran.out
+
+
+@pytest.mark.parametrize("verb", INDEX)
+def test_text_parameters_are_those_of_the_text(verb: str) -> None:
+    text = [option.name for option in question_of(verb).options if option.part is Part.TEXT]
+    result = inspect.signature(question_of(verb)).return_annotation
+    assert text == [name for name in inspect.signature(result.text).parameters if name != "self"]
+
+
+def test_public_names_are_those_that_type_checkers_see() -> None:
+    (guarded,) = [
+        node
+        for node in ast.parse(FACE.read_text()).body
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+    ]
+    seen = {
+        alias.name: node.module
+        for node in guarded.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    assert set(seen) == set(foon_asp.__all__)
+    for name, module in seen.items():
+        assert getattr(foon_asp, name) is getattr(importlib.import_module(str(module)), name)
+
+
+def test_help_of_all_imports_no_question() -> None:
+    code = (
+        "import sys; from foon_asp.cli.main import cli\n"
+        "try: cli.main(['--help'], standalone_mode=False)\n"
+        "finally: print(sorted(m for m in sys.modules if m.startswith('foon_asp.questions.')))"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ran.stdout.splitlines()[-1] == "['foon_asp.questions.index']"
