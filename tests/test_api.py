@@ -646,7 +646,7 @@ def test_without_the_packages_for_pictures_there_is_text(foon: Foon, monkeypatch
     def missing(_: object) -> bytes:
         raise UserError("a picture needs more packages: pip install 'foon-asp[pictures]'")
 
-    monkeypatch.setattr("foon_asp.api.shown.svg_picture", missing)
+    monkeypatch.setattr("foon_asp.report.notebook.svg_picture", missing)
     answer = foon_asp.solve(foon.problem("ice"))
     for shown in (answer, answer.tree, foon_asp.alternatives(foon.problem("ice"))):
         assert shown is not None

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from foon_asp.dataset.paths import File, Files
 from foon_asp.explain import assist as explain
-from foon_asp.problem import Number, Problem, success_rate
+from foon_asp.problem import Number, Objective, Problem, success_rate
 from foon_asp.questions.arguments import Constants, asked_with, at_least, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Result
@@ -72,6 +72,8 @@ def assist(
     """
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     wanted = None if reach is None else success_rate(reach, "the success to reach")
+    problem.require_rates_for([Objective.SUCCESS])
+    assert problem.rates is not None
     rates: dict[str, Fraction] | None = None
     if isinstance(person, str | PathLike):
         rates = read_rates(Path(person))
