@@ -283,6 +283,14 @@ def test_a_rate_of_0_costs_more_than_any_weight() -> None:
     )
 
 
+def test_a_rate_of_0_decides_before_all_objectives_after_it() -> None:
+    goals = [{"id": OTHER_ID, "node": "other"}]
+    at_hand = Problem(PLAIN.network, PLAIN.kitchen | {RARE_ID}, (OTHER_ID,), PLAIN.rates, frozenset())
+    values: Content = {"claim": "bound", "objective": ["success", "units"], "goals": goals}
+    values |= {"cuts": [[OTHER_ID]], "proof": {"weights": [[0, [{"1/2": "9"}, "9"]]]}}
+    assert accepted(at_hand, **values, bound=[{"1/2": "9"}, "9"]).claim == "bound"
+
+
 def test_rates_outside_of_0_and_1_are_refused() -> None:
     for rate in (Fraction(-1, 10), Fraction(11, 10)):
         odd = Problem(
@@ -298,6 +306,22 @@ def test_without_rates_all_but_success_is_proved() -> None:
     assert accepted(plain, **POURED, cuts=[[END_ID]], proof=ONE).claim == "optimal"
     values: Content = {"claim": "bound", "objective": ["success"], "bound": [{}]}
     assert refusal(plain, **values) == "success is claimed, but no rates are given"
+
+
+def test_units_that_need_nothing_take_no_items() -> None:
+    """By kitchen they cost nothing, and the units decide."""
+    made = network(("find", [], [END]))
+    problem = Problem(made, frozenset(), (0,), None, frozenset())
+    values: Content = {"objective": ["kitchen", "units"], "tree": [0], "costs": [0, 1]}
+    assert refusal(problem, **values) == "the weights do not add up to enough"
+    proof = {"weights": [[0, ["0", "1"]]]}
+    assert accepted(problem, **values, cuts=[[0]], proof=proof).costs == (0, 1)
+
+
+def test_an_objective_that_is_known_by_name_alone_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(verify, "OBJECTIVES", (*verify.OBJECTIVES, "pans"))
+    values: Content = {**BOUND, "objective": ["pans"], "cuts": [[END_ID]], "proof": ONE}
+    assert refusal(PLAIN, **values) == "an objective is unknown"
 
 
 # --- branches
@@ -395,6 +419,8 @@ NO_ID = "expected ids of the network"
         ({"proof": {"weights": [[True, ["1"]]]}}, "expected the number of a cut"),
         ({"proof": {"weights": [[0, ["1"]], [0, ["1"]]]}}, "expected cuts in order, each of them once"),
         ({"proof": {"weights": [[1, ["1"]], [0, ["1"]]]}}, "expected cuts in order, each of them once"),
+        ({"proof": {"weights": [[[], ["1"]]]}}, "expected the number of a cut"),
+        ({"proof": {"weights": [[0, ["1"]], ["1", ["1"]]]}}, "expected the number of a cut"),
         ({"proof": {"weights": [[0]]}}, "expected a cut and its weight"),
         ({"proof": {"weights": ["ab"]}}, "expected a cut and its weight"),
         ({"proof": {"hopeless": 0}}, "expected the number of a cut"),
@@ -425,6 +451,30 @@ NO_ID = "expected ids of the network"
 )
 def test_what_is_refused(values: Content, said: str) -> None:
     assert refusal(PLAIN, **{**BOUND, **values}) == said
+
+
+def test_a_branch_on_an_item_where_items_cost_nothing() -> None:
+    proof = {"branch": {"item": START_ID}, "without": {"weights": []}, "using": {"weights": []}}
+    assert refusal(PLAIN, **BOUND, proof=proof) == "a branch on an item where items cost nothing"
+
+
+def test_other_data_are_refused() -> None:
+    content = handmade(PLAIN, **BOUND)
+    others = {
+        "network": Problem(
+            network(("pour", [START], [END, SALT])), frozenset({0, 2}), (1,), PLAIN.rates, frozenset()
+        ),
+        "kitchen": Problem(PLAIN.network, frozenset({0}), (1,), PLAIN.rates, frozenset()),
+        "rates": Problem(PLAIN.network, PLAIN.kitchen, (1,), None, frozenset()),
+        "utensils": Problem(PLAIN.network, PLAIN.kitchen, (1,), PLAIN.rates, frozenset({"cup"})),
+    }
+    for part, other in others.items():
+        with pytest.raises(RefusedError) as refused:
+            check(content, other)
+        assert str(refused.value) == f"{part}: not the one that the certificate speaks about"
+    with pytest.raises(RefusedError) as refused:
+        check({**content, "level": 2}, PLAIN)
+    assert str(refused.value) == "the seal does not fit: something was changed"
 
 
 def test_a_level_is_a_number() -> None:
@@ -749,6 +799,15 @@ def test_a_file_has_a_million_brackets() -> None:
     with pytest.raises(LimitError) as refused:
         read_certificate(text + "[")
     assert str(refused.value) == "it has more than 16,000,000 letters or 1,000,000 brackets"
+
+
+def test_what_is_no_json() -> None:
+    for text in ("", "{", "[" * 100_000):
+        with pytest.raises(RefusedError, match=r"^not JSON: "):
+            read_certificate(text)
+    with pytest.raises(RefusedError) as refused:
+        read_certificate('{"a": 1, "b": 2, "a": 1}')
+    assert str(refused.value) == "a key stands twice in one object"
 
 
 def test_a_number_is_quoted_as_far_as_it_can_be_read() -> None:

@@ -28,12 +28,12 @@ def rated(*rates: str) -> Problem:
 
 def sign(problem: Problem, exponents: dict[str, str]) -> int:
     """Give the sign of the sum of ``e * -log(rate)``: it is above zero where its bound is not proved."""
-    proved = [_proved(problem, exponents, opposite) for opposite in (1, -1)]
-    assert any(proved)
-    return proved[1] - proved[0]
+    below, above = (proved(problem, exponents, opposite) for opposite in (1, -1))
+    assert below or above
+    return above - below
 
 
-def _proved(problem: Problem, exponents: dict[str, str], opposite: int) -> bool:
+def proved(problem: Problem, exponents: dict[str, str], opposite: int) -> bool:
     bound = {rate: str(opposite * Fraction(e)) for rate, e in exponents.items()}
     content = handmade(problem, claim="bound", objective=["success"], bound=[bound])
     try:
@@ -162,7 +162,7 @@ def test_bounds_that_touch_zero_decide_nothing() -> None:
     fifty = Context(prec=50)
     two = int(Fraction(fifty.ln(Decimal(2))) * 10**50) - 1
     three = int(Fraction(fifty.ln(Decimal(3))) * 10**49) + 1
-    for one, other in ((10 * three, -two), (-10 * three, two)):
+    for opposite in (1, -1):
         with pytest.raises(LimitError) as refused:
-            sign(RATES, {"1/2": str(one), "1/3": str(other)})
+            proved(RATES, {"1/2": str(10 * three), "1/3": str(-two)}, opposite)
         assert str(refused.value) == TOO_CLOSE

@@ -45,6 +45,8 @@ def test_a_cycle_is_named_and_only_when_it_is_to_blame() -> None:
     assert verdict(behind, [A], E) == (Verdict.NEVER, (), Obstacle(0, D), Obstacle(0, D, (2, 1, 3)))
     lacking = [unit([B], [C]), unit([D], [B])]
     assert verdict(lacking, [A], C) == (Verdict.NEVER, (), Obstacle(0, B), Obstacle(0, B))
+    again = [unit([A, B], [C]), unit([C], [A])]  # what is at hand, nobody waits for
+    assert verdict(again, [A], C) == (Verdict.NEVER, (), Obstacle(0, B), Obstacle(0, B))
     itself = [unit([B], [B])]
     assert verdict(itself, [A], B) == (Verdict.NEVER, (), Obstacle(0, B), Obstacle(0, B, (0,)))
 
