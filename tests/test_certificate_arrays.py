@@ -103,6 +103,11 @@ def test_what_is_stated_has_a_part_for_each_objective() -> None:
     assert arrays.stated(arrays.costs[2]) == ["1", {"1/3": "1"}, "1"]
 
 
+def test_a_vector_has_all_its_parts() -> None:
+    with pytest.raises(ValueError, match=r"zip\(\)"):
+        Arrays(RATED, (SUCCESS,), Coverage()).stated((Fraction(1),))
+
+
 def test_goals_at_hand_ask_for_nothing() -> None:
     assert Arrays(problem(goals=(END, SALT, MIDDLE)), (UNITS,), Coverage()).goals == [END, MIDDLE]
 

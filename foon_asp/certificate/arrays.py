@@ -1,7 +1,8 @@
 """A problem and its objectives as the plain arrays that bounds are computed on."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 
 from foon_asp.bounds import Hypergraph, Lexicographic, Vector
 from foon_asp.certificate.coverage import Coverage
@@ -23,8 +24,8 @@ class Arrays:
         self.order = Lexicographic([self.rates if multiplies(o) else None for o in objectives])
         self.goals = [goal for goal in problem.goals if goal not in problem.kitchen]
         self.forbidden = covered.forbids(network)
-        known: dict[object, Vector] = {}
-        self.costs = [self._cost(unit, known) for unit in range(len(network))]
+        cost = cache(self._cost)  # many units cost the same
+        self.costs = [cost(*self._measures(unit)) for unit in range(len(network))]
         needs: list[Sequence[int]] = list(problem.needs)
         gives: list[Sequence[int]] = list(problem.gives)
         self.items: dict[int, int] = {}
@@ -71,17 +72,19 @@ class Arrays:
     def _rates(self) -> Iterable[Fraction]:
         return map(self.problem.rate, range(len(self.problem.network)))
 
-    def _cost(self, unit: int, known: dict[object, Vector]) -> Vector:
-        network = self.problem.network
-        rate = self.problem.rate(unit) if self.rates else None
-        counts = [0 if multiplies(o) else unit_count(network, o, unit) for o in self.objectives]
-        key = (rate, *counts)
-        if key not in known:
-            cost: list[Fraction] = []
-            for objective, count in zip(self.objectives, counts, strict=True):
-                if multiplies(objective):
-                    cost += [Fraction(r == rate) for r in self.rates]
-                else:
-                    cost.append(Fraction(count))
-            known[key] = tuple(cost)
-        return known[key]
+    def _measures(self, unit: int) -> Iterator[Fraction | int | None]:
+        """Give what the cost of a unit is made of: its rate, where rates count, and its counts."""
+        yield self.problem.rate(unit) if self.rates else None
+        for objective in self.objectives:
+            if not multiplies(objective):
+                yield unit_count(self.problem.network, objective, unit)
+
+    def _cost(self, rate: Fraction | None, *counts: int) -> Vector:
+        cost: list[Fraction] = []
+        left = iter(counts)
+        for objective in self.objectives:
+            if multiplies(objective):
+                cost += [Fraction(r == rate) for r in self.rates]
+            else:
+                cost.append(Fraction(next(left)))
+        return tuple(cost)
