@@ -14,8 +14,9 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTSequence, ASTType, parse_files
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.facts import FACT_PREDICATES, OBJECTIVE_TERMS
+from foon_asp.asp.facts import FACT_PREDICATES
 from foon_asp.network import FunctionalUnit
+from foon_asp.problem import Objective
 
 Keeps = Callable[[tuple[FunctionalUnit, ...]], bool]
 
@@ -43,7 +44,7 @@ class HostileFile(NamedTuple):
 @cache
 def our_names() -> tuple[str, ...]:
     """Give every name that the program can have in it but for the user's, and each without its underscore."""
-    names = {*FACT_PREDICATES, *OBJECTIVE_TERMS.values(), "base"}
+    names = {*FACT_PREDICATES, *(objective.row.term for objective in Objective), "base"}
     for file in sorted(ENCODINGS.rglob("*.lp")):
         statements: list[AST] = []
         parse_files([str(file)], statements.append)

@@ -1,34 +1,20 @@
 """Every objective is measured the same in all rooms, and one that a room does not know is refused by name."""
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
-from fractions import Fraction
-from pathlib import Path
-from typing import Any
 
 import clingo
 import pytest
 
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.exact_success import problem_scale
-from foon_asp.asp.facts import write_at_most, write_facts, write_objectives
-from foon_asp.asp.ranking import Ranked
-from foon_asp.asp.session import Session
+from foon_asp.asp.facts import write_facts, write_objectives
 from foon_asp.certificate import certify
-from foon_asp.certificate.arrays import Arrays
-from foon_asp.certificate.coverage import NOTHING
-from foon_asp.cli.progress import Progress
-from foon_asp.engines import engine, fast_downward, highs
 from foon_asp.errors import BugError
-from foon_asp.explain.alternatives import all_optimal
-from foon_asp.explain.menu import menu
-from foon_asp.explain.pareto import pareto_front
-from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels, multiplies, unit_count
+from foon_asp.problem import ContainerRule, Costs, Objective, Problem, Row, levels, multiplies
 from foon_asp.proof import verify
-from foon_asp.reduce import ALL, NONE, ExactCosts, Reduction, reduce
-from foon_asp.reduce.exact_costs import CoarseCosts, TooFineError
-from foon_asp.report.answer import bounds_json
+from foon_asp.reduce import ALL, NONE, ExactCosts, Reduction
+from foon_asp.reduce.exact_costs import TooFineError
 from foon_asp.resources import encodings_folder
 from tests import oracle
 from tests.random_problems import random_problem
@@ -37,93 +23,56 @@ from tests.test_exact_success import two_ways
 RULES = list(ContainerRule)
 
 
-def unknown() -> Objective:
-    """Make an objective that no room has heard of: what is added to the class, and nowhere else."""
-    fake = str.__new__(Objective, "attempts")
-    fake._name_, fake._value_ = "ATTEMPTS", "attempts"
-    return fake
+def made_up(row: Row) -> Objective:
+    """Make an objective that is a row, and nothing else: no room has heard of its name."""
+    objective = str.__new__(Objective, row.term)
+    objective._name_, objective._value_, objective.row = row.term.upper(), row.term, row
+    return objective
 
 
-FAKE = unknown()
-COSTS = Costs(1, 2, 3, 4, Fraction(1, 2))
-
-
-def asked(*objectives: Objective, **how: Any) -> Callable[[Problem], object]:
-    return lambda problem: solve(problem, objectives, Settings(**how))
-
-
-ROOMS: dict[str, Callable[[Problem], object]] = {
-    "multiplies": lambda _: multiplies(FAKE),
-    "unit_count": lambda p: unit_count(p.network, FAKE, 0),
-    "costs": lambda _: COSTS.measure(FAKE),
-    "costs in order": lambda _: COSTS.key((FAKE,)),
-    "exact costs": lambda p: ExactCosts(p, (FAKE, Objective.UNITS), range(3))(0),
-    "exact costs, later": lambda p: ExactCosts(p, (Objective.UNITS, FAKE), range(3))(0),
-    "coarse costs": lambda p: CoarseCosts(p, FAKE)(0),
-    "certificate": lambda p: Arrays(p, (FAKE, Objective.UNITS), NOTHING),
-    "certificate, later": lambda p: Arrays(p, (Objective.SUCCESS, FAKE), NOTHING),
-    "certify": lambda p: certify(p, (Objective.UNITS, FAKE), (0, 1)),
-    "engine": lambda p: engine.cost(p, FAKE, 0),
-    "HiGHS": lambda p: highs.solve_with_highs(p, (FAKE, Objective.UNITS), frozenset(), 5.0),
-    "Fast Downward": lambda p: list(fast_downward._task(p, FAKE, frozenset())),
-    "facts": lambda _: write_objectives((FAKE,)),
-    "bounds": lambda _: write_at_most(0, {FAKE: 1}),
-    "ranked": lambda p: list(Ranked(p, (FAKE,), Settings())),
-    "alternatives": lambda p: all_optimal(p, (Objective.UNITS, FAKE), Settings(), 9),
-    "menu": lambda p: menu(p, (FAKE,)),
-    "pareto": lambda p: pareto_front(p, (Objective.UNITS, FAKE)),
-    "pareto, leading": lambda p: pareto_front(p, (FAKE, Objective.UNITS)),
-    "solve": asked(FAKE),
-    "solve, later": asked(Objective.INPUTS, FAKE),
-    "solve, last": asked(Objective.SUCCESS, Objective.UNITS, FAKE),
-    "solve without reductions": asked(FAKE, reductions=NONE),
-    "solve by need": asked(FAKE, encodings=Path("by_need")),
-    "solve with a constraint": asked(FAKE, constraints=(Path("forbid_motion"),)),
-    "session": asked(FAKE, constraints=(Path("forbid_motion"),), session=Session()),
-    "report": lambda p: bounds_json(solve(p)._replace(bounds={FAKE: 3})),
-    "progress": lambda _: Progress.bound(Progress.__new__(Progress), FAKE, 3),
-    **{
-        f"reduce, {name}": lambda p, one=one: reduce(p, (FAKE, Objective.UNITS), {one})  # type: ignore[misc]
-        for name, one in Reduction.__members__.items()
-    },
-}
-
-
-@pytest.mark.parametrize("room", ROOMS)
-def test_a_room_refuses_an_objective_that_it_does_not_know(room: str) -> None:
-    problem = two_ways(["0.5", "0.5"], ["0.2"])
-    with pytest.raises((BugError, ValueError), match="attempts"):
-        ROOMS[room](problem)
-
-
-@pytest.mark.parametrize("room", ROOMS)
-def test_knowing_how_it_adds_up_is_not_enough(room: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("foon_asp.problem.objective._ADDED_UP", frozenset({*Objective, FAKE}))
-    if room in {"multiplies", "report", "progress"}:
-        return  # that is all they have to know
-    problem = two_ways(["0.5", "0.5"], ["0.2"])
-    with pytest.raises((BugError, ValueError), match="attempts"):
-        ROOMS[room](problem)
+# what is made of little, and dearer than it is long
+DEAR = made_up(Row("dear", "cost", lambda unit: 3 * len(list(unit.inputs)) % 7, is_fact=True))
 
 
 @pytest.mark.parametrize("reductions", [ALL, *(frozenset({one}) for one in Reduction), NONE])
-def test_rooms_that_know_different_things_give_no_answer(
+@pytest.mark.parametrize("rule", RULES)
+def test_a_row_is_all_that_a_new_objective_takes(
+    reductions: frozenset[Reduction], rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, DEAR))
+    solved = 0
+    for seed in range(40):
+        problem = random_problem(seed, rule)
+        trees = [
+            [u for node in tree if (u := problem.network.unit_id(node)) is not None]
+            for tree in oracle.trees(problem)
+        ]
+        found = solve(problem, (DEAR,), Settings(reductions=reductions))
+        if not trees:
+            assert found.costs is None
+            continue
+        least = min(
+            (sum(3 * len(problem.network.inputs[unit]) % 7 for unit in tree), len(tree)) for tree in trees
+        )
+        assert found.costs is not None
+        assert (found.costs.measure(DEAR), found.costs.units) == least
+        solved += 1
+    assert solved > 10
+
+
+@pytest.mark.parametrize("reductions", [ALL, *(frozenset({one}) for one in Reduction), NONE])
+def test_rooms_that_measure_different_things_give_no_answer(
     reductions: frozenset[Reduction], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Trees have twice their units by it; bounds take it for the inputs, and the encodings for those, too."""
+    inputs = made_up(Objective.INPUTS.row._replace(term="inputs"))
     measure = Costs.measure
-    monkeypatch.setattr("foon_asp.problem.objective._ADDED_UP", frozenset({*Objective, FAKE}))
     monkeypatch.setattr(
-        Costs, "measure", lambda costs, by: 2 * costs.units if by is FAKE else measure(costs, by)
+        Costs, "measure", lambda costs, by: 2 * costs.units if by is inputs else measure(costs, by)
     )
-    monkeypatch.setattr(
-        "foon_asp.reduce.exact_costs.unit_count",
-        lambda network, by, unit: unit_count(network, Objective.INPUTS if by is FAKE else by, unit),
-    )
-    monkeypatch.setattr("foon_asp.asp.facts.OBJECTIVE_TERMS", dict.fromkeys([*Objective, FAKE], "inputs"))
     for ways in ((["0.5", "0.5"], ["0.2"]), (["0.2"], ["0.5", "0.5"])):
         with pytest.raises(BugError, match=r"the reductions make it|clingo reports the costs"):
-            solve(two_ways(*ways), (FAKE,), Settings(reductions=reductions))
+            solve(two_ways(*ways), (inputs,), Settings(reductions=reductions))
 
 
 def test_a_certificate_by_an_unknown_objective_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

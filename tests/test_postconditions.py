@@ -23,6 +23,7 @@ from foon_asp.resources import encodings_folder
 from tests.conftest import Cli
 from tests.random_problems import random_problem
 from tests.test_exact_success import two_ways
+from tests.wrong_costs import with_measures
 
 SUCCESS = (Objective.SUCCESS,)
 TWO = (["0.3", "0.3"], ["0.09"])  # success is the same, units are not
@@ -51,7 +52,7 @@ def break_costs(patch: pytest.MonkeyPatch) -> None:
 
     def wrong(problem: Problem, units: Any) -> Costs:
         found = costs(problem, units)
-        return found._replace(units=found.units + 1, inputs=found.inputs + 1, success=Fraction(1, 7))
+        return with_measures(found, units=found.units + 1, inputs=found.inputs + 1, success=Fraction(1, 7))
 
     patch.setattr(Problem, "costs", wrong)
 
@@ -172,8 +173,8 @@ def changed(**parts: Any) -> Callable[[Outcome], Outcome]:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda o: o._replace(costs=o.costs._replace(inputs=7)), "the answer says"),
-        (lambda o: o._replace(costs=o.costs._replace(success=Fraction(1))), "the answer says"),
+        (lambda o: o._replace(costs=with_measures(o.costs, inputs=7)), "the answer says"),
+        (lambda o: o._replace(costs=with_measures(o.costs, success=Fraction(1))), "the answer says"),
         (lambda o: o._replace(units=(*o.units, *o.units)), "twice"),
         (changed(bounds={Objective.SUCCESS: Fraction(9, 100), Objective.UNITS: 0}), "called optimal"),
         (changed(bounds={}), "called optimal"),
@@ -215,7 +216,7 @@ def test_a_better_tree_heard_of_before_is_not_forgotten() -> None:
     holds = Postconditions(problem, levels(SUCCESS), Settings())
     holds.outcome(outcome, outcome.costs)
     with pytest.raises(BugError, match="but one was found for"):
-        holds.outcome(outcome, outcome.costs._replace(success=Fraction(1, 2)))
+        holds.outcome(outcome, with_measures(outcome.costs, success=Fraction(1, 2)))
 
 
 def test_cuts_prove_the_tree_that_they_were_found_for() -> None:
@@ -291,13 +292,13 @@ def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch
         outcome = solve(asked, *given)
         if asked is problem or outcome.costs is None:
             return outcome
-        return outcome._replace(costs=outcome.costs._replace(units=outcome.costs.units + 3))
+        return outcome._replace(costs=with_measures(outcome.costs, units=outcome.costs.units + 3))
 
     def better(asked: Problem, *given: Any) -> Outcome:
         outcome = solve(asked, *given)
         if asked is problem or outcome.costs is None:
             return outcome
-        return outcome._replace(costs=outcome.costs._replace(units=0))
+        return outcome._replace(costs=with_measures(outcome.costs, units=0))
 
     assert menu(problem).separate
     assert regret(problem).regrets

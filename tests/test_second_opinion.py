@@ -29,6 +29,7 @@ from tests.conftest import Cli
 from tests.gap_problem import gap_problem
 from tests.random_problems import MOTIONS, SERIES, random_problem
 from tests.test_exact_success import two_ways
+from tests.wrong_costs import with_measures
 
 RULES = list(ContainerRule)
 PATIENCE = 60.0
@@ -292,7 +293,7 @@ def test_wrong_costs_and_trees_that_do_not_execute_are_found() -> None:
     assert outcome.units is not None
     assert outcome.costs is not None
     with pytest.raises(DisagreementError, match="the costs of our tree are not those of its units"):
-        agrees(outcome._replace(costs=outcome.costs._replace(kitchen=9)))
+        agrees(outcome._replace(costs=with_measures(outcome.costs, kitchen=9)))
     with pytest.raises(DisagreementError, match="the tree of foon-asp does not execute"):
         agrees(with_tree(outcome, outcome.units[1:]))
 

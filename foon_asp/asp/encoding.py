@@ -11,10 +11,11 @@ from clingo.ast import AST, ASTType, ComparisonOperator, Location, Transformer, 
 from clingo.symbol import SymbolType
 
 from foon_asp.asp.encoding_file import LARGEST, excerpt, included_files
-from foon_asp.asp.facts import FACT_PREDICATES, OBJECTIVE_TERMS, quote
+from foon_asp.asp.facts import FACT_PREDICATES, quote
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import listener
 from foon_asp.network import Source
+from foon_asp.problem import Objective
 from foon_asp.resources import encodings_folder
 from foon_asp.text import Diagnostic, InputError, Severity
 
@@ -25,7 +26,8 @@ _PREFIX = "_"
 _PUBLIC = frozenset((*FACT_PREDICATES.items(), ("use", 1), ("available", 1)))
 _EXTENDED = frozenset((("allergen", 1), ("allowed", 1)))  # to which files of the user's add facts
 _LOOKED_AT = frozenset((("_by_person", 1),))  # by constraints, under a question that has it
-_PUBLIC_NAMES = frozenset((*(name for name, _ in (*_PUBLIC, *_EXTENDED)), *OBJECTIVE_TERMS.values()))
+_TERMS = frozenset(objective.row.term for objective in Objective)
+_PUBLIC_NAMES = frozenset(name for name, _ in (*_PUBLIC, *_EXTENDED)) | _TERMS
 
 _THEORY = "no theory is part of the program, so it would have no meaning; #sum and #count add up and count"
 _REFUSED = {

@@ -5,7 +5,7 @@ from fractions import Fraction
 from pathlib import PurePath
 
 from foon_asp.asp.exact_success import RateScale
-from foon_asp.errors import BugError, UserError
+from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
 from foon_asp.network import Source
 from foon_asp.problem import Objective, Problem, multiplies
@@ -31,6 +31,7 @@ FACT_PREDICATES = {
     "ingredients": 2,
     "rate": 2,
     "risk": 2,
+    "cost": 3,
     "optimize": 2,
     "_exponent": 3,
     "_product": 3,
@@ -62,33 +63,30 @@ FACT_PREDICATES = {
     "_exactly_alike": 2,
 }
 
-OBJECTIVE_TERMS = {
-    Objective.UNITS: "units",
-    Objective.INPUTS: "inputs",
-    Objective.INPUTS_AND_INGREDIENTS: "inputs_and_ingredients",
-    Objective.SUCCESS: "success",
-    Objective.KITCHEN: "kitchen",
-}
-
 _Atom = tuple[str, str]  # the name of the predicate, and the arguments as text
 
 _LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
 
 
 def write_facts(
-    problem: Problem, units: Sequence[int], scale: RateScale | None, with_sources: bool = False
+    problem: Problem,
+    units: Sequence[int],
+    scale: RateScale | None,
+    with_sources: bool = False,
+    objectives: Iterable[Objective] = (),
 ) -> str:
     """Describe the given units of a problem, their object nodes, the kitchen and the goals.
 
     One line per unit and per object node; ids are those of the whole network. ``scale`` gives the weights
     of ``risk/2``; ``None`` where no rates are known. ``with_sources`` adds where each unit was read, which
-    only constraints look at.
+    only constraints look at, and ``objectives`` what each unit costs by those of them whose rows say so.
     """
     name = problem.network.object_number
     nodes = described(problem, units)
+    costs = [objective for objective in objectives if objective.row.is_fact]
     lines = []
     for unit in units:
-        atoms = _unit_atoms(problem, unit, scale, with_sources)
+        atoms = _unit_atoms(problem, unit, scale, with_sources, costs)
         lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
     for o in nodes:
         atoms = _object_atoms(problem, o)
@@ -107,6 +105,7 @@ def write_open_facts(
     left_open: Collection[tuple[str, int]],
     scale: RateScale | None,
     looked_at: Collection[tuple[str, int]],
+    objectives: Iterable[Objective],
 ) -> str:
     """Describe a question as :func:`write_facts` does, but leave open some of what is the case.
 
@@ -116,6 +115,7 @@ def write_open_facts(
     node may be a goal.
     """
     name = problem.network.object_number
+    costs = [objective for objective in objectives if objective.row.is_fact]
     lines = []
 
     def add(subject: str, is_open: bool, atoms: Iterable[_Atom]) -> None:
@@ -127,7 +127,7 @@ def write_open_facts(
     for kind, id_ in sorted({*closed, *left_open}):
         is_open = (kind, id_) in left_open
         if kind == "unit":
-            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scale, with_sources=True))
+            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scale, True, costs))
         elif kind == "kitchen":
             add(f"kitchen({_check(name(id_))})", is_open, ())
         else:
@@ -148,7 +148,9 @@ def _unit_atom(problem: Problem, unit: int) -> str:
     return f"unit({_check(problem.network.unit_number(unit))})"
 
 
-def _unit_atoms(problem: Problem, unit: int, scale: RateScale | None, with_sources: bool) -> list[_Atom]:
+def _unit_atoms(
+    problem: Problem, unit: int, scale: RateScale | None, with_sources: bool, costs: Iterable[Objective]
+) -> list[_Atom]:
     """Give what the facts say of a unit, beside that it is one."""
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
@@ -163,6 +165,7 @@ def _unit_atoms(problem: Problem, unit: int, scale: RateScale | None, with_sourc
     if scale:
         rate = problem.rate(unit)
         atoms += [("rate", f"{u},{_millionths(rate)}"), ("risk", f"{u},{_check(scale.weights[rate])}")]
+    atoms += [("cost", f"{o.row.term},{u},{_check(int(problem.figure(o, unit)))}") for o in costs]
     if with_sources:
         names = _source_names(network.sources[unit])
         atoms += [("source", f"{u},{quote(encodable(source))}") for source in names]
@@ -190,17 +193,10 @@ def described(problem: Problem, units: Iterable[int]) -> list[int]:
     return sorted(touched.union(problem.goals))
 
 
-def objective_term(objective: Objective) -> str:
-    """Give the name of an objective in the encodings; raises :class:`BugError` where it has none."""
-    if objective not in OBJECTIVE_TERMS:
-        raise BugError(f"the encodings have no criterion for the objective {str(objective)!r}")
-    return OBJECTIVE_TERMS[objective]
-
-
 def write_objectives(objectives: Sequence[Objective]) -> str:
     """Switch criteria on, the first with the highest priority."""
     return "".join(
-        f"optimize({objective_term(objective)},{len(objectives) - place}).\n"
+        f"optimize({objective.row.term},{len(objectives) - place}).\n"
         for place, objective in enumerate(objectives)
     )
 
@@ -278,8 +274,7 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
     if any(map(multiplies, bounds)):
         raise ValueError("success is a product, and no sum that a bound could be put on")
     return "".join(
-        f"_at_most({number},{objective_term(objective)},{_check(bound)}).\n"
-        for objective, bound in bounds.items()
+        f"_at_most({number},{objective.row.term},{_check(bound)}).\n" for objective, bound in bounds.items()
     )
 
 

@@ -169,7 +169,7 @@ class Postconditions:
         units = frozenset(outcome.units)
         size = len(self.problem.network)
         actions = sorted(units)
-        if Objective.KITCHEN in self.levels:  # then taking an item is an action as well
+        if any(objective.row.item for objective in self.levels):  # then taking an item is an action as well
             needed = {o for unit in units for o in self.problem.needs[unit]}
             actions += [size + o for o in needed & self.problem.kitchen]
         totals = dict.fromkeys(self.levels, 0)
@@ -233,7 +233,7 @@ class Postconditions:
 def _said(costs: Costs | None) -> str:
     if costs is None:
         return "nothing"
-    return ", ".join(f"{name} {_text(figure)}" for name, figure in costs._asdict().items())
+    return ", ".join(f"{name} {_text(figure)}" for name, figure in costs.measures.items())
 
 
 def _text(figure: int | Fraction | None) -> str:

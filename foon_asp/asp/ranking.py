@@ -106,7 +106,7 @@ class Ranked:
         try:
             with self._deadline.watched("writing facts"):
                 facts = write_facts(
-                    self.problem, self._units, self._scale, with_sources=not self._program.own
+                    self.problem, self._units, self._scale, not self._program.own, self.levels
                 )
         except KeyboardInterrupt:
             self._deadline.interrupt()

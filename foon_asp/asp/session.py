@@ -9,7 +9,7 @@ fact: searches with the whole kitchen left open were up to a hundred times as lo
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 from foon_asp.asp.exact_success import RateScale, problem_scale
-from foon_asp.asp.facts import described, objective_term, write_exponents, write_open_facts, write_product
+from foon_asp.asp.facts import described, write_exponents, write_open_facts, write_product
 from foon_asp.asp.program import Program
 from foon_asp.asp.search import ground, refused
 from foon_asp.deadline import Deadline
@@ -93,9 +93,10 @@ class OpenProgram:
         self.scale: RateScale | None = None
         if problem.rates is not None:
             self.scale = problem_scale(problem, self._units)
-        facts = write_open_facts(problem, closed, left_open, self.scale, program.looked_at)
+        objectives = dict.fromkeys(objective for objective, _ in sorted(self._pairs))
+        facts = write_open_facts(problem, closed, left_open, self.scale, program.looked_at, objectives)
         facts += "".join(
-            f"#external optimize({objective_term(objective)},{priority}).\n"
+            f"#external optimize({objective.row.term},{priority}).\n"
             for objective, priority in sorted(self._pairs)
         )
         self._ground = ground(
@@ -170,7 +171,7 @@ class OpenProgram:
         true = {_case(case, network) for case in self._open.intersection(_cases(problem, units))}
         true |= {_atom("goal", network.object_number(o)) for o in problem.goals}
         true |= {
-            f"optimize({objective_term(objective)},{priority})"
+            f"optimize({objective.row.term},{priority})"
             for objective, priority in _pairs(levels)
             if objective in objectives
         }

@@ -217,7 +217,7 @@ class _Solver:
                 if self.problem.rates is not None:
                     self.scale = problem_scale(self.problem, self.units)
                 with_sources = not self.program.own
-                self._facts = write_facts(self.problem, self.units, self.scale, with_sources)
+                self._facts = write_facts(self.problem, self.units, self.scale, with_sources, self.levels)
             self._spent("facts", began)
         return self._facts
 

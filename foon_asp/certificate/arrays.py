@@ -6,7 +6,7 @@ from functools import cache
 
 from foon_asp.bounds import Hypergraph, Lexicographic, Vector
 from foon_asp.certificate.coverage import Coverage
-from foon_asp.problem import Objective, Problem, multiplies, unit_count
+from foon_asp.problem import Objective, Problem, multiplies
 
 
 class Arrays:
@@ -29,13 +29,13 @@ class Arrays:
         needs: list[Sequence[int]] = list(problem.needs)
         gives: list[Sequence[int]] = list(problem.gives)
         self.items: dict[int, int] = {}
-        if Objective.KITCHEN in objectives:
+        if any(objective.row.item for objective in objectives):
             kitchen = sorted(problem.kitchen)
             self.items = {o: len(network) + place for place, o in enumerate(kitchen)}
             gives = [[o for o in given if o not in problem.kitchen] for given in gives]
             needs += [()] * len(kitchen)
             gives += [(o,) for o in kitchen]
-            taking = tuple(Fraction(o is Objective.KITCHEN) for o in objectives for _ in range(self.parts(o)))
+            taking = tuple(Fraction(o.row.item) for o in objectives for _ in range(self.parts(o)))
             self.costs += [taking] * len(kitchen)
         start = () if self.items else sorted(problem.kitchen)
         self.graph = Hypergraph(len(network.objects), needs, gives, start)
@@ -77,9 +77,9 @@ class Arrays:
         yield self.problem.rate(unit) if self.rates else None
         for objective in self.objectives:
             if not multiplies(objective):
-                yield unit_count(self.problem.network, objective, unit)
+                yield self.problem.figure(objective, unit)
 
-    def _cost(self, rate: Fraction | None, *counts: int) -> Vector:
+    def _cost(self, rate: Fraction | None, *counts: int | Fraction) -> Vector:
         cost: list[Fraction] = []
         left = iter(counts)
         for objective in self.objectives:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Settings
-from foon_asp.problem import Objective, Problem, executable_order, multiplies, unit_count
+from foon_asp.problem import Objective, Problem, executable_order, multiplies
 from foon_asp.proof import Verdict, simulate_for
 
 
@@ -87,7 +87,7 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
     if multiplies(objective):
         rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
-    return unit_count(problem.network, objective, unit)
+    return float(problem.figure(objective, unit))
 
 
 def taken(problem: Problem, units: Iterable[int]) -> list[int]:

@@ -76,7 +76,7 @@ def solve_with_fast_downward(
 def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> Iterator[str]:
     """Write the planning task, line by line; a variable is 0 once its node is at hand."""
     scope = backwards(problem, forbidden)
-    items = taken(problem, scope.units) if objective is Objective.KITCHEN else []
+    items = taken(problem, scope.units) if objective.row.item else []
     places = {o: place for place, o in enumerate([*scope.objects, *items])}
     scale = _SCALE if multiplies(objective) else 1
     yield from ("begin_version", "3", "end_version", "begin_metric", "1", "end_metric", str(len(places) or 1))

@@ -1,12 +1,11 @@
 """What differs between two trees, and where they part."""
 
-import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Costs, given_outputs, needed_inputs
+from foon_asp.problem import ContainerRule, Costs, given_outputs, needed_inputs, tree_costs
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 
@@ -57,6 +56,25 @@ class Difference(NamedTuple):
         return self.both == tuple(unit for unit in self.right.units if unit in set(self.both))
 
 
+class _ListedUnit(NamedTuple):
+    """A unit of any origin, as objectives look at it."""
+
+    unit: FunctionalUnit
+    rates: Mapping[str, Fraction] | None
+
+    @property
+    def inputs(self) -> tuple[ObjectNode, ...]:
+        """Its input object nodes."""
+        return self.unit.inputs
+
+    @property
+    def rate(self) -> Fraction:
+        """The success rate of its motion."""
+        if self.rates is None:
+            raise ValueError("no success rates are known")
+        return self.rates[self.unit.motion]
+
+
 def side(
     name: str,
     listed: Listed,
@@ -76,15 +94,8 @@ def side(
     needs = {unit: needed_inputs(unit, rule, utensils, network) for unit in units}
     gives = {unit: given_outputs(unit, rule, utensils, network) for unit in units}
     known = rates is not None and all(unit.motion in rates for unit in units)
-    costs = Costs(
-        units=len(units),
-        inputs=sum(len(unit.inputs) for unit in units),
-        ingredients=sum(len(node.ingredients) for unit in units for node in unit.inputs),
-        kitchen=len({node for needed in needs.values() for node in needed if node in kitchen}),
-        success=math.prod((rates[unit.motion] for unit in units), start=Fraction(1))
-        if rates is not None and known
-        else None,
-    )
+    taken = {node for needed in needs.values() for node in needed if node in kitchen}
+    costs = tree_costs([_ListedUnit(unit, rates) for unit in units], len(taken), known)
     return Side(name, units, places, needs, gives, tuple(goals), kitchen, costs)
 
 

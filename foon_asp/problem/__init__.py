@@ -7,23 +7,24 @@ from foon_asp.problem.containers import (
     given_outputs,
     needed_inputs,
 )
-from foon_asp.problem.costs import Costs
+from foon_asp.problem.costs import Costs, tree_costs
 from foon_asp.problem.number import Number, exact, success_rate
-from foon_asp.problem.objective import Objective, levels, multiplies, parse_objectives
+from foon_asp.problem.objective import Measured, Objective, Row, levels, multiplies, parse_objectives
 from foon_asp.problem.order import executable_order
 from foon_asp.problem.problem import Names, Origin, Problem, require_rates
 from foon_asp.problem.relevance import Reached, first_tree, reach, relevant
-from foon_asp.problem.unit_count import unit_count
 
 __all__ = [
     "ContainerRule",
     "Costs",
+    "Measured",
     "Names",
     "Number",
     "Objective",
     "Origin",
     "Problem",
     "Reached",
+    "Row",
     "conditions",
     "container_rule",
     "exact",
@@ -38,5 +39,5 @@ __all__ = [
     "relevant",
     "require_rates",
     "success_rate",
-    "unit_count",
+    "tree_costs",
 ]

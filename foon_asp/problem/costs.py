@@ -1,49 +1,80 @@
 """What a tree costs, computed exactly from its units."""
 
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
 
-from foon_asp.errors import BugError
-from foon_asp.problem.objective import Objective, multiplies
+from foon_asp.problem.objective import Measured, Objective, multiplies
+
+_MEASURED = tuple(Objective)
 
 
-class Costs(NamedTuple):
-    """All measures of one tree.
+@dataclass(frozen=True)
+class Costs:
+    """All measures of one tree, by objective; those that nothing is known for are left out.
 
     ``inputs`` counts the input object nodes of every unit (once per unit, whatever the container rule
-    asks for), ``ingredients`` the ingredients of those nodes, ``kitchen`` the distinct kitchen items
-    among the needed inputs. ``success`` is the product of the rates, ``None`` where no rates are known.
+    asks for), ``kitchen`` the distinct kitchen items among the needed inputs.
     """
 
-    units: int
-    inputs: int
-    ingredients: int
-    kitchen: int
-    success: Fraction | None
+    measures: Mapping[Objective, int | Fraction]
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.measures.items()))
+
+    @property
+    def units(self) -> int:
+        """The number of units."""
+        return int(self.measures[Objective.UNITS])
+
+    @property
+    def inputs(self) -> int:
+        """The number of input object nodes of all units."""
+        return int(self.measures[Objective.INPUTS])
+
+    @property
+    def ingredients(self) -> int:
+        """The number of ingredients in the inputs of all units."""
+        return int(self.measures[Objective.INPUTS_AND_INGREDIENTS]) - self.inputs
+
+    @property
+    def kitchen(self) -> int:
+        """The number of kitchen items that are taken."""
+        return int(self.measures[Objective.KITCHEN])
+
+    @property
+    def success(self) -> Fraction | None:
+        """The product of the success rates, ``None`` where no rates are known."""
+        success = self.measures.get(Objective.SUCCESS)
+        return None if success is None else Fraction(success)
 
     def measure(self, objective: Objective) -> int | Fraction:
         """Give the figure an objective looks at; for ``success`` more is better, else less.
 
-        Raises ``ValueError`` for ``success`` where no rates are known, and :class:`BugError` for an objective
-        that is not known here.
+        Raises ``ValueError`` for an objective that nothing is known for, as ``success`` without rates.
         """
-        if multiplies(objective):
-            if self.success is None:
-                raise ValueError("no success rates are known")
-            return self.success
-        known = {
-            Objective.UNITS: self.units,
-            Objective.INPUTS: self.inputs,
-            Objective.INPUTS_AND_INGREDIENTS: self.inputs + self.ingredients,
-            Objective.KITCHEN: self.kitchen,
-        }
-        if objective not in known:
-            raise BugError(f"nothing says what a tree has by the objective {str(objective)!r}")
-        return known[objective]
+        if objective not in self.measures:
+            raise ValueError(f"nothing is known for the objective {str(objective)!r}: no success rates")
+        return self.measures[objective]
 
-    def key(self, objectives: tuple[Objective, ...]) -> tuple[int | Fraction, ...]:
+    def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:
         """Give a tuple that is smaller for a better tree under the lexicographic list."""
         return tuple(
             -self.measure(objective) if multiplies(objective) else self.measure(objective)
             for objective in objectives
         )
+
+
+def tree_costs(units: Collection[Measured], items: int, rates_known: bool) -> Costs:
+    """Measure units that need a number of distinct kitchen items."""
+    measures: dict[Objective, int | Fraction] = {}
+    for objective in _MEASURED:
+        row = objective.row
+        if row.needs_rates and not rates_known:
+            continue
+        if row.multiplies:
+            measures[objective] = math.prod(map(row.unit, units), start=Fraction(1))
+        else:
+            measures[objective] = sum(map(row.unit, units)) + items * row.item
+    return Costs(measures)

@@ -1,9 +1,43 @@
-"""What is best: the objectives and lexicographic lists of them."""
+"""What is best: one row for each objective, and lexicographic lists of them."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from enum import StrEnum
+from fractions import Fraction
+from typing import NamedTuple, Protocol, Self
 
-from foon_asp.errors import BugError, UserError
+from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode
+
+
+class Measured(Protocol):
+    """What an objective may look at in a unit."""
+
+    @property
+    def inputs(self) -> Iterable[ObjectNode]:
+        """Its input object nodes."""
+
+    @property
+    def rate(self) -> Fraction:
+        """Its success rate, above 0 and at most 1; raises ``ValueError`` where it is not known."""
+
+
+class Row(NamedTuple):
+    """How an objective is measured.
+
+    ``unit`` is what a unit costs by it, an exact number, and ``item`` what each distinct kitchen item costs
+    that the units need. What units cost is added up, and less is better; or, where it ``multiplies``, it is
+    a factor, and more is better. ``term`` is the objective's name in the encodings, ``words`` are what a
+    chart has on its axis. ``is_fact`` says that the encodings read what each unit costs from
+    ``cost/3``, since they have no other predicate for it.
+    """
+
+    term: str
+    words: str
+    unit: Callable[[Measured], int | Fraction]
+    item: int = 0
+    multiplies: bool = False
+    needs_rates: bool = False
+    is_fact: bool = False
 
 
 class Objective(StrEnum):
@@ -15,29 +49,35 @@ class Objective(StrEnum):
     among the inputs that the units need.
     """
 
-    UNITS = "units"
-    INPUTS = "inputs"
-    INPUTS_AND_INGREDIENTS = "inputs+ingredients"
-    SUCCESS = "success"
-    KITCHEN = "kitchen"
+    row: Row
 
+    def __new__(cls, name: str, row: Row | None = None) -> Self:
+        """Make an objective of its name and its row."""
+        assert row is not None
+        objective = str.__new__(cls, name)
+        objective._value_, objective.row = name, row
+        return objective
 
-_ADDED_UP = frozenset(
-    {Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS, Objective.KITCHEN}
-)
+    UNITS = "units", Row("units", "functional units", lambda _: 1)
+    INPUTS = "inputs", Row("inputs", "input object nodes", lambda unit: sum(1 for _ in unit.inputs))
+    INPUTS_AND_INGREDIENTS = (
+        "inputs+ingredients",
+        Row(
+            "inputs_and_ingredients",
+            "input object nodes and ingredients",
+            lambda unit: sum(1 + len(node.ingredients) for node in unit.inputs),
+        ),
+    )
+    SUCCESS = (
+        "success",
+        Row("success", "success rate", lambda unit: unit.rate, multiplies=True, needs_rates=True),
+    )
+    KITCHEN = "kitchen", Row("kitchen", "kitchen items", lambda _: 0, item=1)
 
 
 def multiplies(objective: Objective) -> bool:
-    """Whether an objective multiplies rates, and more is better; the others add up counts, and less is.
-
-    To be asked wherever that makes a difference, since it raises :class:`BugError` for an objective of which
-    nobody has said so: one that is added falls through nowhere.
-    """
-    if objective is Objective.SUCCESS:
-        return True
-    if objective not in _ADDED_UP:
-        raise BugError(f"nothing says how the objective {str(objective)!r} is measured")
-    return False
+    """Whether an objective multiplies what units cost, and more is better; the others add, and less is."""
+    return objective.row.multiplies
 
 
 def parse_objectives(names: Iterable[str]) -> tuple[Objective, ...]:

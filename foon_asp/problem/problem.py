@@ -1,12 +1,11 @@
 """One question: a network, a kitchen, goals, rates and the container rule."""
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree
@@ -17,9 +16,9 @@ from foon_asp.problem.containers import (
     network_makers,
     network_needs,
 )
-from foon_asp.problem.costs import Costs
+from foon_asp.problem.costs import Costs, tree_costs
 from foon_asp.problem.number import Number
-from foon_asp.problem.objective import Objective, multiplies
+from foon_asp.problem.objective import Measured, Objective
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
@@ -155,7 +154,7 @@ class Problem:
 
     def require_rates_for(self, objectives: Iterable[Objective]) -> None:
         """Raise :class:`UserError` where one of the objectives needs success rates and none are known."""
-        if self.rates is None and any(map(multiplies, objectives)):
+        if self.rates is None and any(objective.row.needs_rates for objective in objectives):
             raise UserError(
                 "the objective success needs the success rates of the motions: "
                 "give a rates file, with --rates FILE or in Python load(..., rates=FILE)"
@@ -185,21 +184,38 @@ class Problem:
 
     def costs(self, units: Iterable[int]) -> Costs:
         """Compute what a set of units costs; each unit counts once."""
-        network = self.network
         chosen = sorted(set(units))
         taken = {o for unit in chosen for o in self.needs[unit] if o in self.kitchen}
-        return Costs(
-            units=len(chosen),
-            inputs=sum(len(network.inputs[unit]) for unit in chosen),
-            ingredients=sum(
-                len(contents.ingredients)
-                for unit in chosen
-                for o in network.inputs[unit]
-                for contents in network.objects[o].contents
-            ),
-            kitchen=len(taken),
-            success=None if self.rates is None else math.prod(map(self.rate, chosen), start=Fraction(1)),
-        )
+        return tree_costs(list(map(self.measured, chosen)), len(taken), self.rates is not None)
+
+    def measured(self, unit: int) -> Measured:
+        """Give a unit as objectives look at it."""
+        return _MeasuredUnit(self, unit)
+
+    def figure(self, objective: Objective, unit: int) -> int | Fraction:
+        """Give what a unit alone costs by an objective, which adds it up or multiplies it.
+
+        Raises ``ValueError`` where no rates are known that the objective needs.
+        """
+        return objective.row.unit(_MeasuredUnit(self, unit))
+
+
+class _MeasuredUnit(NamedTuple):
+    """A unit of a problem, as objectives look at it."""
+
+    problem: Problem
+    unit: int
+
+    @property
+    def inputs(self) -> Iterable[ObjectNode]:
+        """Its input object nodes."""
+        network = self.problem.network
+        return map(network.objects.__getitem__, network.inputs[self.unit])
+
+    @property
+    def rate(self) -> Fraction:
+        """Its success rate."""
+        return self.problem.rate(self.unit)
 
 
 def require_rates(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> None:

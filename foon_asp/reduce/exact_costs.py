@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from foon_asp.bounds import Cuts, Lexicographic
 from foon_asp.bounds.coprime_base import coprime_base, powers
-from foon_asp.problem import Objective, Problem, multiplies, unit_count
+from foon_asp.problem import Objective, Problem, multiplies
 
 _COARSE = 1000  # steps of -ln(rate) to 1, where a cost need not be exact
 _SCALE = 10**40  # steps of logarithms where rounding must not decide
@@ -119,10 +119,10 @@ class ExactCosts:
 
     def _figure(self, objective: Objective, action: int) -> int:
         if action >= self._units:
-            return int(objective is Objective.KITCHEN)
+            return objective.row.item
         if objective in self._multiplied:
             return self._weights[self._problem.rate(action)]
-        return unit_count(self._problem.network, objective, action)
+        return int(self._problem.figure(objective, action))
 
 
 def _large(vector: Sequence[int]) -> bool:
@@ -161,11 +161,11 @@ class CoarseCosts:
     def __call__(self, action: int) -> int:
         """Give about what an action costs."""
         if action >= len(self._problem.network):
-            return int(self._objective is Objective.KITCHEN)
+            return self._objective.row.item
         if self._multiplied:
             own = self._by_unit.get(action)
             return self._by_motion[self._problem.network.motions[action]] if own is None else own
-        return unit_count(self._problem.network, self._objective, action)
+        return int(self._problem.figure(self._objective, action))
 
 
 def _coarse(rate: Fraction) -> int:

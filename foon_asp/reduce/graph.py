@@ -46,7 +46,7 @@ def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
     network, kitchen = problem.network, problem.kitchen
     units, size = len(network), len(network.objects)
     goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
-    if Objective.KITCHEN not in objectives:
+    if not any(objective.row.item for objective in objectives):
         return Graph(
             size,
             problem.needs,
