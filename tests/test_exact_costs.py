@@ -9,7 +9,7 @@ from math import prod
 import pytest
 
 from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
-from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source
+from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.reduce import exact_costs
 from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
@@ -294,11 +294,11 @@ def test_where_no_unit_is_there_only_items_count() -> None:
 def test_what_an_action_costs_is_worked_out_once(monkeypatch: pytest.MonkeyPatch) -> None:
     counted: list[int] = []
 
-    def unit_count(network: Network, objective: Objective, unit: int) -> int:
+    def figure(problem: Problem, objective: Objective, unit: int) -> int:
         counted.append(unit)
         return 5
 
-    monkeypatch.setattr(exact_costs, "unit_count", unit_count)
+    monkeypatch.setattr(Problem, "figure", figure)
     costs = costs_of("1", "1", objectives=(UNITS,))
     assert [costs(a) for a in (0, 1, 0, 1)] == [5, 5, 5, 5]
     assert counted == [0, 1]
