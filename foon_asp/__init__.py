@@ -44,8 +44,6 @@ if TYPE_CHECKING:
     from foon_asp.api.difference import diff as diff
     from foon_asp.api.explanation import Explanation as Explanation
     from foon_asp.api.explanation import why_not as why_not
-    from foon_asp.api.menu import Menu as Menu
-    from foon_asp.api.menu import menu as menu
     from foon_asp.api.pareto import Front as Front
     from foon_asp.api.pareto import pareto as pareto
     from foon_asp.api.retrieval import Retrieved as Retrieved
@@ -98,6 +96,8 @@ if TYPE_CHECKING:
     from foon_asp.proof.verify import RefusedError as RefusedError
     from foon_asp.questions.answer import Answer as Answer
     from foon_asp.questions.answer import SoftAnswer as SoftAnswer
+    from foon_asp.questions.menu import Menu as Menu
+    from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.regret import Regrets as Regrets
     from foon_asp.questions.regret import regret as regret
     from foon_asp.questions.tree import Tree as Tree
@@ -121,7 +121,6 @@ _ROOMS = {
     "api.difference": ("Difference", "diff"),
     "api.explanation": ("Explanation", "why_not"),
     "foon": ("Foon", "build", "load"),
-    "api.menu": ("Menu", "menu"),
     "api.pareto": ("Front", "pareto"),
     "api.retrieval": ("Retrieved", "retrieve"),
     "api.shopping": ("Shopping", "shopping_list"),

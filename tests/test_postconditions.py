@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,10 @@ from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.soft import solve_soft
 from foon_asp.errors import BugError, UserError
 from foon_asp.explain.assist import assist
-from foon_asp.explain.menu import menu
 from foon_asp.explain.pareto import pareto_front
+from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels, parse_objectives
+from foon_asp.questions.menu import menu
 from foon_asp.questions.regret import regret
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduced, reduce
 from foon_asp.resources import encodings_folder
@@ -287,10 +289,13 @@ def test_points_of_a_front_that_are_no_better_are_a_bug(monkeypatch: pytest.Monk
 
 def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = two_ways(["0.5", "0.5"], ["0.2"])
+    half = problem.network.object_id(ObjectNode.of("one", ["0"]))
+    assert half is not None
+    both = replace(problem, goals=(*problem.goals, half))
 
     def worse(asked: Problem, *given: Any) -> Outcome:
         outcome = solve(asked, *given)
-        if asked is problem or outcome.costs is None:
+        if asked is both or outcome.costs is None:
             return outcome
         return outcome._replace(costs=with_measures(outcome.costs, units=outcome.costs.units + 3))
 
@@ -300,12 +305,12 @@ def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch
             return outcome
         return outcome._replace(costs=with_measures(outcome.costs, units=0))
 
-    assert menu(problem).separate
+    assert menu(both).separate
     assert regret(problem).regrets
-    monkeypatch.setattr("foon_asp.explain.menu.solve", worse)
+    monkeypatch.setattr("foon_asp.questions.menu.solve", worse)
     monkeypatch.setattr("foon_asp.questions.regret.find", better)
     with pytest.raises(BugError, match="for goal"):
-        menu(problem)
+        menu(both)
     with pytest.raises(BugError, match="with the unit"):
         regret(problem)
 

@@ -24,7 +24,6 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "clash": Entry("Explain", "Find which constraints cannot hold together, and which to drop."),
     "alternatives": Entry("Explain", "List other trees: all optimal, the next best, the most different."),
     "pareto": Entry("Explain", "Find the whole Pareto front of two or three objectives."),
-    "menu": Entry("Explain", "Solve several goals by one tree, and goal by goal."),
     "assist": Entry("Explain", "Find the best success when a person does some of the units."),
     "draw": Entry("Show", "Draw a task tree, functional units, or a network."),
     "diff": Entry("Show", "Show what two task trees have in common, and where they part."),

@@ -21,6 +21,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find the optimum without each unit of the best tree, and without each kitchen item it takes.",
         ("regret", "Regrets"),
     ),
+    "menu": Entry(
+        "Explain",
+        "Solve several goals by one tree, and goal by goal, and say what is shared.",
+        ("menu", "Menu"),
+    ),
 }
 
 

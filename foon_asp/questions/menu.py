@@ -1,0 +1,166 @@
+"""Several goals together: what one tree for all costs beside a tree for each."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from foon_asp.asp import Reporter, solve
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.dataset.paths import File, Files
+from foon_asp.errors import UserError
+from foon_asp.problem import Objective, Problem, levels, multiplies
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.result import Ending, Result
+from foon_asp.report.answer import counted, fraction_json, headline, outcome_dict, steps, success_text
+from foon_asp.report.drawing import Drawing
+
+
+@dataclass(frozen=True, repr=False)
+class Menu(Result):
+    """A tree for all goals, and one for each, in the order of the goals.
+
+    ``serves`` gives for each unit of the tree for all, by id, the goals (by object node id) that it is needed
+    for, going back from each goal through the first makers.
+    """
+
+    together: Answer
+    separate: tuple[Answer, ...]
+    serves: Mapping[int, tuple[int, ...]]
+
+    @property
+    def shared(self) -> tuple[int, ...]:
+        """The units of the tree for all that serve several goals, in the order of the tree."""
+        return tuple(u for u in self.together.units or () if len(self.serves[u]) > 1)
+
+    def sum_of_separate(self, objective: Objective) -> int | Fraction | None:
+        """Add up what the trees cost one by one (``success``: multiply); ``None`` where one has no tree."""
+        total: int | Fraction = Fraction(1) if multiplies(objective) else 0
+        for answer in self.separate:
+            if answer.costs is None:
+                return None
+            figure = answer.costs.measure(objective)
+            total = total * figure if multiplies(objective) else total + figure
+        return total
+
+    @property
+    def ending(self) -> Ending:
+        """Done when every answer is proved."""
+        stopped = any(answer.ending is Ending.LIMIT for answer in self.separate)
+        return Ending.LIMIT if stopped else self.together.ending
+
+    def text(self) -> str:
+        """Give the costs together and one by one, what is shared, and the tree for all."""
+        return "\n".join(_lines(self)) + "\n"
+
+    def json_dict(self) -> object:
+        """Give all answers, the sum of the separate ones, and which goals each unit serves."""
+        network = self.together.problem.network
+        total = self.sum_of_separate(self.together.objectives[0])
+        return {
+            "together": outcome_dict(self.together),
+            "separate": [outcome_dict(answer) for answer in self.separate],
+            "sum_of_separate": fraction_json(total) if isinstance(total, Fraction) else total,
+            "serves": [
+                {"unit": network.unit_number(unit), "goals": [str(network.objects[o]) for o in goals]}
+                for unit, goals in self.serves.items()
+            ],
+        }
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture of the tree for all shows."""
+        return self.together.drawing()
+
+    def __repr__(self) -> str:
+        return f"<Menu of {len(self.separate)}: {headline(self.together)}>"
+
+
+@question(
+    GOALS,
+    OBJECTIVES,
+    CONTAINERS,
+    *RULES,
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp menu --goal macaroni --goal omelet
+    foon-asp menu --goal macaroni --goal omelet --objective success
+
+    Exits with 0 when all are proved, 1 when no tree makes all goals, 3 when a limit came first.
+    """,
+)
+def menu(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Menu:
+    """Solve several goals by one tree, and goal by goal, and say what is shared.
+
+    The limits are for all of it. Otherwise as :func:`foon_asp.solve`.
+    """
+    if len(problem.goals) < 2:
+        raise UserError("a menu has several goals: name two or more")
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    problem = asked_with(problem, how)
+    together = solve(problem, chosen, how, caller().reporter)
+    separate = [solve(replace(problem, goals=(goal,)), chosen, how, Reporter()) for goal in problem.goals]
+    if how.constraints == () and how.replaced is None:  # else goals may have rules of their own
+        holds = Postconditions(problem, levels(chosen), how)
+        for goal, alone in zip(problem.goals, separate, strict=True):
+            holds.no_better(together, alone, f"for goal {goal} alone")
+    serves = _serves(problem, together.units or ())
+    return Menu(Answer._make(together), tuple(map(Answer._make, separate)), serves)
+
+
+def _serves(problem: Problem, units: Sequence[int]) -> dict[int, tuple[int, ...]]:
+    """Say which goals each unit of a tree, given in an order that executes, is needed for."""
+    makers: dict[int, int] = {}
+    for unit in units:
+        for o in problem.gives[unit]:
+            if o not in problem.kitchen:
+                makers.setdefault(o, unit)
+    served: dict[int, list[int]] = {unit: [] for unit in units}
+    for goal in problem.goals:
+        stack, seen = [goal], set[int]()
+        while stack:
+            maker = makers.get(stack.pop())
+            if maker is not None and maker not in seen:
+                seen.add(maker)
+                served[maker].append(goal)
+                stack.extend(problem.needs[maker])
+    return {unit: tuple(goals) for unit, goals in served.items()}
+
+
+def _lines(menu: Menu) -> Iterator[str]:
+    problem = menu.together.problem
+    objects = problem.network.objects
+    for goal, answer in zip(problem.goals, menu.separate, strict=True):
+        yield f"{objects[goal]}"
+        yield f"  {headline(answer)}"
+    yield f"all {len(problem.goals)} by one tree"
+    yield f"  {headline(menu.together)}"
+    if menu.together.costs is None or menu.together.units is None:
+        return
+    first = menu.together.objectives[0]
+    total = menu.sum_of_separate(first)
+    if total is not None:
+        ours = menu.together.costs.measure(first)
+        if multiplies(first):
+            shown = f"one by one {success_text(Fraction(total))}, together {success_text(Fraction(ours))}"
+        else:
+            shown = f"one by one {total} {first}, together {ours}"
+        yield f"{shown}; {counted(len(menu.shared), 'unit')} shared"
+    for unit in menu.shared:
+        names = ", ".join(objects[goal].label for goal in menu.serves[unit])
+        yield f"  {problem.network.motions[unit]}    [{problem.network.sources[unit][0]}] for {names}"
+    yield ""
+    yield from steps(problem, menu.together.units)
