@@ -537,8 +537,8 @@ PARTS = {
         plain(tree=[1, 2], costs=[2], cuts=CUTS, proof={**BRANCH, "using": {"weights": []}}),
     ),
     "a unit with a forbidden node is ruled out": Part(
-        "if motion in motions or not nodes.isdisjoint(touched):",
-        "if motion in motions:",
+        "yield from (*network.producers[o], *network.consumers[o])",
+        "yield from network.producers[o]",
         plain(
             tree=[0],
             forbidden={"motions": [], "objects": ["start"]},

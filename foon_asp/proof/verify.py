@@ -406,12 +406,10 @@ class _Check:
     def _ruled_out(self) -> Iterator[int]:
         """Give the units with a forbidden motion or a node with a forbidden label."""
         network = self.network
-        motions, labels = set(self.motions), set(self.labels)
-        nodes = {o for o, node in enumerate(network.objects) if node.label in labels}
-        for unit, motion in enumerate(network.motions):
-            touched = (*network.inputs[unit], *network.outputs[unit])
-            if motion in motions or not nodes.isdisjoint(touched):
-                yield unit
+        yield from (unit for unit, motion in enumerate(network.motions) if motion in self.motions)
+        for o, node in enumerate(network.objects):
+            if node.label in self.labels:
+                yield from (*network.producers[o], *network.consumers[o])
 
     def _cost(self, member: int) -> Amount:
         """Give what a unit or an item costs by each objective."""
