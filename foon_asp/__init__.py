@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from foon_asp.api.certified import (
         verify as verify,
     )
-    from foon_asp.api.check import Checked as Checked
-    from foon_asp.api.check import check as check
     from foon_asp.api.clash import Clash as Clash
     from foon_asp.api.clash import clash as clash
     from foon_asp.api.comparison import Compared as Compared
@@ -46,8 +44,6 @@ if TYPE_CHECKING:
     from foon_asp.api.explanation import why_not as why_not
     from foon_asp.api.pareto import Front as Front
     from foon_asp.api.pareto import pareto as pareto
-    from foon_asp.api.retrieval import Retrieved as Retrieved
-    from foon_asp.api.retrieval import retrieve as retrieve
     from foon_asp.api.shopping import Shopping as Shopping
     from foon_asp.api.shopping import shopping_list as shopping_list
     from foon_asp.api.solve import solve as solve
@@ -96,10 +92,14 @@ if TYPE_CHECKING:
     from foon_asp.proof.verify import RefusedError as RefusedError
     from foon_asp.questions.answer import Answer as Answer
     from foon_asp.questions.answer import SoftAnswer as SoftAnswer
+    from foon_asp.questions.check import Checked as Checked
+    from foon_asp.questions.check import check as check
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.regret import Regrets as Regrets
     from foon_asp.questions.regret import regret as regret
+    from foon_asp.questions.search import Retrieved as Retrieved
+    from foon_asp.questions.search import retrieve as retrieve
     from foon_asp.questions.tree import Tree as Tree
     from foon_asp.text import FoonReader as FoonReader
     from foon_asp.text import parse_node as parse_node
@@ -114,7 +114,6 @@ _ROOMS = {
     "questions.answer": ("Answer", "SoftAnswer"),
     "api.assist": ("Assistance", "assist"),
     "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
-    "api.check": ("Checked", "check"),
     "api.clash": ("Clash", "clash"),
     "api.comparison": ("Compared", "compare_searches"),
     "api.cross_check": ("CrossChecked", "cross_check"),
@@ -122,7 +121,6 @@ _ROOMS = {
     "api.explanation": ("Explanation", "why_not"),
     "foon": ("Foon", "build", "load"),
     "api.pareto": ("Front", "pareto"),
-    "api.retrieval": ("Retrieved", "retrieve"),
     "api.shopping": ("Shopping", "shopping_list"),
     "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),

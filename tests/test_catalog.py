@@ -14,21 +14,32 @@ import foon_asp
 from foon_asp.cli.verbs import VERBS
 from foon_asp.questions import index
 from foon_asp.questions.contract import Option, Part, Question
-from foon_asp.questions.index import INDEX, module_name
+from foon_asp.questions.index import INDEX, module_name, question_name
 from foon_asp.questions.result import Result
 from tests.conftest import Cli
 
 FACE = Path(foon_asp.__file__)
 QUESTIONS = FACE.parent / "questions"
 # what stands beside the questions in their room
-BESIDE = {"__init__", "answer", "arguments", "caller", "contract", "index", "options", "result", "tree"}
+BESIDE = {
+    "__init__",
+    "answer",
+    "arguments",
+    "caller",
+    "contract",
+    "index",
+    "options",
+    "result",
+    "searching",
+    "tree",
+}
 # parameters that the command line has no option for: it has them from elsewhere
 PYTHON_ONLY = {"problem", "reporter"}
 
 
 def question_of(verb: str) -> Question[..., Result]:
-    name = module_name(verb)
-    found: Question[..., Result] = getattr(importlib.import_module(f"foon_asp.questions.{name}"), name)
+    module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
+    found: Question[..., Result] = getattr(module, question_name(verb))
     return found
 
 
@@ -71,7 +82,9 @@ def test_defaults_are_the_same(verb: str) -> None:
 
     for name, option in asked_for(verb).items():
         default = parameters(verb)[name].default
-        if option.many:
+        if option.positional:
+            assert default is inspect.Parameter.empty, name
+        elif option.many:
             assert plain(option.default) == plain(default), name
         else:
             assert (option.default or None) == (default or None), name

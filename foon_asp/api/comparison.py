@@ -4,10 +4,11 @@ import json
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from foon_asp.api.retrieval import search_settings, searched
 from foon_asp.compare import Comparison, all_proved, compare_goals, comparison_json
 from foon_asp.problem import Problem
+from foon_asp.questions.arguments import settings
 from foon_asp.questions.result import Result
+from foon_asp.questions.searching import search_settings, searched
 from foon_asp.report.comparison_table import comparisons_markdown
 from foon_asp.search import SEARCHES
 
@@ -64,5 +65,6 @@ def compare_searches(
     The limits are for each optimum and each search. Otherwise as :func:`foon_asp.retrieve`.
     """
     names = [search.name for search in searched(list(searches))]
-    how = search_settings(ties, count, depth_limit, published, time_limit, memory_limit)
+    limits = settings(time_limit=time_limit, memory_limit=memory_limit)
+    how = search_settings(ties, count, depth_limit, published, limits.time_limit, limits.memory_limit)
     return Compared(tuple(compare_goals(problem, problem.goals, names, how, how.time_limit)))

@@ -16,7 +16,7 @@ from foon_asp.cli.progress import Progress
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Kind, Option, Part, Question
-from foon_asp.questions.index import INDEX, module_name
+from foon_asp.questions.index import INDEX, module_name, question_name
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.report.chart_file import check_suffix
 
@@ -31,8 +31,8 @@ _LIMITS = frozenset({"time_limit", "memory_limit"})
 
 def question_command(verb: str) -> click.Command:
     """Give the command of a question; its module is imported only then."""
-    name = module_name(verb)
-    question: Question[..., Result] = getattr(importlib.import_module(f"foon_asp.questions.{name}"), name)
+    module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
+    question: Question[..., Result] = getattr(module, question_name(verb))
     command: Callable[..., ExitCode] = _asking(question)
     command = options.data_options(command)
     command = options.format_option(*question.formats)(command)
@@ -63,7 +63,7 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
             goals = dataset.goals(posed["goals_named"])
             problem = dataset.problem(goals, posed["containers"])
         with Progress() as progress:
-            who = Caller(progress, options.session_here(), deadline, dataset.read_seconds)
+            who = Caller(progress, options.session_here(), deadline, dataset.read_seconds, data["lenient"])
             with asked_by(who):
                 found = question(problem, **those(Part.QUESTION, Part.COMMAND))
         for chart in charts:
@@ -100,6 +100,8 @@ def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[.
         Kind.SECONDS: seconds,
         Kind.SIZE: memory_size,
     }
+    if option.positional:
+        return click.argument(option.name, type=kinds[option.kind], metavar=option.metavar)
     words = option.flags or ("--" + option.name.replace("_", "-"),)
     if option.kind is Kind.FLAG:
         return click.option(*words, option.name, is_flag=True, help=option.help)

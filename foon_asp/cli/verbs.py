@@ -12,11 +12,9 @@ from foon_asp.questions.index import INDEX, Entry
 _OTHERS: Final[Mapping[str, Entry]] = {
     "solve": Entry("Find", "Find the best task tree for a goal, and prove that none is better."),
     "optima": Entry("Find", "Solve every goal of the goals file under several objectives."),
-    "search": Entry("Find", "Retrieve a task tree as the literature does, and say whether it executes."),
     "compare": Entry("Find", "Hold the searches of the literature against the optimum."),
     "batch": Entry("Find", "Answer every question of a file, thousands in one run."),
     "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
-    "check": Entry("Check", "Simulate a task tree: does it execute, and in which order?"),
     "certify": Entry("Check", "Write a certificate: a proof that verify checks without a solver."),
     "verify": Entry("Check", "Check a certificate against the data it speaks about."),
     "why-not": Entry("Explain", "Explain why there is no task tree."),

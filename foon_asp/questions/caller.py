@@ -26,13 +26,14 @@ class Caller(NamedTuple):
 
     ``reporter`` hears of warnings and progress. ``session`` keeps ground programs for the next question.
     ``deadline`` is that of the whole command. ``read_seconds`` is how long reading took, where somebody wants
-    to know it.
+    to know it. ``lenient`` says that lines of trees that are not understood are left out.
     """
 
     reporter: Reporter
     session: "Session | None" = None
     deadline: Deadline | None = None
     read_seconds: float | None = None
+    lenient: bool = False
 
 
 _CALLER: ContextVar[Caller | None] = ContextVar("caller", default=None)

@@ -41,8 +41,9 @@ class Option(NamedTuple):
     """One thing that can be chosen, as plain data.
 
     ``name`` is the parameter; ``flags`` are those of the command line, by default ``--name``, where dashes
-    stand for underscores. ``many`` says that it is given again and again, ``choices`` that it is one of them,
-    ``least`` how small a number may be, ``metavar`` what stands for the value in help.
+    stand for underscores; a ``positional`` one has none and has to be given. ``many`` says that it is given
+    again and again, ``choices`` that it is one of them, ``least`` how small a number may be, ``metavar`` what
+    stands for the value in help.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Option(NamedTuple):
     metavar: str | None = None
     choices: tuple[str, ...] = ()
     least: int | None = None
+    positional: bool = False
 
 
 class Question(Generic[P, R]):

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 class Entry(NamedTuple):
     """A question: the heading it stands under, one line of help, and its names in Python, if it has any.
 
-    The module of a question is called like its verb, and so is the question in it.
+    The module of a question is called like its verb. The first name is that of the question itself.
     """
 
     group: str
@@ -16,6 +16,16 @@ class Entry(NamedTuple):
 
 
 INDEX: Final[Mapping[str, Entry]] = {
+    "search": Entry(
+        "Find",
+        "Retrieve a task tree as the literature does, and say whether it executes.",
+        ("retrieve", "Retrieved"),
+    ),
+    "check": Entry(
+        "Check",
+        "Simulate a task tree: does it execute, and in which order?",
+        ("check", "Checked"),
+    ),
     "regret": Entry(
         "Explain",
         "Find the optimum without each unit of the best tree, and without each kitchen item it takes.",
@@ -30,5 +40,11 @@ INDEX: Final[Mapping[str, Entry]] = {
 
 
 def module_name(verb: str) -> str:
-    """Give the name of a question's module, and of the question in it."""
+    """Give the name of a question's module."""
     return verb.replace("-", "_")
+
+
+def question_name(verb: str) -> str:
+    """Give the name that a question has in its module."""
+    names = INDEX[verb].python
+    return names[0] if names else module_name(verb)

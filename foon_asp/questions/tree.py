@@ -9,12 +9,12 @@ from typing import Self
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Source, TaskTree, unit_at_level
 from foon_asp.problem import Problem, given_outputs
+from foon_asp.questions.caller import caller
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.notebook import picture_bundle, svg_text
 from foon_asp.report.tree_drawing import given_tree
 from foon_asp.text import FoonReader, summarize, write_units
 from foon_asp.text.answer_file import read_listed_tree
-from foon_asp.warning import warn
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -55,10 +55,11 @@ class Tree(TaskTree):
         It is a tree for the goals of the problem, whatever goals an answer names. Raises
         :class:`UserError` for a file that is not understood or has no tree.
         """
-        reader = FoonReader()
+        who = caller()
+        reader = FoonReader(who.lenient)
         listed = read_listed_tree(Path(file), reader)
         for remark in summarize(reader.diagnostics):
-            warn(remark)
+            who.reporter.warning(remark)
         if listed.units is None:
             raise UserError(f"{file}: the answer has no tree ({listed.status})")
         units = [unit for unit, _ in listed.units]

@@ -1,12 +1,11 @@
-"""What a simulation found, for people and for programs."""
+"""What a simulation found: a text, and what stands in the way."""
 
-import json
 from collections.abc import Sequence
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.proof import Obstacle, Simulation, Verdict
-from foon_asp.report.answer import costs_json, costs_text
+from foon_asp.report.answer import costs_text
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 
@@ -18,10 +17,11 @@ def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> st
         lines.append("as listed: " + _obstacle_text(problem, listed, simulation.as_listed))
     if simulation.obstacle is not None:
         lines.append("in any order: " + _obstacle_text(problem, listed, simulation.obstacle))
-    foreign = [n for n, (unit, _) in enumerate(listed) if problem.network.unit_id(unit) is None]
+    ids = [problem.network.unit_id(unit) for unit, _ in listed]
+    foreign = [n for n, unit in enumerate(ids) if unit is None]
     lines += [f"unit {n + 1} is not one of the network: {_unit_text(listed, n)}" for n in foreign]
     if not foreign:
-        lines.append(costs_text(problem.costs(_ids(problem, listed))))
+        lines.append(costs_text(problem.costs(unit for unit in ids if unit is not None)))
     repeated = len(listed) - len({unit for unit, _ in listed})
     if repeated:
         lines.append(f"{repeated} of the {len(listed)} listed units are repetitions and count once")
@@ -29,29 +29,6 @@ def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> st
         lines.append("an order that executes:")
         lines += [f"  {position + 1:>3}  {_unit_text(listed, position)}" for position in simulation.order]
     return "\n".join(lines) + "\n"
-
-
-def verdict_json(problem: Problem, listed: Listed, simulation: Simulation) -> str:
-    """Give the same as JSON; positions count from 1."""
-    ids = [problem.network.unit_id(unit) for unit, _ in listed]
-    known = None not in ids
-    result = {
-        "goals": [str(problem.network.objects[o]) for o in problem.goals],
-        "containers": str(problem.containers),
-        "level": problem.network.level,
-        "verdict": str(simulation.verdict),
-        "as_listed": obstacle_json(listed, simulation.as_listed),
-        "in_any_order": obstacle_json(listed, simulation.obstacle),
-        "order": [position + 1 for position in simulation.order],
-        "not_in_network": [position + 1 for position, unit in enumerate(ids) if unit is None],
-        "costs": costs_json(problem.costs(_ids(problem, listed))) if known else None,
-    }
-    return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
-
-
-def _ids(problem: Problem, listed: Listed) -> list[int]:
-    ids = (problem.network.unit_id(unit) for unit, _ in listed)
-    return [unit for unit in ids if unit is not None]
 
 
 def _unit_text(listed: Listed, position: int) -> str:

@@ -1,0 +1,109 @@
+"""Does a tree that some program wrote execute?"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from os import PathLike
+
+from foon_asp.network import FunctionalUnit
+from foon_asp.problem import Problem
+from foon_asp.proof import Simulation, Verdict, simulate_for
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.tree import Tree
+from foon_asp.report.answer import costs_json
+from foon_asp.report.drawing import Drawing
+from foon_asp.report.verdict import Listed, obstacle_json, verdict_text
+
+
+@dataclass(frozen=True, repr=False)
+class Checked(Result):
+    """What a simulation of ``tree`` found: ``simulation`` has the ``verdict`` and what stops the tree."""
+
+    tree: Tree
+    simulation: Simulation
+
+    @property
+    def executes(self) -> bool:
+        """Whether the tree executes, as listed or in another order."""
+        return self.simulation.verdict is not Verdict.NEVER
+
+    @property
+    def in_order(self) -> Tree | None:
+        """The tree in an order that executes, ``None`` where no order does."""
+        if not self.executes:
+            return None
+        units, places = self.tree.units, self.tree.places
+        order = self.simulation.order
+        return Tree(tuple(units[n] for n in order), self.tree.problem, tuple(places[n] for n in order))
+
+    @property
+    def problem(self) -> Problem:
+        """What the tree is for."""
+        return self.tree.problem
+
+    @property
+    def ending(self) -> Ending:
+        """Done when the tree executes and has no unit but those of the network."""
+        return Ending.DONE if self.executes and None not in self._ids() else Ending.NEGATIVE
+
+    def text(self) -> str:
+        """Say whether the tree executes, in which order, and what stops it."""
+        return verdict_text(self.problem, self._listed(), self.simulation)
+
+    def json_dict(self) -> object:
+        """Give the same; positions count from 1."""
+        problem, simulation, listed = self.problem, self.simulation, self._listed()
+        ids = self._ids()
+        known = [unit for unit in ids if unit is not None]
+        return {
+            "goals": list(map(str, problem.goal_nodes)),
+            "containers": str(problem.containers),
+            "level": problem.network.level,
+            "verdict": str(simulation.verdict),
+            "as_listed": obstacle_json(listed, simulation.as_listed),
+            "in_any_order": obstacle_json(listed, simulation.obstacle),
+            "order": [position + 1 for position in simulation.order],
+            "not_in_network": [position + 1 for position, unit in enumerate(ids) if unit is None],
+            "costs": costs_json(problem.costs(known)) if len(known) == len(ids) else None,
+        }
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture shows."""
+        return self.tree.drawing()
+
+    def _ids(self) -> list[int | None]:
+        return [self.problem.network.unit_id(unit) for unit in self.tree.units]
+
+    def _listed(self) -> Listed:
+        return list(zip(self.tree.units, self.tree.places, strict=True))
+
+
+@question(
+    Option(
+        "tree",
+        "The task tree: FOON text, or an answer in JSON.",
+        Kind.FILE,
+        metavar="TREE.txt",
+        positional=True,
+    ),
+    GOALS,
+    CONTAINERS,
+    help_="""
+    \b
+    foon-asp check tree.txt --goal macaroni
+
+    The tree is FOON text, units in the order of execution, or an answer in JSON.
+
+    Exits with 0 when the tree executes, as listed or in the order that is then given; with 1 when no
+    order executes or when a unit is not one of the network.
+    """,
+)
+def check(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Checked:
+    """Simulate a tree for the goals of a problem, and say whether and in which order it executes.
+
+    ``tree`` is the path of a file, FOON text or an answer in JSON, or functional units in the order listed,
+    such as a :class:`~foon_asp.TaskTree`.
+    """
+    given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
+    return Checked(given, simulate_for(given.problem, given))

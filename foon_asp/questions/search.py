@@ -1,0 +1,173 @@
+"""The tree that one of the searches of the literature returns, and whether it executes."""
+
+from dataclasses import dataclass
+
+from foon_asp.problem import Costs, Problem
+from foon_asp.proof import Simulation, Verdict, simulate_for
+from foon_asp.questions.arguments import settings
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.searching import SEARCHING, search_settings, searched
+from foon_asp.questions.tree import Tree
+from foon_asp.report.answer import (
+    costs_json,
+    costs_text,
+    goal_lines,
+    goals_stand_for_json,
+    steps,
+    unit_json,
+)
+from foon_asp.report.drawing import Drawing
+from foon_asp.report.verdict import Listed, obstacle_json, verdict_text
+from foon_asp.search import SEARCHES, Retrieval, Search
+from foon_asp.search import Ending as Searched
+from foon_asp.text import write_units
+
+
+@dataclass(frozen=True, repr=False)
+class Retrieved(Result):
+    """What a search returned: ``retrieval`` has its ``ending`` and its ``units`` by id in the order listed.
+
+    ``simulation`` says whether the tree executes and what stops it, ``None`` without a tree; ``search`` says
+    what the search promises.
+    """
+
+    problem: Problem
+    search: Search
+    retrieval: Retrieval
+    simulation: Simulation | None
+
+    @property
+    def tree(self) -> Tree | None:
+        """The tree in the order listed, ``None`` where the search has none."""
+        return None if self.simulation is None else Tree.of(self.problem, self.retrieval.units)
+
+    @property
+    def executes(self) -> bool:
+        """Whether there is a tree that executes, as listed or in another order."""
+        return self.simulation is not None and self.simulation.verdict is not Verdict.NEVER
+
+    @property
+    def costs(self) -> Costs | None:
+        """What the tree costs, ``None`` without a tree."""
+        return None if self.simulation is None else self.problem.costs(self.retrieval.units)
+
+    @property
+    def ending(self) -> Ending:
+        """Done when the tree executes."""
+        if self.retrieval.ending is Searched.UNKNOWN:
+            return Ending.LIMIT
+        return Ending.DONE if self.executes else Ending.NEGATIVE
+
+    def text(self) -> str:
+        """Say what the search promises, whether its tree executes, and list the tree as it was returned."""
+        lines = [*goal_lines(self.problem), f"{self.search.name} promises {self.search.promise}"]
+        if self.simulation is None:
+            return "\n".join([*lines, self._without()]) + "\n"
+        lines.append(verdict_text(self.problem, self._listed(), self.simulation).rstrip("\n"))
+        return "\n".join([*lines, "", *steps(self.problem, self.retrieval.units)]) + "\n"
+
+    def json_dict(self) -> object:
+        """Give the same; positions count from 1."""
+        problem, found, simulation = self.problem, self.retrieval, self.simulation
+        objects = problem.network.objects
+        listed = self._listed()
+        return {
+            "goals": [str(objects[goal]) for goal in problem.goals],
+            **goals_stand_for_json(problem),
+            "containers": str(problem.containers),
+            "level": problem.network.level,
+            "search": self.search.name,
+            "ending": str(found.ending),
+            "stuck_at": None if found.stuck_at is None else str(objects[found.stuck_at]),
+            "verdict": None if simulation is None else str(simulation.verdict),
+            "as_listed": None if simulation is None else obstacle_json(listed, simulation.as_listed),
+            "in_any_order": None if simulation is None else obstacle_json(listed, simulation.obstacle),
+            "order": None if simulation is None else [position + 1 for position in simulation.order],
+            "costs": costs_json(self.costs),
+            "units": None
+            if simulation is None
+            else [unit_json(problem.network, unit) for unit in found.units],
+        }
+
+    def foon(self) -> str:
+        """Give the tree as FOON text, in the order listed; a comment says whether it executes."""
+        if self.simulation is None or self.costs is None:
+            return f"# {self.search.name}: {self._without()}\n"
+        comments = [
+            f"Task tree for: {' + '.join(map(str, self.problem.goal_nodes))}",
+            f"{self.search.name} ({self.problem.conditions}): {self.simulation.verdict}, "
+            f"{costs_text(self.costs)}",
+        ]
+        return write_units(map(self.problem.network.unit, self.retrieval.units), comments)
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture shows."""
+        return None if self.tree is None else self.tree.drawing()
+
+    def __repr__(self) -> str:
+        ended = self.retrieval.ending if self.simulation is None else self.simulation.verdict
+        return f"<Retrieved: {self.search.name}, {ended}>"
+
+    def _listed(self) -> Listed:
+        network = self.problem.network
+        return [(network.unit(unit), network.sources[unit][0]) for unit in self.retrieval.units]
+
+    def _without(self) -> str:
+        """Say why there is no tree."""
+        found = self.retrieval
+        if found.ending is Searched.STUCK and found.stuck_at is not None:
+            stuck = self.problem.network.objects[found.stuck_at]
+            return f"no tree: no unit makes {stuck}, and it is not in the kitchen"
+        if found.ending is Searched.NONE:
+            return "no tree: none executes, at any depth"
+        return "unknown: stopped at a limit before a tree was found"
+
+
+@question(
+    Option("search", "Which search.", positional=True, choices=tuple(SEARCHES)),
+    GOALS,
+    *SEARCHING,
+    Option("published", "Run ids as published: the first unit everywhere, as bfs.", Kind.FLAG, default=False),
+    CONTAINERS,
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp search bfs --goal 'greek salad'
+    foon-asp search ids --goal macaroni --containers implied
+
+    bfs, dfs, greedy-success and greedy-inputs choose one unit for each object and never look back; ids
+    backtracks, and returns a tree of least depth that executes or says that none does.
+
+    Exits with 0 when the tree executes, as listed or in another order; 1 when it never does or there is
+    none; 3 when stopped at a limit.
+    """,
+    formats=("text", "json", "foon"),
+)
+def retrieve(
+    problem: Problem,
+    search: str,
+    *,
+    ties: str = "first",
+    count: str = "ingredients",
+    depth_limit: int | None = None,
+    published: bool = False,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Retrieved:
+    """Retrieve a tree as the literature does, and say whether it executes.
+
+    ``search`` is ``bfs``, ``dfs``, ``ids``, ``greedy-success`` or ``greedy-inputs``. ``ties`` says which of
+    equally good units is taken, the ``first`` or the ``last``; ``count`` what greedy-inputs counts,
+    ``ingredients`` or ``nodes``; ``depth_limit`` how deep ids looks; ``published`` makes ids the published
+    one. The limits are as for :func:`foon_asp.solve`. Raises :class:`UserError` for other names.
+    """
+    (wanted,) = searched([search])
+    limits = settings(time_limit=time_limit, memory_limit=memory_limit).begun
+    how = search_settings(ties, count, depth_limit, published, limits.left, limits.memory)
+    found = wanted.run(problem, how)
+    simulation = None
+    if found.ending is Searched.TREE:
+        simulation = simulate_for(problem, problem.tree(found.units))
+    return Retrieved(problem, wanted, found, simulation)

@@ -1,0 +1,50 @@
+"""How the searches of the literature are asked for: their options, and what these are read as."""
+
+from collections.abc import Iterable
+
+from foon_asp.errors import UserError
+from foon_asp.questions.arguments import at_least
+from foon_asp.questions.contract import Kind, Option
+from foon_asp.search import SEARCHES, Count, Search, SearchSettings, Ties
+
+SEARCHING = (
+    Option(
+        "ties",
+        "Which of equally good units is taken, in file order.",
+        default="first",
+        choices=tuple(map(str, Ties)),
+    ),
+    Option(
+        "count",
+        "What greedy-inputs counts: input nodes with their ingredients, or nodes alone.",
+        default="ingredients",
+        choices=tuple(map(str, Count)),
+    ),
+    Option("depth_limit", "How deep ids looks before it gives up.", Kind.WHOLE, metavar="N", least=0),
+)
+
+
+def searched(names: Iterable[str]) -> list[Search]:
+    """Find searches by name; raises :class:`UserError` for another name."""
+    names = list(names)
+    unknown = [name for name in names if name not in SEARCHES]
+    if unknown:
+        raise UserError(f"found the search {unknown[0]!r}, expected one of {', '.join(SEARCHES)}")
+    return [SEARCHES[name] for name in names]
+
+
+def search_settings(
+    ties: str,
+    count: str,
+    depth_limit: int | None,
+    published: bool,
+    time_limit: float | None,
+    memory_limit: int | None,
+) -> SearchSettings:
+    """Put together how to search; the limits, in seconds and bytes, are those of each search."""
+    for name, given, known in (("ties", ties, [*map(str, Ties)]), ("count", count, [*map(str, Count)])):
+        if given not in known:
+            raise UserError(f"found {name}={given!r}, expected one of {', '.join(known)}")
+    if depth_limit is not None:
+        at_least(depth_limit, 0, "depth_limit")
+    return SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit, memory_limit)
