@@ -32,16 +32,12 @@ if TYPE_CHECKING:
     from foon_asp.api.certified import (
         verify as verify,
     )
-    from foon_asp.api.clash import Clash as Clash
-    from foon_asp.api.clash import clash as clash
     from foon_asp.api.comparison import Compared as Compared
     from foon_asp.api.comparison import compare_searches as compare_searches
     from foon_asp.api.cross_check import CrossChecked as CrossChecked
     from foon_asp.api.cross_check import cross_check as cross_check
     from foon_asp.api.difference import Difference as Difference
     from foon_asp.api.difference import diff as diff
-    from foon_asp.api.explanation import Explanation as Explanation
-    from foon_asp.api.explanation import why_not as why_not
     from foon_asp.api.pareto import Front as Front
     from foon_asp.api.pareto import pareto as pareto
     from foon_asp.api.shopping import Shopping as Shopping
@@ -94,6 +90,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.answer import SoftAnswer as SoftAnswer
     from foon_asp.questions.check import Checked as Checked
     from foon_asp.questions.check import check as check
+    from foon_asp.questions.clash import Clash as Clash
+    from foon_asp.questions.clash import clash as clash
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.regret import Regrets as Regrets
@@ -101,6 +99,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.search import Retrieved as Retrieved
     from foon_asp.questions.search import retrieve as retrieve
     from foon_asp.questions.tree import Tree as Tree
+    from foon_asp.questions.why_not import Explanation as Explanation
+    from foon_asp.questions.why_not import why_not as why_not
     from foon_asp.text import FoonReader as FoonReader
     from foon_asp.text import parse_node as parse_node
     from foon_asp.text import write_units as write_units
@@ -114,11 +114,9 @@ _ROOMS = {
     "questions.answer": ("Answer", "SoftAnswer"),
     "api.assist": ("Assistance", "assist"),
     "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
-    "api.clash": ("Clash", "clash"),
     "api.comparison": ("Compared", "compare_searches"),
     "api.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),
-    "api.explanation": ("Explanation", "why_not"),
     "foon": ("Foon", "build", "load"),
     "api.pareto": ("Front", "pareto"),
     "api.shopping": ("Shopping", "shopping_list"),

@@ -10,9 +10,10 @@ import pytest
 from foon_asp.asp import Settings, Status
 from foon_asp.asp.integrity import relax
 from foon_asp.asp.soft import solve_soft
-from foon_asp.explain.clash import find_clash
+from foon_asp.dataset.paths import File
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
+from foon_asp.questions.clash import clash
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import MOTIONS, random_problem
@@ -63,8 +64,8 @@ def test_clashes_against_brute_force(rule: ContainerRule, seeds: range, tmp_path
     for seed in seeds:
         problem = random_problem(seed, rule, units=7)
         paths, ways, rng = files(tmp_path, seed, problem)
-        weights = {path: rng.randint(1, 4) for path in paths}
-        found = find_clash(problem, (Objective.UNITS,), Settings(constraints=tuple(paths)), weights)
+        weights: dict[File, int] = {path: rng.randint(1, 4) for path in paths}
+        found = clash(problem, constraints=paths, weights=weights)
         trees = list(oracle.trees(problem))
         assert found.tree_exists == bool(trees)
         assert found.complete

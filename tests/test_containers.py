@@ -14,12 +14,12 @@ from typing import Any
 import pytest
 
 import foon_asp
+from foon_asp import why_not
 from foon_asp.asp import Settings, Status, program_facts, solve
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify, certify_infeasible
 from foon_asp.engines.highs import solve_with_highs
 from foon_asp.explain.difference import side
-from foon_asp.explain.why_not import why_not
 from foon_asp.network import (
     LEVELS,
     Network,

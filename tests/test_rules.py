@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 import foon_asp
+from foon_asp import clash
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.encoding_file import included_files
 from foon_asp.asp.program import assemble
 from foon_asp.asp.session import Session
 from foon_asp.asp.soft import solve_soft
 from foon_asp.errors import UserError
-from foon_asp.explain.clash import find_clash
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen, encodings_folder
 from foon_asp.text import InputError, find_data, find_goal, read_data
@@ -264,7 +264,7 @@ def test_it_is_one_in_soft_constraints_and_clashes(ice: Problem, tmp_path: Path)
         solve_soft(ice, [Objective.UNITS], Settings(), {mine: 2})
     assert raised.value.diagnostics[0].source[:2] == (str(mine), 2)
     with pytest.raises(InputError) as raised:
-        find_clash(ice, [Objective.UNITS], Settings(constraints=(mine,)))
+        clash(ice, constraints=mine)
     assert raised.value.diagnostics[0].source[:2] == (str(mine), 2)
     assert raised.value.diagnostics[0].excerpt == ":- use(U), motion(U,M), M+1 > 3."
 

@@ -10,9 +10,9 @@ import pytest
 
 from foon_asp.asp import Settings, Status
 from foon_asp.explain.shopping_list import Offer, priced, shopping_list
-from foon_asp.explain.sold import Shop
 from foon_asp.network import NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Problem
+from foon_asp.problem.shop import Shop
 from foon_asp.text import InputError, parse_node, read_prices
 from tests import oracle
 from tests.conftest import Cli

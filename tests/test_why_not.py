@@ -5,10 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.explain.near_nodes import slip_between
-from foon_asp.explain.why_not import Cause, why_not
+from foon_asp import why_not
 from foon_asp.network import NetworkBuilder, NodePattern, ObjectNode, Source
+from foon_asp.network.near_nodes import slip_between
 from foon_asp.problem import ContainerRule, Problem
+from foon_asp.problem.dead_ends import Cause
 from foon_asp.text import parse_node
 from tests import oracle
 from tests.conftest import ROOT, Cli

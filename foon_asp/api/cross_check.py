@@ -13,9 +13,9 @@ from foon_asp.questions.answer import Answer, SoftAnswer
 from foon_asp.questions.arguments import Constants, Objectives, file_weights, settings
 from foon_asp.questions.result import Result
 from foon_asp.report.answer import outcome_json, outcome_text
-from foon_asp.report.clash import soft_json, soft_text
 from foon_asp.report.cross_check import check_lines, checked_dict
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.soft import soft_json, soft_text
 
 
 class _CrossChecked(NamedTuple):

@@ -1,6 +1,6 @@
 """Files that a command writes: never one that it reads."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import click
@@ -54,5 +54,5 @@ def same_file(file: Path, other: Path) -> bool:
 def _paths(value: object) -> Iterator[Path]:
     if isinstance(value, Path):
         yield value
-    elif isinstance(value, tuple):
+    elif isinstance(value, tuple | Mapping):  # a mapping has its files as keys
         yield from (each for each in value if isinstance(each, Path))

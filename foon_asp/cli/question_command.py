@@ -3,6 +3,7 @@
 import importlib
 import textwrap
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import click
@@ -91,6 +92,13 @@ def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
         click.echo(found.remark, err=True)
 
 
+def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Path, int]:
+    """Read files with their weights."""
+    from foon_asp.cli.weighted_files import weighted_files
+
+    return weighted_files(value, parameter.opts[0])
+
+
 def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[..., ExitCode]]:
     """Make a parameter of click of an option."""
     kinds: dict[Kind, Any] = {
@@ -99,6 +107,7 @@ def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[.
         Kind.FILE: click.Path(path_type=NamedPath),
         Kind.SECONDS: seconds,
         Kind.SIZE: memory_size,
+        Kind.WEIGHTS: None,
     }
     if option.positional:
         return click.argument(option.name, type=kinds[option.kind], metavar=option.metavar)
@@ -113,6 +122,6 @@ def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[.
         default=option.default,
         show_default=option.default is not None,
         metavar=option.metavar,
-        callback=_STANDING.get(option.name),
+        callback=_weights if option.kind is Kind.WEIGHTS else _STANDING.get(option.name),
         help=option.help,
     )

@@ -148,7 +148,7 @@ def _solve_soft(
     format_: str,
 ) -> ExitCode:
     from foon_asp.asp.soft import solve_soft
-    from foon_asp.report.clash import soft_json, soft_lines, soft_text
+    from foon_asp.report.soft import soft_json, soft_lines, soft_text
 
     with Progress() as progress:
         found = solve_soft(problem, objectives, settings, weights, progress)

@@ -15,9 +15,9 @@ from foon_asp.asp.program import Program, assemble
 from foon_asp.asp.search import run
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
-from foon_asp.explain.sold import Shop
-from foon_asp.explain.why_not import Cause, why_not
 from foon_asp.problem import Objective, Problem, reach, relevant
+from foon_asp.problem.dead_ends import Cause, dead_ends
+from foon_asp.problem.shop import Shop
 from foon_asp.text import Price
 
 
@@ -139,7 +139,7 @@ def _offers(
     others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
     sold = [o for o in others if shop.sells(o)]
     yield Offer.FOR_SALE, {o: one for o in sold if not shop.is_dish(o)}
-    roots = why_not(problem).roots
+    roots = dead_ends(problem).roots
     cycles = {o for root in roots if root.cause is Cause.CYCLE and root.cycle for o in root.cycle.nodes}
     yield Offer.CYCLE, {o: one for o in dict.fromkeys([*sold, *sorted(cycles)]) if not shop.is_dish(o)}
     yield Offer.PROCESSED, {o: one for o in others if not shop.is_dish(o)}

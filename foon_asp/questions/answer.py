@@ -7,9 +7,9 @@ from foon_asp.asp.soft import SoftOutcome
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import headline, outcome_dict, outcome_text
-from foon_asp.report.clash import soft_json, soft_text
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.notebook import picture_bundle
+from foon_asp.report.soft import soft_json, soft_text
 from foon_asp.report.tree_drawing import solved_tree
 
 

@@ -51,7 +51,16 @@ def settings(
 
 def asked_with(problem: Problem, how: Settings) -> Problem:
     """Give a problem over all that the rules of these settings may be about."""
-    return problem.whole if how.constraints or how.replaced is not None else problem
+    return whole(problem) if how.constraints or how.replaced is not None else problem
+
+
+def whole(problem: Problem) -> Problem:
+    """Give a problem over the whole network; a command stops reading it at its limits."""
+    deadline = caller().deadline
+    if deadline is None:
+        return problem.whole
+    with deadline.watched("reading", late=True):
+        return problem.whole
 
 
 def file_weights(given: Mapping[File, int]) -> dict[Path, int]:

@@ -19,6 +19,7 @@ class Kind(StrEnum):
     FILE = "file"
     SECONDS = "seconds"
     SIZE = "size"
+    WEIGHTS = "weights of files"
     FLAG = "flag"
 
 

@@ -26,6 +26,16 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Simulate a task tree: does it execute, and in which order?",
         ("check", "Checked"),
     ),
+    "why-not": Entry(
+        "Explain",
+        "Explain why there is no task tree.",
+        ("why_not", "Explanation"),
+    ),
+    "clash": Entry(
+        "Explain",
+        "Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.",
+        ("clash", "Clash"),
+    ),
     "regret": Entry(
         "Explain",
         "Find the optimum without each unit of the best tree, and without each kitchen item it takes.",

@@ -13,7 +13,7 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
@@ -141,7 +141,7 @@ def regret(
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
     more = tuple(units)
-    problem = problem.whole if more else asked_with(problem, how)
+    problem = whole(problem) if more else asked_with(problem, how)
     found = [problem.network.unit_of_number(number) for number in more]
     if None in found:
         raise UserError(f"there is no unit {more[found.index(None)]} in the network")

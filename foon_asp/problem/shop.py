@@ -1,9 +1,9 @@
-"""What one can buy: the rule that shopping lists go by where no prices say otherwise."""
+"""What of a problem's object nodes one can buy, where no prices say otherwise."""
 
 from collections.abc import Collection
 
 from foon_asp.network import ObjectNode
-from foon_asp.problem import Problem
+from foon_asp.problem.problem import Problem
 
 
 class Shop:

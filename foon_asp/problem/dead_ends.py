@@ -1,18 +1,15 @@
-"""Why there is no tree: what cannot be made, what is at the root of it, and the way there."""
+"""What cannot be made for some goals, what is at the root of it, and the way there."""
 
 import heapq
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from typing import NamedTuple
 
-from foon_asp.explain.near_nodes import Slip, nearest, slip_between
-from foon_asp.network import ObjectNode, pattern_at_level
 from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
-from foon_asp.problem import Problem, reach
-from foon_asp.text import ListedObject
-
-_ALIKE = 2  # nodes with the same label that are named beside a missing one
+from foon_asp.network.near_nodes import Slip
+from foon_asp.problem.problem import Problem
+from foon_asp.problem.relevance import reach
 
 
 class Cause(StrEnum):
@@ -44,7 +41,8 @@ class Root(NamedTuple):
 
     ``stops`` are the units that lack it on the way to a goal, ``on_the_way`` says whether it is on the way
     that takes the fewest things. ``cycle`` is the set of nodes that feeds only itself, for that cause.
-    ``near`` are names one edit away, ``alike`` a few nodes at hand or makeable with the same label.
+    ``near`` are names one edit away, ``alike`` a few nodes at hand or makeable with the same label; both are
+    for whoever looks them up.
     """
 
     object: int
@@ -63,31 +61,29 @@ class Blocked(NamedTuple):
     lacks: tuple[int, ...]
 
 
-class Explanation(NamedTuple):
-    """Why some goals cannot be made.
+class DeadEnds(NamedTuple):
+    """What cannot be made for some goals.
 
-    ``goals`` are those that cannot. ``dead_ends`` has every object node that is needed for one of them, on
-    any way, and cannot be had, with the units that would make it, those first that take the fewest things
-    more. ``roots`` are what is behind all of them, those on the easiest way first. ``available`` has a 1 for
-    every node, by id, that is at hand or can be made.
+    ``goals`` are those that cannot. ``makers`` has every object node that is needed for one of them, on any
+    way, and cannot be had, with the units that would make it, those first that take the fewest things more.
+    ``roots`` are what is behind all of them, those on the easiest way first. ``available`` has a 1 for every
+    node, by id, that is at hand or can be made.
     """
 
-    problem: Problem
     goals: tuple[int, ...]
-    dead_ends: dict[int, tuple[Blocked, ...]]
+    makers: dict[int, tuple[Blocked, ...]]
     roots: tuple[Root, ...]
     available: bytearray
 
 
-def why_not(problem: Problem, kitchen_items: Sequence[ListedObject] = ()) -> Explanation:
-    """Explain which goals cannot be made from the kitchen and why, whatever constraints say.
+def dead_ends(problem: Problem) -> DeadEnds:
+    """Find which goals cannot be made from the kitchen and why, whatever constraints say.
 
-    ``kitchen_items`` are the entries of the kitchen file: those that match no node may be misspelt. Where
-    every goal can be made, nothing is listed. Takes time about linear in the network.
+    Where every goal can be made, nothing is listed. Takes time about linear in the network.
     """
     available = reach(problem).available
     goals = tuple(goal for goal in problem.goals if not available[goal])
-    makers = _dead_ends(problem, goals, available)
+    makers = _makers(problem, goals, available)
     cycles: list[DeadCycle] = []
     things, easiest = _things_more(makers, ())
     while len(things) < len(makers):  # the others wait for each other, also with all that is missing at hand
@@ -111,13 +107,10 @@ def why_not(problem: Problem, kitchen_items: Sequence[ListedObject] = ()) -> Exp
         stops = {unit for o in cycle.nodes for unit in users.get(o, ())}
         roots.append(Root(node, Cause.CYCLE, tuple(sorted(stops)), bool(entered), cycle))
     roots.sort(key=lambda root: not root.on_the_way)
-    spellings = _Spellings(problem, kitchen_items, available)
-    return Explanation(problem, goals, ordered, tuple(map(spellings.look_up, roots)), available)
+    return DeadEnds(goals, ordered, tuple(roots), available)
 
 
-def _dead_ends(
-    problem: Problem, goals: Sequence[int], available: bytearray
-) -> dict[int, tuple[Blocked, ...]]:
+def _makers(problem: Problem, goals: Sequence[int], available: bytearray) -> dict[int, tuple[Blocked, ...]]:
     """Go backwards from the goals through all that cannot be had."""
     needs = problem.needs
     makers: dict[int, tuple[Blocked, ...]] = {}
@@ -202,34 +195,3 @@ def _way(
             if makers[o] and o not in cycle_of:
                 stack += makers[o][0].lacks
     return way
-
-
-class _Spellings:
-    """What is at hand, to be compared with what is missing."""
-
-    def __init__(self, problem: Problem, items: Sequence[ListedObject], available: bytearray) -> None:
-        self.objects = problem.network.objects
-        self.had = [o for o, there in enumerate(available) if there]
-        network = problem.network
-        entries = ((item.source, pattern_at_level(item.pattern, network.level)) for item in items)
-        self.unmatched = [(source, pattern) for source, pattern in entries if not network.find(pattern)]
-
-    def look_up(self, root: Root) -> Root:
-        """Add near names and nodes alike to a missing node."""
-        if root.cause is not Cause.MISSING:
-            return root
-        node = self.objects[root.object]
-        ids = {self.objects[o]: o for o in self.had if self.objects[o].label == node.label}
-        alike = tuple(ids[other] for other in nearest(node, ids, _ALIKE))
-        near = tuple(self._near(node))
-        return root._replace(near=near, alike=tuple(o for o in alike if o not in {n.object for n in near}))
-
-    def _near(self, node: ObjectNode) -> Iterator[NearName]:
-        for source, pattern in self.unmatched:
-            slip = slip_between(node, pattern)
-            if slip:
-                yield NearName(str(pattern), slip, None, str(source))
-        for o in self.had:
-            slip = slip_between(node, self.objects[o])
-            if slip:
-                yield NearName(str(self.objects[o]), slip, o, None)

@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from foon_asp.network import NodePattern, ObjectNode
+from foon_asp.network.node_pattern import NodePattern
+from foon_asp.network.object_node import ObjectNode
 from foon_asp.network.spelling import one_letter_apart, without_doubles
 
 # What a node is made of: the kind of a name, and the name. A container stands for a relation of any word.

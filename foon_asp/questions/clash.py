@@ -1,0 +1,280 @@
+"""Which constraints cannot hold together, and which to drop."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.asp.exact_success import problem_scale
+from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
+from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
+from foon_asp.asp.own_encodings import question_encoding
+from foon_asp.asp.program import CLINGO_OPTIONS, assemble, find_constraint
+from foon_asp.asp.search import run
+from foon_asp.dataset.paths import File, Files
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import Objective, Problem, reach
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import (
+    Constants,
+    Objectives,
+    chosen_objectives,
+    file_weights,
+    settings,
+    whole,
+)
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.result import Ending, Result
+from foon_asp.report.answer import counted, goal_lines, headline, outcome_dict
+from foon_asp.report.drawing import Drawing
+from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
+
+
+@dataclass(frozen=True, repr=False)
+class Clash(Result):
+    """Whether the constraints of a question leave a tree, and if not, why.
+
+    ``constraints`` are all of them, each with its ``source``, ``text`` and ``constants``; ``weights`` says by
+    number what it costs to drop one. ``makeable`` says whether the goals can be made at all, ``tree_exists``
+    whether there is a tree without any of the constraints. ``smallest`` is a smallest set, by number of
+    constraints, that cannot hold together; ``proved`` that it is one. ``dropped`` is the cheapest set to drop
+    so that the others leave a tree, and ``outcome`` the best tree without it. Where the constraints do leave
+    a tree both sets are empty, and ``outcome`` is the answer. ``complete`` is false when a limit came before
+    any of this was known; ``dropped`` is then a set that leaves a tree, if one was found, but there may be a
+    cheaper one, or no need of any.
+    """
+
+    problem: Problem
+    constraints: tuple[IntegrityConstraint, ...]
+    weights: Mapping[int, int]
+    makeable: bool = True
+    tree_exists: bool = True
+    smallest: tuple[IntegrityConstraint, ...] = ()
+    proved: bool = False
+    dropped: tuple[IntegrityConstraint, ...] = ()
+    outcome: Answer | None = None
+    complete: bool = True
+
+    @property
+    def ending(self) -> Ending:
+        """Done when the constraints can hold together, and the best tree under them is proved to be it."""
+        if not self.tree_exists:
+            return Ending.NEGATIVE
+        if not self.complete or self.outcome is None:
+            return Ending.LIMIT
+        if self.dropped:
+            proved = self.proved and self.outcome.status is Status.OPTIMAL
+            return Ending.NEGATIVE if proved else Ending.LIMIT
+        return self.outcome.ending
+
+    def text(self) -> str:
+        """Say which constraints clash and which to drop."""
+        advice = [] if self.makeable else ["foon-asp why-not says why"]
+        return "\n".join([*goal_lines(self.problem), *self.lines(), *advice]) + "\n"
+
+    def lines(self) -> Iterator[str]:
+        """Say the same without the goals."""
+        rule = self.problem.conditions
+        if not self.tree_exists and self.makeable:
+            yield f"no task tree is left whatever is dropped: proved ({rule})"
+            yield "other rules of the files rule it out"
+            return
+        if not self.tree_exists:
+            yield f"no task tree exists even without the constraints: proved ({rule})"
+            return
+        if not self.complete:
+            yield f"unknown: stopped at a limit before it was known whether the constraints clash ({rule})"
+            if self.dropped:
+                yield "without these there is a task tree; a cheaper set may do, or nothing need be dropped"
+                yield from _listed(self.dropped)
+            return
+        number = counted(len(self.constraints), "constraint")
+        if not self.constraints:
+            yield f"there is a task tree ({rule}); foon-asp solve finds the best"
+            return
+        if not self.dropped:
+            yield f"no clash: the {number} can hold{' together' * (len(self.constraints) > 1)} ({rule})"
+            if self.outcome is not None:
+                yield headline(self.outcome)
+            return
+        if self.proved:
+            size = len(self.smallest)
+            if len(self.constraints) == 1:
+                yield f"1 constraint leaves no task tree: proved ({rule})"
+            elif size == 1:
+                yield f"1 of the {number} leaves no task tree by itself: proved ({rule})"
+            else:
+                yield f"{size} of the {number} cannot hold together, and no fewer do not: proved ({rule})"
+            yield from _listed(self.smallest)
+        else:
+            yield (
+                f"the {number} cannot hold together ({rule}); the smallest clash was not found within the "
+                "limit"
+            )
+        weight = sum(self.weights[constraint.number] for constraint in self.dropped)
+        at = "" if set(self.weights.values()) == {1} else f", weight {weight}"
+        yield f"cheapest to drop: {counted(len(self.dropped), 'constraint')}{at}"
+        yield from _listed(self.dropped)
+        if self.outcome is not None and self.outcome.status is not Status.UNKNOWN:
+            yield f"without {'it' if len(self.dropped) == 1 else 'them'}: {headline(self.outcome)}"
+
+    def json_dict(self) -> dict[str, object]:
+        """Give all that is known of the clash."""
+        objects = self.problem.network.objects
+        return {
+            "goals": [str(objects[goal]) for goal in self.problem.goals],
+            "containers": str(self.problem.containers),
+            "level": self.problem.network.level,
+            "complete": self.complete,
+            "tree_exists_without_constraints": self.tree_exists,
+            "clash": bool(self.dropped),
+            "constraints": [
+                {**constraint_json(constraint), "weight": self.weights[constraint.number]}
+                for constraint in self.constraints
+            ],
+            "smallest_clash": list(map(constraint_json, self.smallest)),
+            "smallest_proved": self.proved,
+            "cheapest_to_drop": list(map(constraint_json, self.dropped)),
+            "answer": None if self.outcome is None else outcome_dict(self.outcome),
+        }
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture of the tree shows."""
+        return None if self.outcome is None else self.outcome.drawing()
+
+
+@question(
+    GOALS,
+    OBJECTIVES,
+    CONTAINERS,
+    Option(
+        "weights",
+        "What it costs to drop a constraint of that file; else 1.",
+        Kind.WEIGHTS,
+        flags=("--weight",),
+        many=True,
+        metavar="FILE.lp=WEIGHT",
+    ),
+    *RULES,
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp clash --goal omelet --constraint mine.lp --constraint yours.lp
+    foon-asp clash --goal omelet --constraint mine.lp --constraint yours.lp --weight mine.lp=10
+
+    Every rule without a head (:- ...) is a constraint of its own; other rules of the files always hold. Both
+    sets are proved: no smaller one clashes, and dropping nothing cheaper leaves a tree.
+
+    Exits with 0 when the constraints can hold together; with 1 when they clash, or when there is no tree even
+    without them; with 3 when stopped at a limit.
+    """,
+)
+def clash(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    constraints: Files = (),
+    weights: Mapping[File, int] | None = None,
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Clash:
+    """Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.
+
+    Every rule without a head in the files of ``constraints`` is a constraint of its own; ``weights`` says
+    what it costs to drop one of a file, else 1. Of a store, the whole network is read. Otherwise as
+    :func:`foon_asp.solve`.
+    """
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
+    if not how.constraints:
+        raise UserError(
+            "name constraints, with --constraint FILE.lp or in Python constraints=[FILE]; "
+            "why-not explains other reasons"
+        )
+    return find_clash(whole(problem), chosen, how, file_weights(weights or {}))
+
+
+def find_clash(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    how: Settings,
+    file_weights: Mapping[Path, int] | None = None,
+) -> Clash:
+    """Find a smallest clash and the cheapest constraints to drop, of those in some settings.
+
+    ``file_weights`` says what it costs to drop a constraint of a file, 1 where it says nothing. The smallest
+    clash is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS
+    Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction
+    known so far, until it is a clash itself.
+    """
+    how = how.limited()
+    deadline = how.begun
+    constraints, relaxed = relax(how.constraints, how.constants, soft=False, deadline=deadline)
+    by_number = {constraint.number: constraint for constraint in constraints}
+    of_file = {find_constraint(path): weight for path, weight in (file_weights or {}).items()}
+    weights = {number: of_file.get(c.file, 1) for number, c in by_number.items()}
+    how = how._replace(relaxed=relaxed)
+    program = assemble(how, caller().reporter.warning)
+    blame = (question_encoding("blame.lp"),)
+    known = Clash(problem, constraints, weights)
+
+    def those(numbers: Iterable[int]) -> tuple[IntegrityConstraint, ...]:
+        return tuple(by_number[number] for number in sorted(numbers))
+
+    try:
+        with deadline.watched("cutting the network"):
+            reached = reach(problem)
+            known = replace(known, makeable=all(reached.available[goal] for goal in problem.goals))
+            units = tuple(sorted(reached.units))
+            scale = None if problem.rates is None else problem_scale(problem, units)
+            facts = write_facts(problem, units, scale, with_sources=True) + relaxed.rules
+    except KeyboardInterrupt:
+        deadline.interrupt()
+        return replace(known, complete=False)
+    if not known.makeable:
+        return replace(known, tree_exists=False)
+    dropping = "optimize(_dropping,1).\n"
+    corrections: list[tuple[int, ...]] = []
+    blamed: tuple[int, ...] = ()
+    while True:
+        asked = facts + dropping + write_constraints(weights, blamed)
+        with placed(relaxed, asked):
+            ended = run(
+                program.files,
+                asked,
+                program.arguments,
+                deadline,
+                predicates=[("_dropped", 1)],
+                endless=program.endless,
+            )
+        if ended.units is None or not ended.exhausted:
+            break
+        corrections.append(tuple(sorted(ended.atoms["_dropped"])))
+        if not corrections[-1]:
+            break
+        hit = write_constraints(weights, ()) + write_corrections(corrections)
+        hitting = run(blame, hit, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
+        if hitting.units is None or not hitting.exhausted:
+            break
+        blamed = tuple(sorted(hitting.atoms["_blamed"]))
+    clashes = ended.units is None and ended.exhausted
+    if not corrections:
+        some = ended.atoms["_dropped"] if ended.atoms else ()  # enough to drop, but perhaps not the cheapest
+        return replace(known, tree_exists=not clashes, dropped=those(some), complete=clashes)
+    dropped = corrections[0]
+    kept = write_constraints(weights, set(weights).difference(dropped))
+    less = how._replace(relaxed=relaxed._replace(rules=relaxed.rules + kept))
+    outcome = Answer._make(solve(problem, objectives, less, Reporter()))
+    if outcome.status is Status.INFEASIBLE:
+        raise BugError("dropping the constraints does not leave a tree")
+    smallest = those(blamed) if clashes else ()
+    return replace(known, smallest=smallest, proved=clashes, dropped=those(dropped), outcome=outcome)
+
+
+def _listed(constraints: Iterable[IntegrityConstraint]) -> Iterator[str]:
+    for constraint in constraints:
+        yield from constraint_lines(constraint)
