@@ -94,7 +94,7 @@ class _Solver:
         self.seconds: dict[str, float] = {}
         self._facts: str | None = None
         self._open: OpenProgram | None = None
-        self._ground: tuple[Sequence[Objective], Grounded] | None = None  # without products of rates
+        self._ground: tuple[object, Grounded] | None = None  # what was asked last
         self._best: Costs | None = None  # the best tree reported
         self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
         problem.require_rates_for(self.levels)
@@ -135,17 +135,21 @@ class _Solver:
 
     def _search(self, incumbent: Units) -> Outcome:
         """Ask clingo for what is better than the tree in hand."""
-        if self.reduced and self.deadline.passed:
-            return self._limited(incumbent, [])
         wanted, strict = self._wanted(incumbent)
         ended = self._run(self.levels, opt_mode=wanted, report=True)
-        if ended.units is None and ended.exhausted:
+        if ended.units is None:
+            if not ended.exhausted:
+                return self._limited(incumbent, ended.lower)
             self.holds.require(strict, lambda: "a tree is at hand, but the encodings say that there is none")
             return self._optimal(incumbent)
         best, proved = ended.units, ended.exhausted
-        if best is None or not self.program.replaced:
-            best = self._better(incumbent, best)
-        if self._measures_agree(ended, self.levels) and proved and Objective.SUCCESS in self.levels:
+        if not self.program.replaced:
+            best = min(best, incumbent, key=lambda units: self._costs(units).key(self.levels))
+        if (
+            self._measures_agree(ended.units, ended.cost, self.levels)
+            and proved
+            and Objective.SUCCESS in self.levels
+        ):
             best, proved = self._settle_success(best)
         return self._optimal(best) if proved else self._limited(best, ended.lower)
 
@@ -158,7 +162,6 @@ class _Solver:
         within bounds: then there are none.
         """
         began = time.perf_counter()
-        self.deadline.doing = "cutting the network"
         first: Units | None
         if self.program.own:
             self.reduced = reduce(
@@ -177,8 +180,7 @@ class _Solver:
                 reached = reach(self.problem)
                 some = first_tree(self.problem, reached)
             first = None if some is None else Units(some)
-            if first is not None:
-                self.units = tuple(sorted(reached.units))
+            self.units = tuple(sorted(reached.units))
         self._spent("cut", began)
         return first
 
@@ -235,7 +237,7 @@ class _Solver:
         for instead.
         """
         on_tree = (lambda units: self._report_tree(self._ids(units))) if report else None
-        on_bound = self._report_bound if report else None
+        on_bound = self._report_bound if report and not self.program.replaced else None
         try:
             if self.settings.session is not None and self.program.open:
                 ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
@@ -255,15 +257,15 @@ class _Solver:
         self, objectives: Sequence[Objective], products: Sequence[Mapping[int, int]], wanted: int | None
     ) -> "Grounded":
         """Ground what is asked, unless it was the last thing asked."""
+        asked = objectives, len(products), wanted
         if self._ground:
-            asked, program = self._ground
-            if asked == objectives and not products:
+            before, program = self._ground
+            if before == asked:
                 return program
             program.close()
-            self._ground = None
+        facts = self.facts() + self.program.rules + write_objectives(objectives)
         from foon_asp.asp.search import ground  # noqa: PLC0415 (slow to import, often there is nothing left)
 
-        facts = self.facts() + self.program.rules + write_objectives(objectives)
         files = self.program.files
         if products:
             files = (*files, self.program.exact_success)
@@ -277,14 +279,14 @@ class _Solver:
             )
         finally:
             self._spent("ground", began)
-        if not products:
-            self._ground = objectives, program
+        self._ground = asked, program
         return program
 
     @cached_property
     def _exponents(self) -> str:
         """Give the facts that are there beside the usual ones wherever products of rates are compared."""
-        return write_exponents(self.problem, self.units, self.scale) if self.scale else ""
+        assert self.scale is not None
+        return write_exponents(self.problem, self.units, self.scale)
 
     def _run_open(
         self,
@@ -340,8 +342,7 @@ class _Solver:
         Returns the best tree by exact products, and whether the search came to its end.
         """
         scale = self.scale
-        if scale is None or all(rate == 1 for rate in scale.weights):  # a weight of 0 may be a rate below 1
-            return best, True
+        assert scale is not None
         place = self.levels.index(Objective.SUCCESS)
         before, after = self.levels[:place], self.levels[place + 1 :]
         products: list[dict[int, int]] = []
@@ -361,9 +362,9 @@ class _Solver:
                 return chosen, False
             if ended.units is None:
                 break
-            self._require_measures(ended, (*before, Objective.SUCCESS))
             rival = ended.units
-            if self._success(rival) > self._success(chosen):
+            self._require_measures(self._measures_agree(rival, ended.cost, (*before, Objective.SUCCESS)))
+            if self._costs(rival).measure(Objective.SUCCESS) > self._costs(chosen).measure(Objective.SUCCESS):
                 chosen, wanted = rival, len(products)
         if not after:
             return chosen, True
@@ -371,35 +372,31 @@ class _Solver:
         mode = ",".join(["opt", *map(str, fixed), *(str(costs.measure(o)) for o in after)])
         ended = self._run((*before, *after), products, wanted, mode)
         if ended.units is None:
+            self._require_measures(not (ended.exhausted and self.program.replaced))
             self.holds.require(not ended.exhausted, lambda: "the best product of success rates was lost")
             return chosen, False
-        self._require_measures(ended, (*before, *after))
+        self._require_measures(self._measures_agree(ended.units, ended.cost, (*before, *after)))
         self.holds.settled(ended.units, chosen, before)
         return ended.units, ended.exhausted
 
-    def _measures_agree(self, ended: Run, objectives: Sequence[Objective]) -> bool:
+    def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
         """Hold clingo's cost vector (modulo 2^32) against the costs computed from the units.
 
         A replaced objectives.lp may measure something else: then the optimum is the one it defines. A program
         that is kept measures all levels, and what was not asked for as nothing.
         """
-        units = ended.units
-        if units is None:
-            return True
         costs = self._costs(units)
         weights = {
             objective: self._weight(units) if multiplies(objective) else int(costs.measure(objective))
             for objective in objectives
         }
-        listed = self.levels if len(ended.cost) == len(self.levels) else objectives
+        listed = self.levels if len(cost) == len(self.levels) else objectives
         ours = [weights.get(objective, 0) for objective in listed]
-        if len(ours) == len(ended.cost) and all(
-            (mine - theirs) % 2**32 == 0 for mine, theirs in zip(ours, ended.cost, strict=True)
-        ):
+        if [mine % 2**32 for mine in ours] == [theirs % 2**32 for theirs in cost]:
             return True
         self.holds.require(
             self.program.replaced,
-            lambda: f"clingo reports the costs {list(ended.cost)}, the units {sorted(units)} cost {ours}",
+            lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {ours}",
         )
         self.reporter.warning(
             f"{self.program.files[1]} does not measure what the objectives "
@@ -408,22 +405,17 @@ class _Solver:
         )
         return False
 
-    def _require_measures(self, ended: Run, objectives: Sequence[Objective]) -> None:
+    def _require_measures(self, agree: bool) -> None:
         """Raise :class:`UserError` where a replaced objectives.lp measures some trees as we do, not this."""
-        if not self._measures_agree(ended, objectives):
+        if not agree:
             raise UserError(
                 f"{self.program.files[1]} measures some trees as the objectives {', '.join(self.levels)} do, "
                 "and others not: their success cannot be compared"
             )
 
-    def _better(self, one: Units, other: Units | None) -> Units:
-        if other is None:
-            return one
-        return min(other, one, key=lambda units: self._costs(units).key(self.levels))
-
     def _weight(self, units: Iterable[int]) -> int:
-        weights = self.scale.weights if self.scale else {}
-        return sum(weights[self.problem.rate(unit)] for unit in units)
+        assert self.scale is not None
+        return sum(self.scale.weights[self.problem.rate(unit)] for unit in units)
 
     def _costs(self, units: Units) -> Costs:
         """Give what units cost, worked out once for a tree in hand."""
@@ -431,39 +423,31 @@ class _Solver:
             self._costed = units, self.problem.costs(units)
         return self._costed[1]
 
-    def _success(self, units: Units) -> Fraction:
-        return self._costs(units).success or Fraction(0)
-
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
 
         Where it has none yet, no cost is below 0 and no success above 1. A bound on trees that are better
         than the one in hand is no bound beyond that one. What the cuts say of the first objective counts.
+        Nothing is said of what comes after success: rounded weights do not tell which trees it counts among.
         """
-        bounds: dict[Objective, int | Fraction] = {
-            objective: max(0, value)
-            if not multiplies(objective)
-            else self.scale.success_bound(max(0, value))
-            if self.scale
-            else Fraction(1)
-            for objective, value in zip(self.levels, lower or [0], strict=False)
-        }
-        first = self.levels[0]
+        bounds: dict[Objective, int | Fraction] = {}
+        for objective, value in zip(self.levels, lower or [0], strict=False):
+            if multiplies(objective):
+                bounds[objective] = self.scale.success_bound(max(0, value)) if self.scale else Fraction(1)
+                break
+            bounds[objective] = max(0, value)
         reduced = self.reduced
         if reduced is None or reduced.costs is None:
             return bounds
-        proved = reduced.costs.first(reduced.bound)
+        first, proved = self.levels[0], reduced.costs.first(reduced.bound)
         if multiplies(first):
-            bounds[first] = min(bounds[first], proved)
-        elif self._best is not None:
-            have = self._best.measure(first)
-            bounds[first] = min(max(bounds[first], proved), have)
-            if len(bounds) > 1 and bounds[first] < have:
-                return {first: bounds[first]}
-            for objective in self.levels[1:]:
-                if objective in bounds and not multiplies(objective):
-                    bounds[objective] = min(bounds[objective], self._best.measure(objective))
-        return bounds
+            return {first: min(bounds[first], proved)}
+        assert self._best is not None
+        bounds[first] = max(bounds[first], proved)
+        for objective, bound in bounds.items():
+            if not multiplies(objective):
+                bounds[objective] = min(bound, self._best.measure(objective))
+        return bounds if bounds[first] == self._best.measure(first) else {first: bounds[first]}
 
     def _report_tree(self, units: Units) -> None:
         costs = self._costs(units)
@@ -472,8 +456,7 @@ class _Solver:
             self.reporter.tree(costs)
 
     def _report_bound(self, lower: Sequence[int]) -> None:
-        for objective, bound in list(self._bounds(lower).items())[-1:]:
-            self.reporter.bound(objective, bound)
+        self.reporter.bound(*list(self._bounds(lower).items())[-1])
 
     def _outcome(
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
