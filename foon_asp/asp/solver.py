@@ -188,7 +188,8 @@ class _Solver:
         """Give clasp's mode of search, and whether it leaves out trees that are only as good as this one.
 
         After the reductions, trees that are only as good need not be among the units left. Where rates
-        multiply, rounded weights cannot tell what is better: then what weighs the same is left in.
+        multiply, rounded weights cannot tell what is better: then what weighs the same is left in. No bound
+        is below 0, which not every strategy of clasp takes for what it says.
         """
         if self.reduced is None or self.program.bounded or Reduction.BOUNDS not in self.settings.reductions:
             return "opt", False
@@ -198,7 +199,7 @@ class _Solver:
             return ",".join(["opt", *(str(costs.measure(o)) for o in before)]), False
         figures = [int(costs.measure(o)) for o in self.levels]
         while figures and not figures[-1]:
-            figures.pop()  # nothing is below 0
+            figures.pop()
         if not figures:
             return "opt", False
         figures[-1] -= 1
