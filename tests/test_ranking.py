@@ -70,6 +70,13 @@ def test_rates_are_not_needed_for_the_number_of_units() -> None:
     )
 
 
+def test_what_weighs_less_may_come_later() -> None:
+    """Three times 0.7 weighs 107002482, and 0.3430000001, which is better, one more."""
+    problem = ways(["0.7"] * 3, ["0.3430000001"])
+    for objectives in ([SUCCESS], [Objective.KITCHEN, SUCCESS]):
+        assert units_of(list(Ranked(problem, objectives, Settings()))) == [(3,), (0, 1, 2)]
+
+
 def test_what_weighs_the_same_comes_in_the_order_of_its_units() -> None:
     problem = ways(["0.5"], ["0.5"], ["0.5"], ["0.5"])
     assert units_of(list(Ranked(problem, [SUCCESS], Settings()))) == [(0,), (1,), (2,), (3,)]

@@ -32,10 +32,11 @@ ByObjective = dict[Objective, int | Fraction]
 
 
 class Answer(NamedTuple):
-    """What a search says: bounds on its way, and what it ends with."""
+    """What a search says: bounds and trees, by number, on its way, and what it ends with."""
 
     run: Run
     bounds: Sequence[list[int]] = ()
+    trees: Sequence[frozenset[int]] = ()
 
 
 class Searches:
@@ -60,6 +61,9 @@ class Searches:
             for bound in answer.bounds:
                 if on_bound:
                     on_bound(bound)
+            for tree in answer.trees:
+                if on_tree:
+                    on_tree(tree)
             return dataclasses.replace(answer.run)
 
         monkeypatch.setattr(Grounded, "search", instead)
@@ -175,7 +179,10 @@ def test_an_outcome_by_search() -> None:
     assert sum(outcome.seconds.values()) <= elapsed
 
 
-@pytest.mark.parametrize("settings", [SEARCHED, Settings()])
+RULED = Settings(constraints=(Path("at_most_units"),), constants=("max_units=9",))
+
+
+@pytest.mark.parametrize("settings", [SEARCHED, Settings(), RULED])
 def test_an_outcome_without_a_tree(settings: Settings) -> None:
     problem = dataclasses.replace(ways(["0.5"]), kitchen=frozenset())
     outcome = solve(problem, (SUCCESS,), settings)
@@ -183,6 +190,19 @@ def test_an_outcome_without_a_tree(settings: Settings) -> None:
         problem, (SUCCESS,), Status.INFEASIBLE, None, None, {}, {}, proof=Proof.SOLVER
     )
     assert set(outcome.seconds) == {"cut"}
+
+
+def test_what_is_proved_was_not_stopped() -> None:
+    deadline = Deadline()
+
+    class Hasty(Reporter):
+        def bound(self, objective: Objective, bound: int | Fraction) -> None:
+            deadline.interrupt()
+
+    outcome = solve(ways(["0.5"]), (UNITS,), Settings(deadline=deadline), Hasty())
+    assert outcome.proof is Proof.CUTS
+    assert outcome.stopped is None
+    assert deadline.interrupted
 
 
 def test_a_program_that_has_answered_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -545,6 +565,35 @@ def test_trees_and_bounds_are_heard_as_they_get_better(monkeypatch: pytest.Monke
     assert heard.bounds == [(UNITS, 1)]
 
 
+def test_trees_are_heard_of_from_every_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the first one, of what weighs less, of a better product and of fewer units."""
+    problem = ways(["0.2"], ["0.7"] * 3, ["0.3430000001", "1"], ["0.3430000001"])
+    heard = Heard()
+    leave(monkeypatch, problem, (SUCCESS,), (0,))
+    Searches(
+        monkeypatch,
+        Answer(Run(numbers(problem, 1, 2, 3), (107_002_482, 3), True), [[0]], [numbers(problem, 1, 2, 3)]),
+        Answer(Run(numbers(problem, 4, 5), (107_002_483,), True), [[1]], [numbers(problem, 4, 5)]),
+        Answer(Run(exhausted=True), [[2]]),
+        Answer(Run(numbers(problem, 6), (1,), True), [[3]], [numbers(problem, 6)]),
+    )
+    assert solve(problem, (SUCCESS,), Settings(), heard).units == (6,)
+    assert heard.trees == [problem.costs(tree) for tree in ((0,), (1, 2, 3), (4, 5), (6,))]
+    assert heard.bounds == [(SUCCESS, 1)]  # later searches are not about all trees
+    heard = Heard()
+    ruled = Settings(constraints=(Path("at_most_units"),), constants=("max_units=2",))
+    assert solve(problem, (UNITS,), ruled, heard).units is not None
+    assert heard.trees[-1].units == 1
+
+
+def test_a_better_tree_that_was_heard_of_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = ways(["0.5"] * 3, ["0.5"] * 2, ["0.2"])
+    leave(monkeypatch, problem, (UNITS,), (0, 1, 2))
+    Searches(monkeypatch, Answer(Run(numbers(problem, 3, 4), (2,), True), trees=[numbers(problem, 5)]))
+    with pytest.raises(BugError, match="but one was found for"):
+        solve(problem, (UNITS,), Settings())
+
+
 def test_costs_of_a_tree_in_hand_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """And once more when the answer is held against its tree."""
     asked: Counter[frozenset[int]] = Counter()
@@ -661,11 +710,33 @@ def test_costs_of_an_answer_are_held_against_our_own(
         solve(problem, (INPUTS, UNITS), Settings())
 
 
+def test_sums_beyond_32_bits_are_right() -> None:
+    """Three units of 10^-9 weigh 6,216,979,749 together, which clingo reports modulo 2^32."""
+    tiny = "0.000000001"
+    assert optimum(ways([tiny] * 3), (SUCCESS,)) == (0, 1, 2)
+    assert optimum(ways([tiny] * 3, [tiny, tiny, "0.1"]), (SUCCESS,)) == (3, 4, 5)
+
+
 def test_no_tree_where_there_is_one_is_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without reductions all trees are asked for, and there is one in hand."""
+    """There is one in hand: only where better ones are asked for may there be none."""
+    problem = ways(["0.5"])
+    at_hand = dataclasses.replace(problem, kitchen=problem.kitchen.union(problem.goals))
+    for asked, tree, objectives, ours in (
+        (problem, (0,), (UNITS,), False),
+        (problem, (0,), (SUCCESS,), False),
+        (problem, (0,), (SUCCESS,), True),
+        (problem, (0,), (UNITS, SUCCESS), True),
+        (at_hand, (), (UNITS,), True),
+    ):
+        Searches(monkeypatch, Answer(Run(exhausted=True)))
+        with monkeypatch.context() as patch:
+            if ours:
+                leave(patch, asked, objectives, tree)
+            with pytest.raises(BugError, match="a tree is at hand, but the encodings say that there is none"):
+                solve(asked, objectives, Settings() if ours else SEARCHED)
     Searches(monkeypatch, Answer(Run(exhausted=True)))
-    with pytest.raises(BugError, match="a tree is at hand, but the encodings say that there is none"):
-        solve(ways(["0.5"]), (UNITS,), SEARCHED)
+    leave(monkeypatch, problem, (UNITS,), (0,))
+    assert optimum(problem, (UNITS,), Settings()) == (0,)
 
 
 def test_units_that_the_network_has_not_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -707,17 +778,54 @@ def test_under_a_rule_all_that_can_be_made_is_left(tmp_path: Path) -> None:
 def test_a_kept_program_answers_as_one_of_its_own(
     objectives: Objectives, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With its seconds, and limits; and the bounds that were heard of."""
-    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=9",), session=Session())
+    """With its seconds; it is looked for once a question."""
+    settings = RULED._replace(session=Session())
+    asked: list[object] = []
+    program = Session.program
+
+    def counted(session: Session, *given: Any) -> Any:
+        asked.append(given)
+        return program(session, *given)
+
+    monkeypatch.setattr(Session, "program", counted)
     problem = ways(["0.7"] * 3, ["0.343"], ["0.3430000001", "1"])
     afresh = solve(problem, objectives, settings._replace(session=None))
     for _ in range(2):
+        asked.clear()
         kept = solve(problem, objectives, settings)
         assert kept._replace(seconds={}) == afresh._replace(seconds={})
         assert set(kept.seconds) == {"cut", "ground", "solve", "check"}
         assert min(kept.seconds.values()) > 0
-    struck(monkeypatch, "cutting the network")
-    assert solve(problem, objectives, settings).stopped == "ctrl-C while cutting the network"
+        assert len(asked) == 1
+
+
+def test_a_kept_program_that_was_left_halfway_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At a limit and at a fault: the next question has one of its own."""
+    problem = ways(["0.5", "0.5"], ["0.5"])
+    settings = RULED._replace(session=Session())
+    closed: list[Grounded] = []
+    close = Grounded.close
+
+    def closing(program: Grounded) -> None:
+        closed.append(program)
+        close(program)
+
+    monkeypatch.setattr(Grounded, "close", closing)
+    first = Run(numbers(problem, 0, 1), (2,), True)
+    for ended in (Run(lower=[1]), Run(numbers(problem, 2), (1,), False, [1])):
+        with monkeypatch.context() as patch:
+            Searches(patch, Answer(first), Answer(ended))
+            outcome = solve(problem, (UNITS,), settings)
+        assert (outcome.status, outcome.bounds) == (Status.FEASIBLE, {UNITS: 1})
+        assert len(closed) == 1
+        assert solve(problem, (UNITS,), settings).status is Status.OPTIMAL
+        assert len(closed) == 1
+        closed.clear()
+    with monkeypatch.context() as patch:
+        Searches(patch, Answer(first), Answer(Run(numbers(problem, 2), (1,), True), trees=[frozenset({99})]))
+        with pytest.raises(UserError, match="no unit of that number"):
+            solve(problem, (UNITS,), settings)
+    assert len(closed) == 1
 
 
 def test_encodings_that_measure_something_else_are_warned_of(tmp_path: Path) -> None:

@@ -70,7 +70,7 @@ def program_facts(problem: Problem, objectives: Sequence[Objective], settings: S
     if not all(reached.available[goal] for goal in problem.goals):
         reached = reached._replace(units=tuple(range(len(problem.network))))
     solver.units = relevant(problem, reached) if solver.program.own else tuple(sorted(reached.units))
-    return solver.facts() + solver.program.rules + write_objectives(solver.levels)
+    return solver.facts + solver.program.rules + write_objectives(solver.levels)
 
 
 class _Solver:
@@ -92,7 +92,6 @@ class _Solver:
         self.reduced: Reduced | None = None
         self.scale: RateScale | None = None
         self.seconds: dict[str, float] = {}
-        self._facts: str | None = None
         self._open: OpenProgram | None = None
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
         self._best: Costs | None = None  # the best tree reported
@@ -136,7 +135,7 @@ class _Solver:
     def _search(self, incumbent: Units) -> Outcome:
         """Ask clingo for what is better than the tree in hand."""
         wanted, strict = self._wanted(incumbent)
-        ended = self._run(self.levels, opt_mode=wanted, report=True)
+        ended = self._run(self.levels, opt_mode=wanted, bounds=True)
         if ended.units is None:
             if not ended.exhausted:
                 return self._limited(incumbent, ended.lower)
@@ -213,16 +212,17 @@ class _Solver:
         """State what is known at a limit; nobody knows what replaced encodings have bounds on."""
         return self._outcome(Status.FEASIBLE, units, {} if self.program.replaced else self._bounds(lower))
 
+    @cached_property
     def facts(self) -> str:
-        if self._facts is None:
-            began = time.perf_counter()
-            with self.deadline.watched("writing facts"):
-                if self.problem.rates is not None:
-                    self.scale = problem_scale(self.problem, self.units)
-                with_sources = not self.program.own
-                self._facts = write_facts(self.problem, self.units, self.scale, with_sources, self.levels)
-            self._spent("facts", began)
-        return self._facts
+        """Give what the problem is, as text, without what is asked of it."""
+        began = time.perf_counter()
+        with self.deadline.watched("writing facts"):
+            if self.problem.rates is not None:
+                self.scale = problem_scale(self.problem, self.units)
+            with_sources = not self.program.own
+            facts = write_facts(self.problem, self.units, self.scale, with_sources, self.levels)
+        self._spent("facts", began)
+        return facts
 
     def _run(
         self,
@@ -230,15 +230,18 @@ class _Solver:
         products: Sequence[Mapping[int, int]] = (),
         wanted: int | None = None,
         opt_mode: str = "opt",
-        report: bool = False,
+        bounds: bool = False,
     ) -> Run:
         """Ask clingo for the best tree by some of the levels.
 
         ``products`` of rates, by exponents, are ruled out; with ``wanted`` the one of that number is asked
-        for instead.
+        for instead. The reporter hears of trees, and of ``bounds`` where they are those of the question.
         """
-        on_tree = (lambda units: self._report_tree(self._ids(units))) if report else None
-        on_bound = self._report_bound if report and not self.program.replaced else None
+        on_bound = self._report_bound if bounds and not self.program.replaced else None
+
+        def on_tree(units: Units) -> None:
+            self._report_tree(self._ids(units))
+
         try:
             if self.settings.session is not None and self.program.open:
                 ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
@@ -264,7 +267,7 @@ class _Solver:
             if before == asked:
                 return program
             program.close()
-        facts = self.facts() + self.program.rules + write_objectives(objectives)
+        facts = self.facts + self.program.rules + write_objectives(objectives)
         from foon_asp.asp.search import ground  # noqa: PLC0415 (slow to import, often there is nothing left)
 
         files = self.program.files
@@ -329,13 +332,15 @@ class _Solver:
 
     def _ids(self, numbers: Units) -> Units:
         """Give the ids of units in an answer, whose numbers come from encodings, which may be the user's."""
-        found = {number: self.problem.network.unit_of_number(number) for number in sorted(numbers)}
-        for number, unit in found.items():
+        units: set[int] = set()
+        for number in sorted(numbers):
+            unit = self.problem.network.unit_of_number(number)
             if unit is None:
                 raise UserError(
                     f"the encodings made use({number}), but the network has no unit of that number"
                 )
-        return Units(unit for unit in found.values() if unit is not None)
+            units.add(unit)
+        return Units(units)
 
     def _settle_success(self, best: Units) -> tuple[Units, bool]:
         """Look at every product of rates that rounding may have hidden; see docs/exact-success.md.
@@ -393,18 +398,18 @@ class _Solver:
         }
         listed = self.levels if len(cost) == len(self.levels) else objectives
         ours = [weights.get(objective, 0) for objective in listed]
-        if [mine % 2**32 for mine in ours] == [theirs % 2**32 for theirs in cost]:
-            return True
+        agree = [mine % 2**32 for mine in ours] == [theirs % 2**32 for theirs in cost]
         self.holds.require(
-            self.program.replaced,
+            agree or self.program.replaced,
             lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {ours}",
         )
-        self.reporter.warning(
-            f"{self.program.files[1]} does not measure what the objectives "
-            f"{', '.join(self.levels)} measure here: the tree is optimal in its sense, and the costs shown "
-            "are the usual ones"
-        )
-        return False
+        if not agree:
+            self.reporter.warning(
+                f"{self.program.files[1]} does not measure what the objectives "
+                f"{', '.join(self.levels)} measure here: the tree is optimal in its sense, and the costs "
+                "shown are the usual ones"
+            )
+        return agree
 
     def _require_measures(self, agree: bool) -> None:
         """Raise :class:`UserError` where a replaced objectives.lp measures some trees as we do, not this."""
