@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from foon_asp.api.cross_check import cross_check as cross_check
     from foon_asp.api.difference import Difference as Difference
     from foon_asp.api.difference import diff as diff
-    from foon_asp.api.pareto import Front as Front
-    from foon_asp.api.pareto import pareto as pareto
     from foon_asp.api.shopping import Shopping as Shopping
     from foon_asp.api.shopping import shopping_list as shopping_list
     from foon_asp.api.solve import solve as solve
@@ -94,6 +92,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.clash import clash as clash
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
+    from foon_asp.questions.pareto import Front as Front
+    from foon_asp.questions.pareto import pareto as pareto
     from foon_asp.questions.regret import Regrets as Regrets
     from foon_asp.questions.regret import regret as regret
     from foon_asp.questions.search import Retrieved as Retrieved
@@ -118,7 +118,6 @@ _ROOMS = {
     "api.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),
     "foon": ("Foon", "build", "load"),
-    "api.pareto": ("Front", "pareto"),
     "api.shopping": ("Shopping", "shopping_list"),
     "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),

@@ -13,12 +13,10 @@ from xml.etree import ElementTree
 import pytest
 
 from foon_asp.asp import Outcome, Reporter, Settings, exact_success, solve
-from foon_asp.explain.pareto import Front, pareto_front
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.report.answer import success_text
-from foon_asp.report.front_chart import write_front_chart
-from foon_asp.report.pareto import front_text, success_texts
+from foon_asp.questions.pareto import Front, pareto
+from foon_asp.report.answer import success_text, success_texts
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import find_data, find_goal, read_data
 from tests import oracle
@@ -72,7 +70,7 @@ def test_every_front_of_two_and_of_three_objectives(rule: ContainerRule, seeds: 
         problem = choosing(seed, rule)
         trees = list(oracle.trees(problem))
         for objectives in random.Random(seed).sample(SETS, 4):
-            front = pareto_front(problem, objectives)
+            front = pareto(problem, objectives)
             assert_agrees(front, trees)
             long += len(front.points) > 2
     assert long >= 3
@@ -87,7 +85,7 @@ def test_fronts_are_exact_where_rounding_hides_nearly_everything(
     for seed in range(9700, 9700 + 30 // part):
         problem = choosing(seed, ContainerRule.STRICT)
         for others in ([Objective.INPUTS], [Objective.UNITS, Objective.KITCHEN]):
-            front = pareto_front(problem, [*others, Objective.SUCCESS])
+            front = pareto(problem, [*others, Objective.SUCCESS])
             assert_agrees(front, list(oracle.trees(problem)))
 
 
@@ -99,7 +97,7 @@ def test_fronts_for_several_goals(part: int, rule: ContainerRule) -> None:
         made = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
         wanted = random.Random(seed).sample(made, min(2, len(made)))
         problem = replace(problem, goals=(*wanted, *problem.goals[len(wanted) :]))
-        front = pareto_front(problem, (Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN))
+        front = pareto(problem, (Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN))
         assert_agrees(front, list(oracle.trees(problem)))
 
 
@@ -117,11 +115,13 @@ def test_fronts_under_a_constraint(part: int, rule: ContainerRule, name: str) ->
             return any(unit.motion == motion for unit in tree) == (name == "require")
 
         word = {"forbid": "forbidden", "require": "required"}[name]
-        settings = Settings(constraints=(Path(f"{name}_motion"),), constants=(f"{word}_motion={motion}",))
+        constants = {f"{word}_motion": motion}
         trees = list(oracle.trees(problem, allowed))
         fewer += len(trees) < len(list(oracle.trees(problem)))
         for objectives in random.Random(seed).sample(SETS, 2):
-            assert_agrees(pareto_front(problem, objectives, settings), trees)
+            assert_agrees(
+                pareto(problem, objectives, constraints=f"{name}_motion", constants=constants), trees
+            )
     assert fewer >= 10 // part
 
 
@@ -178,7 +178,7 @@ def test_what_was_found_before_a_limit_is_on_the_front(
 ) -> None:
     problem = macaroni()
     objectives = (Objective.UNITS, Objective.SUCCESS)
-    whole = pareto_front(problem, objectives)
+    whole = pareto(problem, objectives)
     # That there is no other point can be seen at once, so the last search is stopped by ctrl-C alone.
     for searches in range(len(whole.points) + interrupted):
         left = iter(range(searches))
@@ -196,11 +196,11 @@ def test_what_was_found_before_a_limit_is_on_the_front(
                 raise KeyboardInterrupt
             return solve(problem, objectives, settings._replace(time_limit=0.0), reporter)
 
-        monkeypatch.setattr("foon_asp.explain.pareto.solve", stopping)
-        front = pareto_front(problem, objectives)
+        monkeypatch.setattr("foon_asp.questions.pareto.solve", stopping)
+        front = pareto(problem, objectives)
         assert not front.complete
         assert front.points == whole.points[len(whole.points) - searches :]
-        assert "stopped at a limit" in front_text(front)
+        assert "stopped at a limit" in front.text()
 
 
 def test_successes_look_different_when_they_are() -> None:
@@ -212,7 +212,7 @@ def test_successes_look_different_when_they_are() -> None:
 
 def drawing(front: Front, file: Path) -> tuple[list[str], int, int]:
     """Draw a front, and give the texts of the SVG, its markers and its lines."""
-    write_front_chart(front, file)
+    front.write_chart(file)
     root = ElementTree.parse(file).getroot()
     texts = [text.text or "" for text in root.iter(f"{SVG}text")]
     series = [group for group in root.iter(f"{SVG}g") if re.fullmatch(r"line2d_\d+", group.get("id", ""))]
@@ -234,18 +234,18 @@ def test_rates_next_to_1_and_next_to_0_are_not_shown_as_either() -> None:
 
 def test_a_chart_has_all_points_and_lines_only_where_the_front_is_whole(tmp_path: Path) -> None:
     problem = macaroni()
-    two = pareto_front(problem, (Objective.UNITS, Objective.SUCCESS))
+    two = pareto(problem, (Objective.UNITS, Objective.SUCCESS))
     texts, markers, lines = drawing(two, tmp_path / "two.svg")
     assert {"macaroni", "functional units", "success rate", "0.4988", "0.5955", "0.6293"} <= set(texts)
     assert (markers, lines) == (3, 1)
-    texts, markers, lines = drawing(two._replace(complete=False), tmp_path / "open.svg")
+    texts, markers, lines = drawing(replace(two, complete=False), tmp_path / "open.svg")
     assert "stopped at a limit: points may be missing" in texts
     assert (markers, lines) == (3, 0)
-    three = pareto_front(problem, (Objective.SUCCESS, Objective.INPUTS, Objective.UNITS))
+    three = pareto(problem, (Objective.SUCCESS, Objective.INPUTS, Objective.UNITS))
     texts, markers, lines = drawing(three, tmp_path / "three.svg")
     assert {"9", "10", "11", "input object nodes"} <= set(texts)  # a series for each number of units
     assert (markers, lines) == (len(three.points), 3)
-    write_front_chart(three, tmp_path / "three.png")
+    three.write_chart(tmp_path / "three.png")
     assert (tmp_path / "three.png").read_bytes().startswith(b"\x89PNG")
 
 

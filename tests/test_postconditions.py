@@ -15,10 +15,10 @@ from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.soft import solve_soft
 from foon_asp.errors import BugError, UserError
 from foon_asp.explain.assist import assist
-from foon_asp.explain.pareto import pareto_front
 from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels, parse_objectives
 from foon_asp.questions.menu import menu
+from foon_asp.questions.pareto import pareto
 from foon_asp.questions.regret import regret
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduced, reduce
 from foon_asp.resources import encodings_folder
@@ -280,11 +280,10 @@ def test_a_penalty_is_counted_again(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 def test_points_of_a_front_that_are_no_better_are_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = two_ways(["0.5", "0.5"], ["0.2"])
-    objectives = (Objective.UNITS, Objective.SUCCESS)
-    assert len(pareto_front(problem, objectives).points) == 2
-    monkeypatch.setattr("foon_asp.explain.pareto.better_than", lambda *_: None)
+    assert len(pareto(problem).points) == 2
+    monkeypatch.setattr("foon_asp.questions.pareto.better_than", lambda *_: None)
     with pytest.raises(BugError, match="two points of the front"):
-        pareto_front(problem, objectives)
+        pareto(problem)
 
 
 def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:

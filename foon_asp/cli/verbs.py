@@ -19,7 +19,6 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "verify": Entry("Check", "Check a certificate against the data it speaks about."),
     "shopping-list": Entry("Explain", "Find what to add to the kitchen so that there is a tree."),
     "alternatives": Entry("Explain", "List other trees: all optimal, the next best, the most different."),
-    "pareto": Entry("Explain", "Find the whole Pareto front of two or three objectives."),
     "assist": Entry("Explain", "Find the best success when a person does some of the units."),
     "draw": Entry("Show", "Draw a task tree, functional units, or a network."),
     "diff": Entry("Show", "Show what two task trees have in common, and where they part."),

@@ -36,6 +36,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.",
         ("clash", "Clash"),
     ),
+    "pareto": Entry(
+        "Explain",
+        "Find the whole Pareto front of two or three objectives, with a tree for every point.",
+        ("pareto", "Front"),
+    ),
     "regret": Entry(
         "Explain",
         "Find the optimum without each unit of the best tree, and without each kitchen item it takes.",

@@ -1,11 +1,10 @@
 """Several trees for one question, for people and for programs."""
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from foon_asp.explain.alternatives import Alternatives
-from foon_asp.network import Network
-from foon_asp.report.answer import costs_json, costs_text, counted, goal_lines, unit_json
+from foon_asp.report.answer import costs_json, costs_text, counted, goal_lines, unit_json, unit_lines
 
 _SHOWN = 20  # trees that are listed one by one for people
 
@@ -101,13 +100,6 @@ def _trees(found: Alternatives) -> Iterator[str]:
         yield from unit_lines(network, (unit for unit in tree.units if unit in new), "+")
     if len(found.trees) > _SHOWN:
         yield f"... and {len(found.trees) - _SHOWN} more trees; --format json lists all"
-
-
-def unit_lines(network: Network, units: Iterable[int], sign: str = " ") -> Iterator[str]:
-    """List units by id, each after a sign, with motion and place; those of a set in order of id."""
-    listed = sorted(units) if isinstance(units, frozenset) else units
-    for unit in listed:
-        yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{network.sources[unit][0]}]"
 
 
 def _no_tree(found: Alternatives) -> str:

@@ -1,14 +1,17 @@
 """An outcome for people, for programs and as FOON text."""
 
 import json
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from decimal import Decimal
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from decimal import Context, Decimal
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
 from foon_asp.network import Network
 from foon_asp.problem import Costs, Problem, levels, multiplies
 from foon_asp.text import write_units
+
+_DIGITS = 4  # of a success, where so many tell several apart
+_MOST_DIGITS = 40
 
 
 def fraction_json(value: Fraction | None) -> dict[str, object] | None:
@@ -184,6 +187,22 @@ def _four_digits(value: Fraction) -> str:
     return f"{float(value):.4g}"
 
 
+def success_texts(values: Sequence[Fraction]) -> list[str]:
+    """Write successes to so many significant digits that different ones look different, four at least.
+
+    ``≈`` stands before what is rounded.
+    """
+    digits = _DIGITS
+    while digits < _MOST_DIGITS and len({_rounded(v, digits) for v in values}) < len(set(values)):
+        digits += 1
+    shown = {value: _rounded(value, digits) for value in values}
+    return [f"{shown[v]:g}" if Fraction(shown[v]) == v else f"≈ {shown[v]:g}" for v in values]
+
+
+def _rounded(value: Fraction, digits: int) -> Decimal:
+    return Context(prec=digits).divide(Decimal(value.numerator), Decimal(value.denominator))
+
+
 def counted(number: int, noun: str) -> str:
     """Give a number with its noun: ``1 unit``, ``2 units``."""
     return f"{number} {noun}" + ("" if number == 1 else "s")
@@ -244,6 +263,13 @@ def _details(network: Network, unit: int, shown: int = 5) -> Iterator[str]:
         yield f"       {detail}    [{detailed.sources[detail][0]}]  {detailed.unit(detail)}"
     if len(details) > shown:
         yield f"       ... and {len(details) - shown} more; --format json lists all"
+
+
+def unit_lines(network: Network, units: Iterable[int], sign: str = " ") -> Iterator[str]:
+    """List units by id, each after a sign, with motion and place; those of a set in order of id."""
+    listed = sorted(units) if isinstance(units, frozenset) else units
+    for unit in listed:
+        yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{network.sources[unit][0]}]"
 
 
 def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> Iterator[str]:

@@ -1,0 +1,350 @@
+"""Trade-offs: the whole Pareto front of two or three objectives, every point with a tree."""
+
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.asp import Reporter, Status, solve
+from foon_asp.asp.at_most import better_than
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.dataset.paths import File, Files
+from foon_asp.errors import UserError
+from foon_asp.network import Network
+from foon_asp.problem import Costs, Objective, Problem, multiplies
+from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.tree import Tree
+from foon_asp.report.answer import (
+    costs_json,
+    costs_text,
+    counted,
+    fraction_json,
+    goal_lines,
+    success_texts,
+    unit_json,
+    unit_lines,
+)
+
+_FEWEST, _MOST = 2, 3  # objectives
+_NAMED = 6  # motions that are named of those that a tree has and its neighbour does not
+
+
+class Point(NamedTuple):
+    """A tree of the front by unit ids in an order that executes, and what it costs."""
+
+    units: tuple[int, ...]
+    costs: Costs
+
+
+@dataclass(frozen=True, repr=False)
+class Front(Result):
+    """Trees none of which is as good as another by every objective and better by one.
+
+    ``points`` has one for each such combination of measures, with the fewest units that it can have: its
+    ``units`` by id and its ``costs``. They come in order of the first objective, the best first;
+    :attr:`task_trees` has them as values. ``complete`` says that every tree there is is as good as one of
+    these or worse: where it is false a limit came first, and only that is open, for no tree is better than
+    one of these. ``encodings`` is the folder whose encodings replaced ours, if one did.
+    """
+
+    problem: Problem
+    objectives: tuple[Objective, ...]
+    points: tuple[Point, ...]
+    complete: bool
+    seconds: float
+    encodings: Path | None = None
+
+    def measures(self, point: Point) -> tuple[int | Fraction, ...]:
+        """Give where a point stands: its measure by each objective, exact."""
+        return tuple(map(point.costs.measure, self.objectives))
+
+    @property
+    def values(self) -> tuple[tuple[int | Fraction, ...], ...]:
+        """Where the points stand: for each its measure by every objective, exact."""
+        return tuple(map(self.measures, self.points))
+
+    @property
+    def task_trees(self) -> tuple[Tree, ...]:
+        """The trees as values, in the same order."""
+        return tuple(
+            Tree.of(self.problem, point.units, f"point {number}: {costs_text(point.costs)}")
+            for number, point in enumerate(self.points, 1)
+        )
+
+    @property
+    def ending(self) -> Ending:
+        """Done when the front is whole."""
+        if not self.complete:
+            return Ending.LIMIT
+        return Ending.DONE if self.points else Ending.NEGATIVE
+
+    def text(self, trees: bool = False) -> str:
+        """Give the points as a table, each with what its tree does otherwise than the one above it.
+
+        ``trees`` lists the units too: those of the first tree, and those that go and come with each other
+        one.
+        """
+        lines = [*goal_lines(self.problem), _headline(self)]
+        if self.points:
+            lines += ["", *_table(self)]
+        if trees:
+            for number, point in enumerate(self.points):
+                lines += ["", f"point {number + 1}: {costs_text(point.costs)}", *_units(self, number)]
+        return "\n".join(line.rstrip() for line in lines) + "\n"
+
+    def json_dict(self) -> object:
+        """Give the points, each with its measures, all that its tree costs, and its units."""
+        network = self.problem.network
+        points = []
+        for number, point in enumerate(self.points):
+            gone, new = _changes(self, number)
+            points.append(
+                {
+                    "measures": {
+                        str(objective): fraction_json(measure) if isinstance(measure, Fraction) else measure
+                        for objective, measure in zip(self.objectives, self.measures(point), strict=True)
+                    },
+                    "costs": costs_json(point.costs),
+                    "units": [unit_json(network, unit) for unit in point.units],
+                    "gone": [network.unit_number(unit) for unit in gone],
+                    "new": [network.unit_number(unit) for unit in new],
+                }
+            )
+        return {
+            "goals": [str(network.objects[goal]) for goal in self.problem.goals],
+            "containers": str(self.problem.containers),
+            "level": network.level,
+            "objective": [str(objective) for objective in self.objectives],
+            "encodings": None if self.encodings is None else str(self.encodings),
+            "complete": self.complete,
+            "points": points,
+            "seconds": round(self.seconds, 6),
+        }
+
+    def write_chart(self, file: File) -> None:
+        """Draw the front into a file, SVG or PNG by its suffix.
+
+        Raises :class:`NothingToDrawError` where there is no point to draw, and :class:`UserError` for another
+        suffix and without the packages of ``foon-asp[pictures]``.
+        """
+        from foon_asp.report.front_chart import Plotted, write_front_chart  # noqa: PLC0415 (seldom asked for)
+
+        if not self.points:
+            raise NothingToDrawError("there is no point to draw")
+        objects = self.problem.network.objects
+        goals = " + ".join(objects[goal].label for goal in self.problem.goals)
+        plotted = Plotted(goals, self.problem.conditions, self.objectives, self.values, self.complete)
+        write_front_chart(plotted, Path(file))
+
+
+@question(
+    GOALS,
+    OBJECTIVES._replace(help=f"Two or three of {', '.join(Objective)}.", default=("units,success",)),
+    CONTAINERS,
+    Option("trees", "List the units of the trees too.", Kind.FLAG, Part.TEXT),
+    Option(
+        "charts",
+        "Draw the front (.svg or .png); repeatable.",
+        Kind.FILE,
+        Part.CHART,
+        flags=("--chart",),
+        many=True,
+        metavar="FILE",
+    ),
+    *RULES,
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp pareto --goal macaroni                                  units against success
+    foon-asp pareto --goal macaroni --objective inputs,success,kitchen --trees
+    foon-asp pareto --goal macaroni --chart front.svg
+
+    A point is on the front when no tree is as good by every objective and better by one. Points are compared
+    exactly, each has the smallest tree that it can have, and that there are no others is proved.
+
+    Exits with 0 when the front is whole, 1 when there is no tree, 3 when a limit came first; the points that
+    were found by then are on the front too.
+    """,
+)
+def pareto(
+    problem: Problem,
+    objectives: Objectives = "units,success",
+    *,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Front:
+    """Find the whole Pareto front of two or three objectives, with a tree for every point.
+
+    The limits are for all of it. Otherwise as :func:`foon_asp.solve`.
+    """
+    asked = chosen_objectives(problem, objectives)
+    if not _FEWEST <= len(asked) <= _MOST:
+        raise UserError(
+            f"found {counted(len(asked), 'objective')}, "
+            f"expected {_FEWEST} or {_MOST} to trade against each other"
+        )
+    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    problem = asked_with(problem, how)
+    reporter = caller().reporter
+    later = _Silent(reporter)
+    # One objective leads: success, which no sum can bound, if it is there, else the first. Each tree is
+    # the best by the leading objective, then by the others, among those that are better than every tree
+    # before it by one of the others. What would be better than a tree everywhere, or as good and
+    # somewhere better, would be among those too, and come before it: so no tree found is dominated. When
+    # no tree is left, each tree there is was left out first with some tree that is as good as it by the
+    # others, and no worse by the leading objective, by which that tree was the best of those that were
+    # left. So every point of the front is there, and it took one search more than there are points.
+    leading = Objective.SUCCESS if Objective.SUCCESS in asked else asked[0]
+    others = tuple(objective for objective in asked if objective is not leading)
+    began = time.monotonic()
+    found: list[Point] = []
+    complete = False
+    try:
+        while not complete:
+            now = how
+            if found:
+                known = _nearest([point.costs for point in found], others)
+                now = how._replace(bounded=better_than(known, others))
+            outcome = solve(problem, (leading, *others), now, later if found else reporter)
+            if outcome.status is Status.OPTIMAL and outcome.units is not None and outcome.costs is not None:
+                point = Point(outcome.units, outcome.costs)
+                _require_apart(Postconditions(problem, asked, now), point, found)
+                found.append(point)
+            elif outcome.status is Status.INFEASIBLE:
+                complete = True
+            else:
+                break
+    except KeyboardInterrupt:
+        pass  # what was found stands
+    found.sort(key=lambda point: point.costs.key(asked))
+    seconds = time.monotonic() - began
+    return Front(problem, asked, tuple(found), complete, seconds, how.replaced)
+
+
+def _require_apart(holds: Postconditions, point: Point, found: Sequence[Point]) -> None:
+    """Require that a point of the front is as good as no other, and that no other is as good as it."""
+    key = point.costs.key(holds.levels)
+    for other in found:
+        theirs = other.costs.key(holds.levels)
+        holds.require(
+            any(a < b for a, b in zip(key, theirs, strict=True))
+            and any(a > b for a, b in zip(key, theirs, strict=True)),
+            partial(
+                "of two points of the front, {} and {}, one is as good as the other everywhere".format,
+                list(point.units),
+                list(other.units),
+            ),
+        )
+
+
+def _nearest(known: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
+    """Leave out the costs that are no less than others everywhere: what beats those beats these by one."""
+
+    def key(costs: Costs) -> tuple[int | Fraction, ...]:
+        return tuple(map(costs.measure, objectives))
+
+    best: list[Costs] = []
+    for costs in sorted(known, key=key):
+        if not any(all(a <= b for a, b in zip(key(other), key(costs), strict=True)) for other in best):
+            best.append(costs)
+    return best
+
+
+class _Silent(Reporter):
+    """Passes on the progress of one search after another, and no warning, which came with the first."""
+
+    def __init__(self, reporter: Reporter) -> None:
+        self._reporter = reporter
+
+    def tree(self, costs: Costs) -> None:
+        self._reporter.tree(costs)
+
+    def bound(self, objective: Objective, bound: int | Fraction) -> None:
+        self._reporter.bound(objective, bound)
+
+
+def _headline(front: Front) -> str:
+    rule = front.problem.conditions
+    if not front.points:
+        if front.complete:
+            return f"infeasible: proved that no task tree exists ({rule})"
+        return f"unknown: stopped at a limit before any point of the front was found ({rule})"
+    if front.encodings is not None:
+        rule += f", as {front.encodings} has it"
+    *first, last = front.objectives
+    by = f"{', '.join(first)} and {last}"
+    number = len(front.points)
+    points = counted(number, "point")
+    if not front.complete:
+        return f"at least {points} on the Pareto front of {by} ({rule}; stopped at a limit)"
+    if number == 1:
+        every = "both" if len(front.objectives) == 2 else "each"
+        return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({rule})"
+    return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
+
+
+def _table(front: Front) -> Iterator[str]:
+    """Align numbers to the right, and put the words beside them."""
+    columns = [["point", *(str(number + 1) for number in range(len(front.points)))]]
+    for objective in front.objectives:
+        figures = [point.costs.measure(objective) for point in front.points]
+        texts = success_texts([Fraction(f) for f in figures]) if multiplies(objective) else figures
+        columns.append([str(objective), *map(str, texts)])
+    widths = [max(map(len, column)) for column in columns]
+    words = ["", *(_words(front, number) for number in range(len(front.points)))]
+    if len(front.points) > 1:
+        words[0] = "units that go (-) and come (+)"
+    for *cells, note in zip(*columns, words, strict=True):
+        row = "  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
+        yield f"{row}    {note}"
+
+
+def _changes(front: Front, number: int) -> tuple[list[int], list[int]]:
+    """Give the units that only the tree before has, and those that only this one has."""
+    if not number:
+        return [], []
+    before, point = front.points[number - 1], front.points[number]
+    return _missing(before, point), _missing(point, before)
+
+
+def _missing(point: Point, other: Point) -> list[int]:
+    known = set(other.units)
+    return [unit for unit in point.units if unit not in known]
+
+
+def _words(front: Front, number: int) -> str:
+    gone, new = _changes(front, number)
+    network = front.problem.network
+    parts = [f"{sign} {_motions(network, units)}" for sign, units in (("-", gone), ("+", new)) if units]
+    return "  ".join(parts)
+
+
+def _motions(network: Network, units: Sequence[int]) -> str:
+    """Name the motions of units, ``pour (2)`` for two of them."""
+    counts = Counter(network.motions[unit] for unit in units)
+    named = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
+    if len(named) <= _NAMED:
+        return ", ".join(named)
+    shown = _NAMED - 1
+    return f"{', '.join(named[:shown])} and {sum(list(counts.values())[shown:])} more"
+
+
+def _units(front: Front, number: int) -> Iterator[str]:
+    network = front.problem.network
+    if not number:
+        yield from unit_lines(network, front.points[0].units)
+        return
+    gone, new = _changes(front, number)
+    yield from unit_lines(network, gone, "-")
+    yield from unit_lines(network, new, "+")
