@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from foon_asp.api.cross_check import cross_check as cross_check
     from foon_asp.api.difference import Difference as Difference
     from foon_asp.api.difference import diff as diff
-    from foon_asp.api.shopping import Shopping as Shopping
-    from foon_asp.api.shopping import shopping_list as shopping_list
     from foon_asp.api.solve import solve as solve
     from foon_asp.api.solve import solve_soft as solve_soft
     from foon_asp.asp import Outcome as Outcome
@@ -98,6 +96,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.regret import regret as regret
     from foon_asp.questions.search import Retrieved as Retrieved
     from foon_asp.questions.search import retrieve as retrieve
+    from foon_asp.questions.shopping_list import Shopping as Shopping
+    from foon_asp.questions.shopping_list import shopping_list as shopping_list
     from foon_asp.questions.tree import Tree as Tree
     from foon_asp.questions.why_not import Explanation as Explanation
     from foon_asp.questions.why_not import why_not as why_not
@@ -118,7 +118,6 @@ _ROOMS = {
     "api.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),
     "foon": ("Foon", "build", "load"),
-    "api.shopping": ("Shopping", "shopping_list"),
     "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),
     "errors": ("BugError", "FoonWarning", "UserError"),

@@ -727,7 +727,7 @@ FAULTS: dict[str, tuple[Callable[[Foon], object], str]] = {
     ),
     "no constraint": (
         lambda f: foon_asp.clash(f.problem("ice"), constraints=[]),
-        "name constraints, with --constraint FILE.lp or in Python constraints=[FILE]; why-not",
+        "name constraints, files or names of ours; why-not",
     ),
     "both": (
         lambda f: foon_asp.alternatives(f.problem("ice"), best=1, different=2),

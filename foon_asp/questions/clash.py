@@ -191,10 +191,7 @@ def clash(
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if not how.constraints:
-        raise UserError(
-            "name constraints, with --constraint FILE.lp or in Python constraints=[FILE]; "
-            "why-not explains other reasons"
-        )
+        raise UserError("name constraints, files or names of ours; why-not explains other reasons")
     return find_clash(whole(problem), chosen, how, file_weights(weights or {}))
 
 

@@ -31,6 +31,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Explain why there is no task tree.",
         ("why_not", "Explanation"),
     ),
+    "shopping-list": Entry(
+        "Explain",
+        "Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.",
+        ("shopping_list", "Shopping"),
+    ),
     "clash": Entry(
         "Explain",
         "Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.",

@@ -1,0 +1,383 @@
+"""What it would take: the cheapest things to add to the kitchen so that there is a tree."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from fractions import Fraction
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.asp import Status, solve
+from foon_asp.asp.exact_success import problem_scale
+from foon_asp.asp.facts import write_facts, write_for_sale, write_list
+from foon_asp.asp.own_encodings import question_encoding
+from foon_asp.asp.program import Program, assemble
+from foon_asp.asp.search import run
+from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Deadline
+from foon_asp.errors import BugError, UserError
+from foon_asp.network import ObjectNode, Source
+from foon_asp.problem import Number, Problem, exact, reach, relevant
+from foon_asp.problem.dead_ends import Cause, dead_ends
+from foon_asp.problem.shop import Shop
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Constants, Objectives, at_least, chosen_objectives, settings, whole
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.result import Ending, Result
+from foon_asp.report.answer import counted, fraction_json, goal_lines, headline, outcome_dict, steps
+from foon_asp.report.drawing import Drawing
+from foon_asp.text import LineError, Price, parse_node, read_prices
+
+
+class Offer(StrEnum):
+    """What lists are made of. The first offer from which any list can be made is taken.
+
+    ``for sale``: what :class:`Shop` sells, without the dish. ``cycle``: also nodes that can only be made from
+    each other. ``processed``: everything but the dish. ``dish``: everything but the goals. ``goal``:
+    everything. ``priced``: what a price list has, and nothing else.
+    """
+
+    FOR_SALE = "for sale"
+    CYCLE = "cycle"
+    PROCESSED = "processed"
+    DISH = "dish"
+    GOAL = "goal"
+    PRICED = "priced"
+
+
+class ShoppingList(NamedTuple):
+    """Object nodes to add to the kitchen, by id, and what they cost: their number or the sum of prices.
+
+    ``proved`` says that no list is cheaper, among those that do not hold all of an earlier one.
+    """
+
+    items: tuple[int, ...]
+    price: Fraction
+    proved: bool
+
+
+_REMARKS = {
+    Offer.CYCLE: "nothing that one can buy would do: some of a cycle that feeds only itself is needed",
+    Offer.PROCESSED: "nothing that one can buy would do, so the list has things that units would make",
+    Offer.DISH: "nothing else is left, so the list has something that bears or holds the name of the dish",
+    Offer.GOAL: "nothing else is left but to buy what was asked for",
+}
+
+
+@dataclass(frozen=True, repr=False)
+class Shopping(Result):
+    """Lists of things to add to the kitchen in order of cost, and the tree that the first makes possible.
+
+    Each of ``lists`` has its ``items`` by id, its ``price`` (their number, or the sum of prices) and whether
+    it is ``proved`` that none is cheaper; :attr:`items` are the things of the first. ``offer`` is what they
+    are made of. ``lists`` is empty where no list helps; ``complete`` says that the search ended, so that
+    there is none, or that there are no more lists than these. ``outcome`` is the best tree once the first
+    list is in the kitchen, ``None`` without a list. ``prices`` are those of a price list, ``None`` where
+    every node counts one.
+    """
+
+    problem: Problem
+    offer: Offer
+    lists: tuple[ShoppingList, ...]
+    complete: bool
+    outcome: Answer | None
+    prices: Mapping[int, Fraction] | None
+
+    @property
+    def items(self) -> tuple[ObjectNode, ...]:
+        """The things on the first list."""
+        objects = self.problem.network.objects
+        return tuple(objects[o] for o in self.lists[0].items) if self.lists else ()
+
+    @property
+    def ending(self) -> Ending:
+        """Done when every list is proved, and the tree to be the best."""
+        if not self.lists:
+            return Ending.NEGATIVE if self.complete else Ending.LIMIT
+        proved = all(found.proved for found in self.lists)
+        solved = self.outcome is not None and self.outcome.status is Status.OPTIMAL
+        return Ending.DONE if proved and solved else Ending.LIMIT
+
+    def text(self) -> str:
+        """Give the best list with what is known of each thing on it, the other lists, and the tree."""
+        problem = self.problem
+        lines = list(goal_lines(problem))
+        if not self.lists:
+            return "\n".join([*lines, *_none(self)]) + "\n"
+        first, *others = self.lists
+        if not first.items:
+            lines.append(f"nothing has to be bought ({problem.conditions})")
+        else:
+            claim = "cheapest" if self.prices is not None else "shortest"
+            proved = f"{claim}, proved" if first.proved else f"not proved {claim}"
+            lines.append(f"shopping list ({problem.conditions}; {proved}): {_price(self, first)}")
+            lines += [f"  {line}" for o in first.items for line in _item_lines(self, o)]
+            if remark := _REMARKS.get(self.offer):
+                lines.append(remark)
+        for number, other in enumerate(others, 2):
+            claim = "" if other.proved else ", not proved next"
+            lines.append(f"or, list {number} ({_price(self, other)}{claim}):")
+            lines += [f"  {problem.network.objects[o]}" for o in other.items]
+        if first.items and self.complete:
+            lines.append("any other list holds all of one above")
+        if self.outcome is not None and self.outcome.units is not None:
+            outcome = self.outcome
+            lines += ["", f"with {'the first list' if others else 'it'}: {headline(outcome)}", ""]
+            tree = "\n".join(steps(outcome.problem, outcome.units or (), first.items))
+            lines.append(tree or "nothing to do")
+        return "\n".join(lines) + "\n"
+
+    def json_dict(self) -> object:
+        """Give the lists and the answer that the first makes possible."""
+        problem = self.problem
+        objects = problem.network.objects
+        return {
+            "goals": [str(objects[goal]) for goal in problem.goals],
+            "containers": str(problem.containers),
+            "level": problem.network.level,
+            "offer": str(self.offer),
+            "lists": [
+                {
+                    "items": [_item_json(self, o) for o in found.items],
+                    "price": fraction_json(found.price),
+                    "proved": found.proved,
+                }
+                for found in self.lists
+            ],
+            "complete": self.complete,
+            "answer": None if self.outcome is None else outcome_dict(self.outcome),
+        }
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture of the tree shows."""
+        return None if self.outcome is None else self.outcome.drawing()
+
+
+@question(
+    GOALS,
+    OBJECTIVES,
+    CONTAINERS,
+    Option(
+        "prices",
+        "Buy only what has a price: lines of an object node, a tab and a price.",
+        Kind.FILE,
+        metavar="FILE",
+    ),
+    Option("lists", "How many lists at most.", Kind.WHOLE, default=3, least=1),
+    *RULES,
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp shopping-list --goal 'hot cocoa'
+    foon-asp shopping-list --goal 'hot cocoa' --goal omelet --prices prices.txt
+
+    For sale is what no unit makes, and what has no state and holds at most one ingredient, unless it is a
+    product of some unit. The dish itself is proposed only when nothing else is left. A line of a price list
+    is an object node in one-line notation, or a label, then a tab and a price. Every list is proved to be the
+    cheapest of those that do not hold all of one before it.
+
+    Exits with 0 when there is a list, proved; with 1 when no list helps, proved; with 3 when stopped at a
+    limit.
+    """,
+)
+def shopping_list(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    prices: File | Mapping[str, Number] | None = None,
+    lists: int = 3,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Shopping:
+    """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
+
+    With ``prices``, only what has one can be bought: the path of a price list, or prices by label or one-line
+    notation, where a label stands for its nodes that would be for sale; else every node counts one. At most
+    ``lists`` lists are given, each proved: no list that could stand there is cheaper. Of lists that cost the
+    same, one with fewer second choices (what units make, and mixtures) comes first, then one with a smaller
+    tree. Of a store, the whole network is read. Otherwise as :func:`foon_asp.solve`.
+    """
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
+    most = at_least(lists, 1, "lists")
+    problem = whole(problem)
+    by_id = None
+    if prices is not None:
+        listed = read_prices(Path(prices)) if isinstance(prices, str | PathLike) else _given(prices)
+        by_id = _priced(problem, listed)
+    how = how.limited()
+    deadline, reporter = how.begun, caller().reporter
+    program = assemble(how, reporter.warning)
+    found: list[ShoppingList] = []
+    complete = True
+    offer = Offer.FOR_SALE if by_id is None else Offer.PRICED
+    try:
+        with deadline.watched("looking for what is for sale"):
+            shop = Shop(problem)
+            offers = _offers(problem, shop, by_id)
+        while not found and complete:
+            with deadline.watched("looking for what is for sale"):
+                following = next(offers, None)
+            if following is None:
+                break
+            offer, wares = following
+            found, complete = _lists(problem, shop, wares, program, deadline, most)
+    except KeyboardInterrupt:
+        deadline.interrupt()
+        complete = False
+    outcome = None
+    if found:
+        stocked = replace(problem, kitchen=problem.kitchen.union(found[0].items))
+        outcome = Answer._make(solve(stocked, chosen, how, reporter))
+        if outcome.status is Status.INFEASIBLE:
+            raise BugError("the shopping list does not make a tree possible")
+    return Shopping(problem, offer, tuple(found), complete, outcome, by_id)
+
+
+def _given(prices: Mapping[str, Number]) -> list[Price]:
+    """Read prices as the lines of a price list are."""
+    found = []
+    for number, (name, given) in enumerate(prices.items(), 1):
+        price = exact(given, f"the price of {name!r}")
+        if price < 0:
+            raise UserError(f"found the price {given} of {name!r}, expected one from 0")
+        try:
+            node = parse_node(name)
+        except LineError as error:
+            raise UserError(
+                f"the name {name!r} of a price cannot be read: at column {error.column}, {error}"
+            ) from None
+        found.append(Price(node, ";" not in name, price, Source("prices", number)))
+    return found
+
+
+def _priced(problem: Problem, listed: Sequence[Price]) -> dict[int, Fraction]:
+    """Find the object nodes that a price list is about; one that matches none is warned of.
+
+    A label alone stands for all of its nodes that would be for sale without prices.
+    """
+    network, shop = problem.network, Shop(problem)
+    prices: dict[int, Fraction] = {}
+    for entry in sorted(listed, key=lambda entry: not entry.label_alone):  # whole nodes have the last word
+        if entry.label_alone:
+            found = [o for o in network.by_label.get(entry.node.label, ()) if shop.sells(o)]
+        else:
+            known = network.object_id(entry.node)
+            found = [] if known is None else [known]
+        prices.update(dict.fromkeys(found, entry.price))
+        if not found:
+            what = "no node that one can buy has this label" if entry.label_alone else "no such object node"
+            caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {what}: {entry.node}")
+    return prices
+
+
+def _offers(
+    problem: Problem, shop: Shop, prices: Mapping[int, Fraction] | None
+) -> Iterator[tuple[Offer, dict[int, Fraction]]]:
+    """Give what lists can be made of, each offer with more in it than the one before."""
+    if prices is not None:
+        yield Offer.PRICED, {o: price for o, price in prices.items() if o not in problem.kitchen}
+        return
+    one = Fraction(1)
+    others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
+    sold = [o for o in others if shop.sells(o)]
+    yield Offer.FOR_SALE, {o: one for o in sold if not shop.is_dish(o)}
+    roots = dead_ends(problem).roots
+    cycles = {o for root in roots if root.cause is Cause.CYCLE and root.cycle for o in root.cycle.nodes}
+    yield Offer.CYCLE, {o: one for o in dict.fromkeys([*sold, *sorted(cycles)]) if not shop.is_dish(o)}
+    yield Offer.PROCESSED, {o: one for o in others if not shop.is_dish(o)}
+    yield Offer.DISH, {o: one for o in others if o not in problem.goals}
+    yield Offer.GOAL, dict.fromkeys(others, one)
+
+
+def _lists(
+    problem: Problem,
+    shop: Shop,
+    wares: Mapping[int, Fraction],
+    program: Program,
+    deadline: Deadline,
+    most: int,
+) -> tuple[list[ShoppingList], bool]:
+    """Find the cheapest lists from some wares, one run each; say whether there are no others."""
+    with deadline.watched("cutting the network"):
+        stocked = replace(problem, kitchen=problem.kitchen.union(wares))
+        reached = reach(stocked)
+        if not all(reached.available[goal] for goal in problem.goals):
+            return [], True
+        # backwards with the kitchen as it is: what is for sale may also be made
+        units = relevant(problem, reached) if program.own else tuple(sorted(reached.units))
+        met = {*problem.goals, *(o for unit in units for o in problem.needs[unit])}
+        scale = math.lcm(*(price.denominator for price in wares.values()))
+        rates = None if problem.rates is None or program.own else problem_scale(problem, units)
+        sold = {o: price for o, price in wares.items() if o in met}
+        if any(price * scale >= 2**31 for price in sold.values()):
+            raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
+        facts = write_facts(problem, units, rates, with_sources=not program.own) + write_for_sale(
+            {o: int(price * scale) for o, price in sold.items()}, filter(shop.is_second_choice, sold)
+        )
+    files = (*program.files, question_encoding("shopping_list.lp"))
+    lists: list[ShoppingList] = []
+    while len(lists) < most:
+        ended = run(
+            files, facts, program.arguments, deadline, predicates=[("_buy", 1)], endless=program.endless
+        )
+        if ended.units is not None:
+            items = tuple(sorted(ended.atoms["_buy"]))
+            price = sum((wares[o] for o in items), Fraction(0))
+            lists.append(ShoppingList(items, price, ended.exhausted))
+            facts += write_list(len(lists), items)
+        if ended.units is None or not ended.exhausted:
+            return lists, ended.exhausted
+        if not items:
+            return lists, True
+    return lists, False
+
+
+def _none(shopping: Shopping) -> Sequence[str]:
+    rule = shopping.problem.conditions
+    if not shopping.complete:
+        return [f"unknown: stopped at a limit before any list was found ({rule})"]
+    if shopping.offer is Offer.PRICED:
+        return [f"no list of things with a price makes a tree possible: proved ({rule})"]
+    return [f"whatever is bought, the constraints leave no tree: proved ({rule})"]
+
+
+def _item_lines(shopping: Shopping, o: int) -> Iterator[str]:
+    network = shopping.problem.network
+    price = "" if shopping.prices is None else f"    {_decimal(shopping.prices[o])}"
+    yield f"{network.objects[o]}{price}"
+    users = [unit for unit in network.consumers[o] if o in shopping.problem.needs[unit]]
+    if shopping.outcome is not None and shopping.outcome.units is not None:
+        used = [unit for unit in shopping.outcome.units if unit in users]
+        places = ", ".join(f"{network.motions[unit]} [{network.sources[unit][0]}]" for unit in used)
+        if places:
+            yield f"    for {places}"
+
+
+def _item_json(shopping: Shopping, o: int) -> dict[str, object]:
+    network = shopping.problem.network
+    price = Fraction(1) if shopping.prices is None else shopping.prices[o]
+    return {"id": o, "object": str(network.objects[o]), "price": fraction_json(price)}
+
+
+def _price(shopping: Shopping, found: ShoppingList) -> str:
+    things = counted(len(found.items), "object node")
+    return things if shopping.prices is None else f"{things} for {_decimal(found.price)}"
+
+
+def _decimal(number: Fraction) -> str:
+    """Give a sum of decimals as a decimal: ``3.20`` for 16/5, ``3`` for 3."""
+    for places in range(7):
+        if (number * 10**places).denominator == 1:
+            shown = max(places, 2) if places else 0
+            return f"{int(number * 10**shown) // 10**shown}" + (
+                f".{int(number * 10**shown) % 10**shown:0{shown}d}" if shown else ""
+            )
+    return str(number)
