@@ -1,17 +1,31 @@
 """Every objective is measured the same in all rooms, and one that a room does not know is refused by name."""
 
+import math
 import re
 from dataclasses import replace
+from fractions import Fraction
 
 import clingo
 import pytest
 
-from foon_asp.asp import Settings, solve
+from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_facts, write_objectives
+from foon_asp.asp.ranking import Ranked
+from foon_asp.asp.scales import Scales
 from foon_asp.certificate import certify
-from foon_asp.errors import BugError
-from foon_asp.problem import ContainerRule, Costs, Objective, Problem, Row, levels, multiplies
+from foon_asp.engines import Asked, DisagreementError, cross_check
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import (
+    ContainerRule,
+    Costs,
+    Objective,
+    Problem,
+    Row,
+    executable_order,
+    levels,
+    multiplies,
+)
 from foon_asp.proof import verify
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduction
 from foon_asp.reduce.exact_costs import TooFineError
@@ -30,34 +44,104 @@ def made_up(row: Row) -> Objective:
     return objective
 
 
-# what is made of little, and dearer than it is long
-DEAR = made_up(Row("dear", "cost", lambda unit: 3 * len(list(unit.inputs)) % 7, is_fact=True))
+NEW = {
+    "whole": made_up(Row("dear", "cost", lambda unit: 3 * len(list(unit.inputs)) % 7, is_fact=True)),
+    "to scale": made_up(
+        Row(
+            "cents", "cost", lambda unit: Fraction(len(list(unit.inputs)) % 3, 100), is_fact=True, whole=False
+        )
+    ),
+    "rounded": made_up(
+        Row("tries", "cost", lambda unit: 1 / unit.rate, needs_rates=True, is_fact=True, whole=False)
+    ),
+}
+
+
+def best_by_hand(problem: Problem, objectives: tuple[Objective, ...]) -> tuple[Fraction | int, ...] | None:
+    """Give what the best tree costs, found by looking at all."""
+    keys = []
+    for tree in oracle.trees(problem):
+        units = [unit for node in tree if (unit := problem.network.unit_id(node)) is not None]
+        figures = [[objective.row.unit(problem.measured(unit)) for unit in units] for objective in objectives]
+        signs = [
+            (-math.prod(f) if o.row.multiplies else sum(f)) for o, f in zip(objectives, figures, strict=True)
+        ]
+        keys.append((*signs, len(units)))
+    return min(keys, default=None)
 
 
 @pytest.mark.parametrize("reductions", [ALL, *(frozenset({one}) for one in Reduction), NONE])
+@pytest.mark.parametrize("new", NEW)
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.sampled(2)
 def test_a_row_is_all_that_a_new_objective_takes(
-    reductions: frozenset[Reduction], rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
+    new: str, reductions: frozenset[Reduction], rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, DEAR))
+    objective = NEW[new]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
     solved = 0
     for seed in range(40):
         problem = random_problem(seed, rule)
-        trees = [
-            [u for node in tree if (u := problem.network.unit_id(node)) is not None]
-            for tree in oracle.trees(problem)
-        ]
-        found = solve(problem, (DEAR,), Settings(reductions=reductions))
-        if not trees:
-            assert found.costs is None
-            continue
-        least = min(
-            (sum(3 * len(problem.network.inputs[unit]) % 7 for unit in tree), len(tree)) for tree in trees
-        )
-        assert found.costs is not None
-        assert (found.costs.measure(DEAR), found.costs.units) == least
-        solved += 1
+        asked = [(objective,), (Objective.INPUTS, objective), (objective, Objective.SUCCESS)][seed % 3]
+        if new == "rounded" and len(asked) > 1:
+            asked = asked[:1] if asked[0] is objective else asked
+        best = best_by_hand(problem, asked)
+        found = solve(problem, asked, Settings(reductions=reductions))
+        assert (found.costs is None) == (best is None)
+        if found.costs is not None:
+            assert found.status is Status.OPTIMAL
+            assert found.costs.key((*asked, Objective.UNITS)) == best
+            solved += 1
     assert solved > 10
+
+
+@pytest.mark.parametrize("new", NEW)
+def test_trees_in_order_of_a_new_objective(new: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    objective = NEW[new]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+    for seed in range(30):
+        problem = random_problem(seed, ContainerRule.STRICT)
+        best = best_by_hand(problem, (objective,))
+        keys = [
+            costs.key((objective, Objective.UNITS)) for _, costs in Ranked(problem, (objective,), Settings())
+        ]
+        assert keys == sorted(keys)
+        assert keys[:1] == ([] if best is None else [best])
+
+
+@pytest.mark.parametrize("new", NEW)
+def test_other_engines_are_asked_about_a_new_objective(new: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    objective = NEW[new]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+    agreed = 0
+    for seed in range(12):
+        problem = random_problem(seed, ContainerRule.STRICT)
+        outcome = solve(problem, (objective,))
+        checks = list(cross_check(Asked(outcome)))
+        agreed += sum(check.reason is None for check in checks)
+        assert {check.engine: check.reason for check in checks}["clingo"] is None
+        if outcome.units:
+            trees = [
+                [u for n in tree if (u := problem.network.unit_id(n)) is not None]
+                for tree in oracle.trees(problem)
+            ]
+            worse = max(trees, key=lambda tree: problem.costs(tree).key((objective,)))
+            costs = problem.costs(worse)
+            if costs.measure(objective) == outcome.costs.measure(objective):  # type: ignore[union-attr]
+                continue
+            order = executable_order(problem, worse)
+            with pytest.raises(DisagreementError):
+                list(cross_check(Asked(outcome._replace(units=order, costs=costs))))
+    assert agreed > 12
+
+
+def test_two_objectives_that_have_to_be_rounded_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    objective = NEW["rounded"]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+    problem = two_ways(["1/1009", "1/1013"], ["1/1000003"])
+    problem = replace(problem, rates={m: 1 - r / 7 for m, r in (problem.rates or {}).items()})
+    with pytest.raises(UserError, match="tries and success have to be rounded for the solver"):
+        solve(problem, (objective, Objective.SUCCESS), Settings(reductions=NONE))
 
 
 @pytest.mark.parametrize("reductions", [ALL, *(frozenset({one}) for one in Reduction), NONE])
@@ -95,10 +179,10 @@ def test_the_verifier_knows_all_objectives() -> None:
 
 def criteria(problem: Problem, tree: list[int], objectives: list[Objective]) -> list[int]:
     """Have clingo measure a tree by ``objectives.lp`` alone."""
-    scale = problem_scale(problem, range(len(problem.network)))
+    scales = Scales(problem, range(len(problem.network)), objectives)
     control = clingo.Control(["--warn=none"])
     control.load(str(encodings_folder() / "objectives.lp"))
-    facts = write_facts(problem, range(len(problem.network)), scale) + write_objectives(objectives)
+    facts = write_facts(problem, range(len(problem.network)), scales) + write_objectives(objectives)
     control.add("base", [], facts + "".join(f"use({unit}).\n" for unit in tree))
     control.ground([("base", [])])
     costs: list[int] = []

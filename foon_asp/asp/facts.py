@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import PurePath
 
-from foon_asp.asp.exact_success import RateScale
+from foon_asp.asp.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
 from foon_asp.network import Source
@@ -71,22 +71,20 @@ _LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
 def write_facts(
     problem: Problem,
     units: Sequence[int],
-    scale: RateScale | None,
+    scales: Scales | None = None,
     with_sources: bool = False,
-    objectives: Iterable[Objective] = (),
 ) -> str:
     """Describe the given units of a problem, their object nodes, the kitchen and the goals.
 
-    One line per unit and per object node; ids are those of the whole network. ``scale`` gives the weights
-    of ``risk/2``; ``None`` where no rates are known. ``with_sources`` adds where each unit was read, which
-    only constraints look at, and ``objectives`` what each unit costs by those of them whose rows say so.
+    One line per unit and per object node; ids are those of the whole network. ``scales`` give the weights
+    of ``risk/2`` and ``cost/3``; without them there are none. ``with_sources`` adds where each unit was read,
+    which only constraints look at.
     """
     name = problem.network.object_number
     nodes = described(problem, units)
-    costs = [objective for objective in objectives if objective.row.is_fact]
     lines = []
     for unit in units:
-        atoms = _unit_atoms(problem, unit, scale, with_sources, costs)
+        atoms = _unit_atoms(problem, unit, scales, with_sources)
         lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
     for o in nodes:
         atoms = _object_atoms(problem, o)
@@ -103,9 +101,8 @@ def write_open_facts(
     problem: Problem,
     closed: Collection[tuple[str, int]],
     left_open: Collection[tuple[str, int]],
-    scale: RateScale | None,
+    scales: Scales,
     looked_at: Collection[tuple[str, int]],
-    objectives: Iterable[Objective],
 ) -> str:
     """Describe a question as :func:`write_facts` does, but leave open some of what is the case.
 
@@ -115,7 +112,6 @@ def write_open_facts(
     node may be a goal.
     """
     name = problem.network.object_number
-    costs = [objective for objective in objectives if objective.row.is_fact]
     lines = []
 
     def add(subject: str, is_open: bool, atoms: Iterable[_Atom]) -> None:
@@ -127,7 +123,7 @@ def write_open_facts(
     for kind, id_ in sorted({*closed, *left_open}):
         is_open = (kind, id_) in left_open
         if kind == "unit":
-            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scale, True, costs))
+            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scales, with_sources=True))
         elif kind == "kitchen":
             add(f"kitchen({_check(name(id_))})", is_open, ())
         else:
@@ -148,9 +144,7 @@ def _unit_atom(problem: Problem, unit: int) -> str:
     return f"unit({_check(problem.network.unit_number(unit))})"
 
 
-def _unit_atoms(
-    problem: Problem, unit: int, scale: RateScale | None, with_sources: bool, costs: Iterable[Objective]
-) -> list[_Atom]:
+def _unit_atoms(problem: Problem, unit: int, scales: Scales | None, with_sources: bool) -> list[_Atom]:
     """Give what the facts say of a unit, beside that it is one."""
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
@@ -162,10 +156,13 @@ def _unit_atoms(
     atoms += [("output", f"{u},{name(o)}") for o in network.outputs[unit]]
     atoms += [("gives", f"{u},{name(o)}") for o in problem.gives[unit]]
     atoms += [("inputs", f"{u},{len(inputs)}"), ("ingredients", f"{u},{_check(ingredients)}")]
-    if scale:
+    if scales and scales.rates:
         rate = problem.rate(unit)
-        atoms += [("rate", f"{u},{_millionths(rate)}"), ("risk", f"{u},{_check(scale.weights[rate])}")]
-    atoms += [("cost", f"{o.row.term},{u},{_check(int(problem.figure(o, unit)))}") for o in costs]
+        weight = scales.rates.weights[rate]
+        atoms += [("rate", f"{u},{_millionths(rate)}"), ("risk", f"{u},{_check(weight)}")]
+    if scales:
+        weights = ((each.row.term, scales.weight(each, [unit])) for each in scales.facts)
+        atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]
     if with_sources:
         names = _source_names(network.sources[unit])
         atoms += [("source", f"{u},{quote(encodable(source))}") for source in names]
@@ -201,12 +198,12 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
     )
 
 
-def write_exponents(problem: Problem, units: Iterable[int], scale: RateScale) -> str:
-    """Give every unit's rate over the coprime factors of the scale."""
+def write_exponents(problem: Problem, scales: Scales) -> str:
+    """Give the vector of every unit by the objective that is rounded: its rate over the coprime factors."""
     return "".join(
-        f"_exponent({problem.network.unit_number(unit)},{factor},{_check(exponent)}).\n"
-        for unit in units
-        for factor, exponent in scale.exponents[problem.rate(unit)].items()
+        f"_exponent({problem.network.unit_number(unit)},{place},{_check(number)}).\n"
+        for unit, vector in scales.unit_vectors().items()
+        for place, number in vector.items()
     )
 
 

@@ -114,10 +114,9 @@ class Postconditions:
         if reduced is not None and reduced.costs is not None:
             self._reduced(outcome, costs, reduced, reduced.costs)
 
-    def settled(self, tree: Collection[int], chosen: Collection[int], before: Sequence[Objective]) -> None:
-        """Require that a tree has the success that was settled on, and the measures that come before it."""
+    def settled(self, tree: Collection[int], chosen: Collection[int], by: Sequence[Objective]) -> None:
+        """Require that a tree has by some objectives what was settled on."""
         ours, theirs = self.problem.costs(tree), self.problem.costs(chosen)
-        by = (*before, Objective.SUCCESS)
         self.require(
             ours.key(by) == theirs.key(by),
             lambda: (
@@ -180,7 +179,7 @@ class Postconditions:
             all(
                 exact.is_logarithm(total, Fraction(costs.measure(objective)))
                 if multiplies(objective)
-                else total == costs.measure(objective)
+                else exact.total(objective, total) == costs.measure(objective)
                 for objective, total in totals.items()
             ),
             lambda: f"the tree {actions} costs {_said(costs)}, but the reductions make it {totals}",

@@ -5,18 +5,18 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Settings, assemble
+from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
 
-Rounded = tuple[int, ...]  # costs as clingo adds them up: success in rounded logarithms
+Rounded = tuple[int, ...]  # costs as clingo adds them up
 
 
 class _Tree(NamedTuple):
@@ -50,7 +50,6 @@ class Ranked:
         self._program = assemble(settings, (reporter or Reporter()).warning)
         self._holds = Postconditions(problem, self.levels, settings, self._program.own)
         self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
-        self._scale: RateScale | None = None
         problem.require_rates_for(self.levels)
         try:
             with self._deadline.watched("cutting the network"):
@@ -63,8 +62,7 @@ class Ranked:
         if all(reached.available[goal] for goal in problem.goals):
             own = self._program.own
             self._units: tuple[int, ...] = relevant(problem, reached) if own else tuple(sorted(reached.units))
-            if problem.rates is not None:
-                self._scale = problem_scale(problem, self._units)
+            self._scales = Scales(problem, self._units, self.levels)
         else:
             self.complete = True
 
@@ -72,8 +70,8 @@ class Ranked:
         """Give tree after tree.
 
         clingo gives them in the order of rounded costs. A tree is given out when no tree that clingo may
-        still find can come before it: where rates multiply, one whose weight is higher by less than there are
-        units whose rates were rounded may (docs/exact-success.md).
+        still find can come before it: where costs are rounded, one may whose weight is higher by less than
+        there are units that weigh less than they cost (docs/exact-success.md).
         """
         if self.complete:
             return
@@ -105,9 +103,7 @@ class Ranked:
     def _next(self, avoided: str) -> Run:
         try:
             with self._deadline.watched("writing facts"):
-                facts = write_facts(
-                    self.problem, self._units, self._scale, not self._program.own, self.levels
-                )
+                facts = write_facts(self.problem, self._units, self._scales, not self._program.own)
         except KeyboardInterrupt:
             self._deadline.interrupt()
             return Run()
@@ -128,10 +124,7 @@ class Ranked:
             raise UserError("a tree was found with units that the network has not: check the encodings")
         order = self._holds.tree(known)
         costs = self.problem.costs(order)
-        rounded = (
-            sum(map(self._weight, order)) if multiplies(objective) else int(costs.measure(objective))
-            for objective in self.levels
-        )
+        rounded = (self._scales.weight(objective, order) for objective in self.levels)
         return _Tree(order, costs, tuple(rounded))
 
     def _check(self, ended: Run, tree: _Tree, known: Sequence[_Tree]) -> None:
@@ -170,14 +163,10 @@ class Ranked:
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
         """Whether all trees from these rounded costs on come after a tree, or are as good as it."""
-        if Objective.SUCCESS not in self.levels:
+        by = self._scales.rounded
+        if by is None:
             return True
-        place = self.levels.index(Objective.SUCCESS)
+        place = self.levels.index(by)
         if last[:place] > tree.rounded:  # where they begin alike it is less
             return True
-        doubt = sum(self.problem.rate(unit) != 1 for unit in tree.units)  # also those that weigh 0
-        return last[place] >= tree.rounded[place] + doubt
-
-    def _weight(self, unit: int) -> int:
-        assert self._scale is not None
-        return self._scale.weights[self.problem.rate(unit)]
+        return last[place] >= tree.rounded[place] + self._scales.doubt(tree.units)

@@ -8,9 +8,9 @@ fact: searches with the whole kitchen left open were up to a hundred times as lo
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
-from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import described, write_exponents, write_open_facts, write_product
 from foon_asp.asp.program import Program
+from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import ground, refused
 from foon_asp.deadline import Deadline
 from foon_asp.grounding.run import ProgramError, Run
@@ -72,7 +72,7 @@ class OpenProgram:
     """A ground program that leaves some cases open, and what is asked.
 
     ``closed`` is always the case, ``left_open`` may be. ``pairs`` are objectives with the priorities that
-    they may have. ``scale`` is that of the success rates, ``None`` where no rates are known.
+    they may have. ``scales`` say how its units are measured.
     """
 
     def __init__(
@@ -90,11 +90,9 @@ class OpenProgram:
         self._units = _units({*closed, *left_open})
         self._pairs = frozenset(pairs)
         self._priorities = max(priority for _, priority in self._pairs)
-        self.scale: RateScale | None = None
-        if problem.rates is not None:
-            self.scale = problem_scale(problem, self._units)
         objectives = dict.fromkeys(objective for objective, _ in sorted(self._pairs))
-        facts = write_open_facts(problem, closed, left_open, self.scale, program.looked_at, objectives)
+        self.scales = Scales(problem, self._units, objectives)
+        facts = write_open_facts(problem, closed, left_open, self.scales, program.looked_at)
         facts += "".join(
             f"#external optimize({objective.row.term},{priority}).\n"
             for objective, priority in sorted(self._pairs)
@@ -145,7 +143,8 @@ class OpenProgram:
 
     def _measures_like(self, problem: Problem, cases: Iterable[Case]) -> bool:
         """Whether the rates of all units have the weights that those of the question have by themselves."""
-        return self.scale is None or problem_scale(problem, _units(cases)).scale == self.scale.scale
+        objectives = dict.fromkeys(objective for objective, _ in sorted(self._pairs))
+        return Scales(problem, _units(cases), objectives).likeness == self.scales.likeness
 
     def run(
         self,
@@ -208,8 +207,8 @@ class OpenProgram:
         facts = (
             write_product(number, exponents) + f"#external _seen({number}). #external _wanted({number}).\n"
         )
-        if not number and self.scale is not None:
-            facts += write_exponents(self._problem, self._units, self.scale)
+        if not number:
+            facts += write_exponents(self._problem, self.scales)
         part = f"facts of product {number}"
         try:
             self._ground.add(part, facts, number, deadline)

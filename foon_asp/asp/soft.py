@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import (
     write_facts,
     write_greatest_penalty,
@@ -16,6 +15,7 @@ from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
 from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Relaxed, Settings, assemble, find_constraint
+from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter, solve
 from foon_asp.deadline import Deadline
@@ -156,5 +156,4 @@ def _all_facts(problem: Problem, deadline: Deadline) -> str | None:
         if not all(reached.available[goal] for goal in problem.goals):
             return None
         units = tuple(sorted(reached.units))
-        scale = None if problem.rates is None else problem_scale(problem, units)
-        return write_facts(problem, units, scale, with_sources=True)
+        return write_facts(problem, units, Scales(problem, units), with_sources=True)

@@ -2,12 +2,11 @@
 
 import itertools
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.exact_success import RateScale, problem_scale
 from foon_asp.asp.facts import (
     write_exponents,
     write_facts,
@@ -19,6 +18,7 @@ from foon_asp.asp.facts import (
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program, Settings, assemble
+from foon_asp.asp.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, multiplies, reach, relevant
@@ -90,7 +90,7 @@ class _Solver:
         self.deadline = settings.begun
         self.units: tuple[int, ...] = ()
         self.reduced: Reduced | None = None
-        self.scale: RateScale | None = None
+        self.scales: Scales | None = None
         self.seconds: dict[str, float] = {}
         self._open: OpenProgram | None = None
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
@@ -144,12 +144,8 @@ class _Solver:
         best, proved = ended.units, ended.exhausted
         if not self.program.replaced:
             best = min(best, incumbent, key=lambda units: self._costs(units).key(self.levels))
-        if (
-            self._measures_agree(ended.units, ended.cost, self.levels)
-            and proved
-            and Objective.SUCCESS in self.levels
-        ):
-            best, proved = self._settle_success(best)
+        if self._measures_agree(ended.units, ended.cost, self.levels) and proved:
+            best, proved = self._settle(best)
         return self._optimal(best) if proved else self._limited(best, ended.lower)
 
     def cut(self) -> Units | None:
@@ -192,11 +188,11 @@ class _Solver:
         """
         if self.reduced is None or self.program.bounded or Reduction.BOUNDS not in self.settings.reductions:
             return "opt", False
-        costs = self._costs(incumbent)
-        if Objective.SUCCESS in self.levels:
-            before = self.levels[: self.levels.index(Objective.SUCCESS)]
-            return ",".join(["opt", *(str(costs.measure(o)) for o in before)]), False
-        figures = [int(costs.measure(o)) for o in self.levels]
+        scales = self._scaled()
+        level = len(self.levels) if scales.rounded is None else self.levels.index(scales.rounded)
+        figures = [scales.weight(objective, incumbent) for objective in self.levels[:level]]
+        if scales.rounded is not None:
+            return ",".join(["opt", *map(str, figures)]), False
         while figures and not figures[-1]:
             figures.pop()
         if not figures:
@@ -217,10 +213,8 @@ class _Solver:
         """Give what the problem is, as text, without what is asked of it."""
         began = time.perf_counter()
         with self.deadline.watched("writing facts"):
-            if self.problem.rates is not None:
-                self.scale = problem_scale(self.problem, self.units)
             with_sources = not self.program.own
-            facts = write_facts(self.problem, self.units, self.scale, with_sources, self.levels)
+            facts = write_facts(self.problem, self.units, self._scaled(), with_sources)
         self._spent("facts", began)
         return facts
 
@@ -243,7 +237,7 @@ class _Solver:
             self._report_tree(self._ids(units))
 
         try:
-            if self.settings.session is not None and self.program.open:
+            if self.settings.session is not None and self.program.open and self._kept:
                 ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
             else:
                 ended = self._grounded(objectives, products, wanted).search(
@@ -286,11 +280,21 @@ class _Solver:
         self._ground = asked, program
         return program
 
+    def _scaled(self) -> Scales:
+        """Give how what is left of the network is measured in clingo."""
+        if self.scales is None:
+            self.scales = Scales(self.problem, self.units, self.levels)
+        return self.scales
+
+    @property
+    def _kept(self) -> bool:
+        """Whether programs are kept for questions of this kind: one program settles one objective only."""
+        return all(objective.row.whole or multiplies(objective) for objective in self.levels)
+
     @cached_property
     def _exponents(self) -> str:
         """Give the facts that are there beside the usual ones wherever products of rates are compared."""
-        assert self.scale is not None
-        return write_exponents(self.problem, self.units, self.scale)
+        return write_exponents(self.problem, self._scaled())
 
     def _run_open(
         self,
@@ -307,7 +311,7 @@ class _Solver:
         began = time.perf_counter()
         if self._open is None:
             self._open = session.program(self.program, self.problem, self.units, self.levels, self.deadline)
-            self.scale = self._open.scale
+            self.scales = self._open.scales
         self._spent("ground", began)
         try:
             ended = self._open.run(
@@ -342,47 +346,48 @@ class _Solver:
             units.add(unit)
         return Units(units)
 
-    def _settle_success(self, best: Units) -> tuple[Units, bool]:
-        """Look at every product of rates that rounding may have hidden; see docs/exact-success.md.
+    def _settle(self, best: Units) -> tuple[Units, bool]:
+        """Look at every total that rounding may have hidden; see docs/exact-success.md.
 
-        Returns the best tree by exact products, and whether the search came to its end.
+        Returns the tree that is best exactly, and whether the search came to its end.
         """
-        scale = self.scale
-        assert scale is not None
-        place = self.levels.index(Objective.SUCCESS)
-        before, after = self.levels[:place], self.levels[place + 1 :]
-        products: list[dict[int, int]] = []
-        fixed = [self._costs(best).measure(objective) for objective in before]
+        scales = self._scaled()
+        if scales.rounded not in self.levels:  # a program that is kept knows others, too
+            return best, True
+        place = self.levels.index(scales.rounded)
+        before, by, after = self.levels[:place], self.levels[: place + 1], self.levels[place + 1 :]
+        totals: list[dict[int, int]] = []
+        fixed = [scales.weight(objective, best) for objective in before]
         chosen, rival, wanted = best, best, 0
         while True:
-            # A better product has a weight of at most W + n - 1, where n units of the tree weigh less
-            # than their logarithm (all but those of rate 1).
-            products.append(scale.product_exponents(map(self.problem.rate, rival)))
-            inexact = sum(self.problem.rate(unit) != 1 for unit in chosen)
-            if not inexact:
-                break  # nothing succeeds more often than always
-            band = self._weight(chosen) + inexact - 1
+            # A better total has a weight of at most W + n - 1, where n units of the tree weigh less
+            # than they cost.
+            totals.append(scales.vector(rival))
+            doubt = scales.doubt(chosen)
+            if not doubt:
+                break  # nothing was hidden: what weighs no less is no better
+            band = scales.weight(scales.rounded, chosen) + doubt - 1
             mode = ",".join(["opt", *map(str, fixed), str(band)])
-            ended = self._run((*before, Objective.SUCCESS), products, opt_mode=mode)
+            ended = self._run(by, totals, opt_mode=mode)
             if not ended.exhausted:
                 return chosen, False
             if ended.units is None:
                 break
             rival = ended.units
-            self._require_measures(self._measures_agree(rival, ended.cost, (*before, Objective.SUCCESS)))
-            if self._costs(rival).measure(Objective.SUCCESS) > self._costs(chosen).measure(Objective.SUCCESS):
-                chosen, wanted = rival, len(products)
+            self._require_measures(self._measures_agree(rival, ended.cost, by))
+            if self._costs(rival).key(by) < self._costs(chosen).key(by):
+                chosen, wanted = rival, len(totals)
         if not after:
             return chosen, True
-        costs = self._costs(chosen)
-        mode = ",".join(["opt", *map(str, fixed), *(str(costs.measure(o)) for o in after)])
-        ended = self._run((*before, *after), products, wanted, mode)
+        limits = (scales.weight(objective, chosen) for objective in after)
+        mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
+        ended = self._run((*before, *after), totals, wanted, mode)
         if ended.units is None:
             self._require_measures(not (ended.exhausted and self.program.replaced))
-            self.holds.require(not ended.exhausted, lambda: "the best product of success rates was lost")
+            self.holds.require(not ended.exhausted, lambda: f"the best {scales.rounded} was lost")
             return chosen, False
         self._require_measures(self._measures_agree(ended.units, ended.cost, (*before, *after)))
-        self.holds.settled(ended.units, chosen, before)
+        self.holds.settled(ended.units, chosen, by)
         return ended.units, ended.exhausted
 
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
@@ -391,11 +396,7 @@ class _Solver:
         A replaced objectives.lp may measure something else: then the optimum is the one it defines. A program
         that is kept measures all levels, and what was not asked for as nothing.
         """
-        costs = self._costs(units)
-        weights = {
-            objective: self._weight(units) if multiplies(objective) else int(costs.measure(objective))
-            for objective in objectives
-        }
+        weights = {objective: self._scaled().weight(objective, units) for objective in objectives}
         listed = self.levels if len(cost) == len(self.levels) else objectives
         ours = [weights.get(objective, 0) for objective in listed]
         agree = [mine % 2**32 for mine in ours] == [theirs % 2**32 for theirs in cost]
@@ -416,12 +417,8 @@ class _Solver:
         if not agree:
             raise UserError(
                 f"{self.program.files[1]} measures some trees as the objectives {', '.join(self.levels)} do, "
-                "and others not: their success cannot be compared"
+                "and others not: they cannot be compared"
             )
-
-    def _weight(self, units: Iterable[int]) -> int:
-        assert self.scale is not None
-        return sum(self.scale.weights[self.problem.rate(unit)] for unit in units)
 
     def _costs(self, units: Units) -> Costs:
         """Give what units cost, worked out once for a tree in hand."""
@@ -434,14 +431,17 @@ class _Solver:
 
         Where it has none yet, no cost is below 0 and no success above 1. A bound on trees that are better
         than the one in hand is no bound beyond that one. What the cuts say of the first objective counts.
-        Nothing is said of what comes after success: rounded weights do not tell which trees it counts among.
+        Nothing is said of what comes after an objective that is rounded: rounded weights do not tell which
+        trees it counts among.
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
-            if multiplies(objective):
-                bounds[objective] = self.scale.success_bound(max(0, value)) if self.scale else Fraction(1)
+            if self.scales is None:  # nothing was asked yet
+                bounds[objective] = int(multiplies(objective))
                 break
-            bounds[objective] = max(0, value)
+            bounds[objective] = self.scales.bound(objective, max(0, value))
+            if objective is self.scales.rounded:
+                break
         reduced = self.reduced
         if reduced is None or reduced.costs is None:
             return bounds

@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Status
@@ -117,10 +118,10 @@ def _foreign(asked: Asked, covered: Coverage) -> list[str]:
 def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """Give the objectives by which an engine finds our tree best, too.
 
-    Costs are computed anew from the units, as rational numbers. Where rates are multiplied, an engine that
-    works in floats may take a tree for the best that is so by less than it can tell: then nothing is said of
-    success, nor of the objectives after it. Raises :class:`DisagreementError` where both answers cannot be
-    right, and :class:`NotCheckedError` where nothing follows from the other.
+    Costs are computed anew from the units, as rational numbers. Where costs are fractions or rates, an engine
+    that works in floats may take a tree for the best that is so by less than it can tell: then nothing is
+    said of that objective, nor of those after it. Raises :class:`DisagreementError` where both answers cannot
+    be right, and :class:`NotCheckedError` where nothing follows from the other.
     """
     if not answer.finished:
         raise NotCheckedError("it found no answer in time")
@@ -138,7 +139,7 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
             agreed.append(objective)
             continue
         better = theirs > ours if multiplies(objective) else theirs < ours
-        if not better and multiplies(objective) and _close(outcome.costs, costs):
+        if not better and _close(objective, outcome.costs, costs):
             break  # what it then finds for the objectives after this one is about other trees
         raise DisagreementError(
             f"by {objective} our tree has {ours}, the one of {answer.engine} {theirs}; "
@@ -150,11 +151,15 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     return tuple(agreed)
 
 
-def _close(one: Costs, other: Costs) -> bool:
-    first, second = (costs.success or 0 for costs in (one, other))
+def _close(objective: Objective, one: Costs, other: Costs) -> bool:
+    """Whether floats may take a tree for as good as another one."""
+    first, second = Fraction(one.measure(objective)), Fraction(other.measure(objective))
+    units = 1 + one.units + other.units
+    if not multiplies(objective):
+        return not objective.row.whole and abs(first - second) <= _CLOSE * units * (1 + abs(first))
     if not first or not second:
         return False
     difference = math.log(first.numerator * second.denominator) - math.log(
         first.denominator * second.numerator
     )
-    return abs(difference) <= _CLOSE * (1 + one.units + other.units)
+    return abs(difference) <= _CLOSE * units

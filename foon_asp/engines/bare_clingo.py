@@ -5,9 +5,9 @@ reduced before it, kept from a question before it, or known to it of our answer 
 it searches in another way than ours, too. What it says is held against our answer here, in exact numbers:
 the costs it adds up against those of its units, its tree against the simulation, our tree against its rules.
 
-By ``success`` clingo goes by rounded weights, which are no answer yet. Every tree that is at least as good as
-ours has a rounded weight within a bound that is worked out here anew; see docs/proofs.md. clingo gives the
-trees within it, and their rates are multiplied as fractions.
+By ``success`` and others that are fractions clingo goes by rounded weights, which are no answer yet. Every
+tree that is at least as good as ours has a rounded weight within a bound that is worked out here anew; see
+docs/proofs.md. clingo gives the trees within it: rates are multiplied, or costs added up, as fractions.
 """
 
 import contextlib
@@ -38,7 +38,7 @@ _MEMORY = 4 * 2**30  # bytes, where no memory limit says otherwise
 _ENDED = {0, 10, 20, 30}  # the program and the Python module end otherwise where there was no fault
 _OUT_OF_MEMORY = (b"bad_alloc", b"MemoryError", b"cannot allocate memory")
 _SECOND_OPINION = "second_opinion.lp"
-_STRING_OR_RISK = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])risk\((\d+),(\d+)\)')
+_STRING_OR_WEIGHT = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])(?:risk\(|cost\((\w+),)(\d+),(\d+)\)')
 _SHOWN = re.compile(r"use\((\d+)\)")
 
 
@@ -98,7 +98,7 @@ class _Clingo:
         answers = _answers(found)
         if len(answers) > MOST_KINDS:
             raise NotCheckedError(
-                f"more than {MOST_KINDS} kinds of trees are too close to the best by rounded success rates"
+                f"more than {MOST_KINDS} kinds of trees are too close to the best by rounded costs"
             )
         if found["Models"]["More"] != "no":
             raise NotCheckedError(f"clingo ended with {found['Result']!r}")
@@ -150,10 +150,13 @@ class _Check:
         self.asked, self.program, self.clingo = asked, program, clingo
         self.outcome, self.problem = asked.outcome, asked.outcome.problem
         self.levels = levels(self.outcome.objectives)
-        self.weights: dict[int, int] = {}
-        for number, weight in _STRING_OR_RISK.findall(program.facts):
-            if number:
-                self.weights.setdefault(int(number), int(weight))
+        self.weights: dict[Objective, dict[int, int]] = {
+            objective: {} for objective in self.levels if multiplies(objective) or not objective.row.whole
+        }
+        by_term = {objective.row.term: weights for objective, weights in self.weights.items()}
+        for term, number, weight in _STRING_OR_WEIGHT.findall(program.facts):
+            if number and (name := term or "success") in by_term:
+                by_term[name].setdefault(int(number), int(weight))
 
     def check(self) -> None:
         outcome = self.outcome
@@ -168,8 +171,10 @@ class _Check:
         usual = self._usual(theirs) and self._usual(ours)
         if not usual:
             self._by_replaced_objectives(ours, theirs)
-        elif any(map(multiplies, self.levels)):
-            self._by_success(theirs)
+        elif rounded := [objective for objective in self.weights if not self._is_to_scale(objective)]:
+            if len(rounded) > 1:
+                raise NotCheckedError(f"{' and '.join(rounded)} are both rounded in the facts")
+            self._by_rounded(theirs, rounded[0])
         else:
             self._compare(theirs, self.levels)
 
@@ -200,9 +205,7 @@ class _Check:
         """
         costs = self.problem.costs(self._tree(found))
         figures = [
-            sum(self.weights.get(number, 0) for number in found.units)
-            if multiplies(objective)
-            else costs.measure(objective)
+            self._weight(objective, found.units) if objective in self.weights else costs.measure(objective)
             for objective in self.levels
         ]
         said = list(found.costs[1:] if self.asked.soft else found.costs)
@@ -213,8 +216,9 @@ class _Check:
         return False
 
     def _by_replaced_objectives(self, ours: Found, theirs: Found) -> None:
-        if any(map(multiplies, self.levels)):
-            raise NotCheckedError("the replaced encodings do not measure success as it is measured here")
+        if self.weights:
+            names = " and ".join(self.weights)
+            raise NotCheckedError(f"the replaced encodings do not measure {names} as it is measured here")
         if ours.costs != theirs.costs:
             raise self._disagreement(
                 f"as the encodings have it our tree costs {list(ours.costs)}, "
@@ -240,28 +244,56 @@ class _Check:
                     found,
                 )
 
-    def _by_success(self, theirs: Found) -> None:
-        """Compare success exactly, with what counts more before it and what counts less after it."""
+    def _weight(self, objective: Objective, numbers: Iterable[int]) -> int:
+        return sum(self.weights[objective].get(number, 0) for number in numbers)
+
+    def _is_to_scale(self, objective: Objective) -> bool:
+        """Whether weights compare as what units cost: none is rounded."""
+        if multiplies(objective):
+            return all(self.problem.rate(self._unit(number)) == 1 for number in self.weights[objective])
+        figures = self._figures(objective)
+        return len({Fraction(weight, 1) / figures[n] for n, weight in self._above_0(objective)}) <= 1 and all(
+            weight == 0 for n, weight in self.weights[objective].items() if not figures[n]
+        )
+
+    def _above_0(self, objective: Objective) -> list[tuple[int, int]]:
+        figures = self._figures(objective)
+        return [(number, weight) for number, weight in self.weights[objective].items() if figures[number]]
+
+    def _figures(self, objective: Objective) -> dict[int, Fraction]:
+        """Give what each unit costs by an objective, by number."""
+        problem = self.problem
+        return {n: Fraction(problem.figure(objective, self._unit(n))) for n in self.weights[objective]}
+
+    def _by_rounded(self, theirs: Found, by: Objective) -> None:
+        """Compare an objective exactly, with what counts more before it and what counts less after it."""
         outcome, problem = self.outcome, self.problem
         assert outcome.units is not None
         assert outcome.costs is not None
-        place = self.levels.index(Objective.SUCCESS)
-        before = self.levels[:place]
+        place = self.levels.index(by)
+        before, weights = self.levels[:place], self.weights[by]
         self._compare(theirs, before)
         if self._key(theirs, self.levels) < outcome.costs.key(self.levels):
             self._compare(theirs, self.levels)  # best by weights, and better than ours in truth
-        rates = {number: problem.rate(self._unit(number)) for number in self.weights}
-        own = [problem.rate(unit) for unit in outcome.units]
-        most = greatest_weight({(rates[number], weight) for number, weight in self.weights.items()}, own)
-        different = sorted({rate for rate in rates.values() if rate != 1})
-        classes = [[number for number in rates if rates[number] == rate] for rate in different]
-        lightest = [min(self.weights[number] for number in numbers) for numbers in classes]
+        figures = self._figures(by)
+        own = [Fraction(problem.figure(by, unit)) for unit in outcome.units]
+        greatest = greatest_weight if multiplies(by) else greatest_sum
+        most = greatest({(figures[number], weight) for number, weight in weights.items()}, own)
+        nothing = int(multiplies(by))  # of which as many as there are change nothing
+        different = sorted({figure for figure in figures.values() if figure != nothing})
+        classes = [[number for number in figures if figures[number] == figure] for figure in different]
+        lightest = [min(weights[number] for number in numbers) for numbers in classes]
         alike = [
             min(len(numbers), most // light) if light else len(numbers)
             for numbers, light in zip(classes, lightest, strict=True)
         ]
         same = write_same_rates(classes)
-        fixed = [int(outcome.costs.measure(objective)) for objective in before]
+        fixed = [
+            self._weight(objective, map(problem.network.unit_number, outcome.units))
+            if objective in self.weights
+            else int(outcome.costs.measure(objective))
+            for objective in before
+        ]
         if self.asked.soft:
             fixed.insert(0, self.asked.penalty or 0)
         kinds = self.clingo.all_kinds(same + write_most_alike(alike), [*fixed, most])
@@ -271,14 +303,14 @@ class _Check:
             if not self._usual(found):
                 raise NotCheckedError("the replaced encodings measure some trees in another way")
             self._compare(found, before)
-            success = problem.costs(units).success
-            if success is None or success > (outcome.costs.success or 0):
-                self._compare(found, [Objective.SUCCESS])
-            elif success == outcome.costs.success:
-                counted = Counter(map(problem.rate, units))
-                equal.append([counted[rate] for rate in different])
+            key = problem.costs(units).key([by])
+            if key < outcome.costs.key([by]):
+                self._compare(found, [by])
+            elif key == outcome.costs.key([by]):
+                counted = Counter(Fraction(problem.figure(by, unit)) for unit in units)
+                equal.append([counted[figure] for figure in different])
         counted = Counter(own)
-        if [counted[rate] for rate in different] not in equal:  # it is within the bound itself
+        if [counted[figure] for figure in different] not in equal:  # it is within the bound itself
             raise self._disagreement("our tree is not among those that clingo finds within the bound", theirs)
         if before == self.levels[:-1]:
             return
@@ -338,6 +370,19 @@ def greatest_weight(weights: Iterable[tuple[Fraction, int]], own: Iterable[Fract
     bounds = {rate: _minus_log(rate) for rate in {*own, *(rate for rate, _ in weights)}}
     greatest = max((weight / bounds[rate][0] for rate, weight in weights if rate < 1), default=Fraction(0))
     return math.floor(greatest * sum(bounds[rate][1] for rate in own))
+
+
+def greatest_sum(weights: Iterable[tuple[Fraction, int]], own: Iterable[Fraction]) -> int:
+    """Give the greatest sum of weights of a tree that costs no more than ours, where costs add up.
+
+    As :func:`greatest_weight`, with what units cost in place of logarithms. Raises :class:`NotCheckedError`
+    for a unit that costs nothing and has a weight.
+    """
+    weights = set(weights)
+    if any(not cost and weight for cost, weight in weights):
+        raise NotCheckedError("a unit that costs nothing has a weight")
+    greatest = max((weight / cost for cost, weight in weights if cost), default=Fraction(0))
+    return math.floor(greatest * sum(own))
 
 
 def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:

@@ -106,7 +106,7 @@ class _Program:
         values = self._highs.getSolution().col_value
         terms = self._costs(objective)
         now = sum(value * round(values[variable]) for variable, value in terms)
-        close = _CLOSE if multiplies(objective) else 0.5
+        close = 0.5 if objective.row.whole and not multiplies(objective) else _CLOSE
         self._at_least(-now - close, [(variable, -value) for variable, value in terms])
 
     def units(self) -> tuple[int, ...]:

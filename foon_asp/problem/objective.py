@@ -28,7 +28,7 @@ class Row(NamedTuple):
     that the units need. What units cost is added up, and less is better; or, where it ``multiplies``, it is
     a factor, and more is better. ``term`` is the objective's name in the encodings, ``words`` are what a
     chart has on its axis. ``is_fact`` says that the encodings read what each unit costs from
-    ``cost/3``, since they have no other predicate for it.
+    ``cost/3``, since they have no other predicate for it. ``whole`` says that all costs are whole numbers.
     """
 
     term: str
@@ -38,6 +38,7 @@ class Row(NamedTuple):
     multiplies: bool = False
     needs_rates: bool = False
     is_fact: bool = False
+    whole: bool = True
 
 
 class Objective(StrEnum):

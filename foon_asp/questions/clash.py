@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from foon_asp.asp import Reporter, Settings, Status, solve
-from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
 from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import CLINGO_OPTIONS, assemble, find_constraint
+from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import BugError, UserError
@@ -227,8 +227,7 @@ def find_clash(
             reached = reach(problem)
             known = replace(known, makeable=all(reached.available[goal] for goal in problem.goals))
             units = tuple(sorted(reached.units))
-            scale = None if problem.rates is None else problem_scale(problem, units)
-            facts = write_facts(problem, units, scale, with_sources=True) + relaxed.rules
+            facts = write_facts(problem, units, Scales(problem, units), with_sources=True) + relaxed.rules
     except KeyboardInterrupt:
         deadline.interrupt()
         return replace(known, complete=False)

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp import Status, solve
-from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_facts, write_for_sale, write_list
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.program import Program, assemble
+from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Deadline
@@ -315,11 +315,11 @@ def _lists(
         units = relevant(problem, reached) if program.own else tuple(sorted(reached.units))
         met = {*problem.goals, *(o for unit in units for o in problem.needs[unit])}
         scale = math.lcm(*(price.denominator for price in wares.values()))
-        rates = None if problem.rates is None or program.own else problem_scale(problem, units)
+        scales = None if program.own else Scales(problem, units)
         sold = {o: price for o, price in wares.items() if o in met}
         if any(price * scale >= 2**31 for price in sold.values()):
             raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
-        facts = write_facts(problem, units, rates, with_sources=not program.own) + write_for_sale(
+        facts = write_facts(problem, units, scales, with_sources=not program.own) + write_for_sale(
             {o: int(price * scale) for o, price in sold.items()}, filter(shop.is_second_choice, sold)
         )
     files = (*program.files, question_encoding("shopping_list.lp"))

@@ -10,7 +10,7 @@ from foon_asp.bounds import Cuts, Lexicographic
 from foon_asp.bounds.coprime_base import coprime_base, powers
 from foon_asp.problem import Objective, Problem, multiplies
 
-_COARSE = 1000  # steps of -ln(rate) to 1, where a cost need not be exact
+_COARSE = 1000  # steps to 1 of -ln(rate) and of fractions, where a cost need not be exact
 _SCALE = 10**40  # steps of logarithms where rounding must not decide
 _ROUNDED = 10**20  # of these, more than rounding can add up to
 _FINEST = 10**9  # the largest number in a rate that is told apart from others without asking how far
@@ -26,10 +26,11 @@ class TooFineError(Exception):
 class ExactCosts:
     """Costs of actions as one whole number each.
 
-    A counted objective is multiplied by more than the sum of everything after it, so that sums are compared
-    as the lexicographic list compares. Where rates multiply, each of a set of coprime factors has a rounded
-    logarithm of forty digits: equal products are then equal sums, and ``doubt`` is by how much two sums have
-    to differ for rounding not to matter. It is 0 where nothing is rounded.
+    An objective that adds up is counted in steps, of which 1 has as many as make all costs whole numbers, and
+    multiplied by more than the sum of everything after it, so that sums are compared as the lexicographic
+    list compares. Where rates multiply, each of a set of coprime factors has a rounded logarithm of forty
+    digits: equal products are then equal sums, and ``doubt`` is by how much two sums have to differ for
+    rounding not to matter. It is 0 where nothing is rounded.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
@@ -38,12 +39,20 @@ class ExactCosts:
         self._units = units = len(problem.network)
         chosen = (a for a in actions if a < units)
         self._weights = _weights(problem.different_rates(chosen) if self._multiplied else set())
+        self._steps = {objective: self._step(objective, actions) for objective in self._objectives}
         last_first = self._objectives[::-1]
         self._factors = {last_first[0]: 1}
         for after, objective in pairwise(last_first):
             self._factors[objective] = self._factors[after] * (1 + self._most(after, actions))
         self.doubt = sum(_ROUNDED * self._factors[objective] for objective in self._multiplied)
         self._known: dict[int, int] = {}
+
+    def _step(self, objective: Objective, actions: Collection[int]) -> int:
+        """Give into how many steps 1 is divided, so that no cost of an action is between two."""
+        if objective.row.whole or objective in self._multiplied:
+            return 1
+        costs = (self._problem.figure(objective, a) for a in actions if a < self._units)
+        return math.lcm(*(cost.denominator for cost in costs))
 
     def _most(self, objective: Objective, actions: Collection[int]) -> int:
         """Give what no set of actions costs more than by one objective."""
@@ -65,7 +74,7 @@ class ExactCosts:
         """Turn a lower bound on sums into one on the first objective (on success: from above)."""
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
-            return figure
+            return self.total(self._objectives[0], figure)
         value = _FINE.next_plus(_FINE.exp(_FINE.divide(Decimal(_ROUNDED - figure), Decimal(_SCALE))))
         return min(Fraction(1), Fraction(_SHOWN.plus(value)))
 
@@ -104,8 +113,12 @@ class ExactCosts:
         return not _large(proved) and order.sign(proved) >= 0
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
-        """Give what an action costs by each objective; for ``success`` in rounded logarithms."""
+        """Give what an action costs by each objective, in steps; for ``success`` in rounded logarithms."""
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
+
+    def total(self, objective: Objective, figure: int) -> int | Fraction:
+        """Turn steps into a cost by an objective that adds up."""
+        return figure if objective.row.whole else Fraction(figure, self._steps[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
         """Whether rounded logarithms add up to that of a product of rates."""
@@ -122,7 +135,7 @@ class ExactCosts:
             return objective.row.item
         if objective in self._multiplied:
             return self._weights[self._problem.rate(action)]
-        return int(self._problem.figure(objective, action))
+        return int(self._problem.figure(objective, action) * self._steps[objective])
 
 
 def _large(vector: Sequence[int]) -> bool:
@@ -165,7 +178,8 @@ class CoarseCosts:
         if self._multiplied:
             own = self._by_unit.get(action)
             return self._by_motion[self._problem.network.motions[action]] if own is None else own
-        return int(self._problem.figure(self._objective, action))
+        cost = self._problem.figure(self._objective, action)
+        return int(cost if self._objective.row.whole else cost * _COARSE)
 
 
 def _coarse(rate: Fraction) -> int:

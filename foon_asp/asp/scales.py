@@ -1,0 +1,137 @@
+"""What units cost, as integers for clingo: as it is, to scale, or rounded down and settled exactly later."""
+
+import math
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.asp.exact_success import RateScale, problem_scale
+from foon_asp.errors import UserError
+from foon_asp.problem import Objective, Problem, multiplies
+
+_LARGEST = 2**31 - 1
+_FINE = 10**8  # steps to 1, where not all of a cost fits
+
+
+class CostScale(NamedTuple):
+    """Integer weights for the costs of units by an objective whose costs are fractions and add up.
+
+    ``weights[c]`` is ``floor(scale * c)``; ``exact`` says that nothing had to be rounded. ``places[c]``
+    numbers the costs: how often a tree has each of them tells what it costs.
+    """
+
+    scale: int
+    exact: bool
+    weights: Mapping[Fraction, int]
+    places: Mapping[Fraction, int]
+
+
+def cost_scale(costs: Iterable[Fraction]) -> CostScale:
+    """Scale costs of at least 0 so that none is rounded; where that does not fit clingo, as finely as of use.
+
+    Raises :class:`UserError` for costs that do not fit at all.
+    """
+    different = sorted(set(costs))
+    most = max(different, default=Fraction(0))
+    common = math.lcm(*(cost.denominator for cost in different))
+    exact = common * most <= _LARGEST
+    scale = common if exact else min(_FINE, 10 ** max(0, len(str(math.floor(_LARGEST / most))) - 1))
+    if scale * most > _LARGEST:
+        raise UserError(f"a unit costs {float(most):.4g}, which is too large for clingo's numbers of 32 bits")
+    weights = {cost: math.floor(scale * cost) for cost in different}
+    return CostScale(scale, exact, weights, {cost: place for place, cost in enumerate(different)})
+
+
+class Scales:
+    """How the units of a question are measured in clingo, by each of its objectives.
+
+    ``rates`` is the scale of success rates, ``None`` where none are known; ``costs`` are those of objectives
+    that add up fractions. ``facts`` are the objectives whose costs the facts tell one by one. ``rounded`` is
+    the one objective, if any, that clingo only adds up roughly.
+    """
+
+    def __init__(self, problem: Problem, units: Iterable[int], objectives: Iterable[Objective] = ()) -> None:
+        """Scale what some units of a problem cost.
+
+        Raises :class:`UserError` where two of the objectives have to be rounded, or what units cost does not
+        fit clingo.
+        """
+        units, objectives = list(units), list(objectives)
+        self._problem, self._units = problem, units
+        self.facts = [objective for objective in objectives if objective.row.is_fact]
+        self.rates: RateScale | None = None if problem.rates is None else problem_scale(problem, units)
+        self.costs: dict[Objective, CostScale] = {
+            objective: cost_scale(Fraction(problem.figure(objective, unit)) for unit in units)
+            for objective in objectives
+            if not (objective.row.whole or multiplies(objective))
+        }
+        rounded = list(filter(self._rounds, objectives))
+        if len(rounded) > 1:
+            raise UserError(
+                f"the objectives {' and '.join(rounded)} have to be rounded for the solver, which can settle "
+                "only one such objective exactly: leave one of them out"
+            )
+        self.rounded: Objective | None = rounded[0] if rounded else None
+
+    @property
+    def likeness(self) -> list[int | None]:
+        """What is the same for questions whose units weigh the same."""
+        return [self.rates and self.rates.scale, *(each.scale for each in self.costs.values())]
+
+    def weight(self, objective: Objective, units: Iterable[int]) -> int:
+        """Give what clingo adds up for some units."""
+        if multiplies(objective):
+            assert self.rates is not None
+            return sum(self.rates.weights[self._problem.rate(unit)] for unit in units)
+        if objective in self.costs:
+            weights = self.costs[objective].weights
+            return sum(weights[Fraction(self._problem.figure(objective, unit))] for unit in units)
+        return int(self._problem.costs(units).measure(objective))
+
+    def doubt(self, units: Iterable[int]) -> int:
+        """Give how many units weigh less than they cost by the rounded objective: what that hides is less."""
+        assert self.rounded is not None
+        costs = (self._problem.figure(self.rounded, unit) for unit in units)
+        if multiplies(self.rounded):
+            return sum(rate != 1 for rate in costs)  # also those that weigh 0
+        scale, _, weights, _ = self.costs[self.rounded]
+        return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
+
+    def vector(self, units: Iterable[int]) -> dict[int, int]:
+        """Give the numbers that tell one total by the rounded objective from another, by place.
+
+        Where rates multiply these are exponents of coprime factors, else it is how often each cost occurs.
+        """
+        assert self.rounded is not None
+        if multiplies(self.rounded):
+            assert self.rates is not None
+            return self.rates.product_exponents(map(self._problem.rate, units))
+        places = self.costs[self.rounded].places
+        vector = dict.fromkeys(places.values(), 0)
+        for unit in units:
+            vector[places[Fraction(self._problem.figure(self.rounded, unit))]] += 1
+        return vector
+
+    def unit_vector(self, unit: int) -> Mapping[int, int]:
+        """Give the vector of one unit, without zeros."""
+        assert self.rounded is not None
+        if multiplies(self.rounded):
+            assert self.rates is not None
+            return self.rates.exponents[self._problem.rate(unit)]
+        return {self.costs[self.rounded].places[Fraction(self._problem.figure(self.rounded, unit))]: 1}
+
+    def unit_vectors(self) -> dict[int, Mapping[int, int]]:
+        """Give the vectors of all units."""
+        return {unit: self.unit_vector(unit) for unit in self._units}
+
+    def bound(self, objective: Objective, weight: int) -> int | Fraction:
+        """Turn a lower bound on weights into one on an objective (on success: from above)."""
+        if multiplies(objective):
+            return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
+        return Fraction(weight, self.costs[objective].scale) if objective in self.costs else weight
+
+    def _rounds(self, objective: Objective) -> bool:
+        if multiplies(objective):
+            # a weight of 0 may be a rate below 1
+            return self.rates is not None and any(rate != 1 for rate in self.rates.weights)
+        return objective in self.costs and not self.costs[objective].exact
