@@ -86,7 +86,11 @@ class Scales:
         if objective in self.costs:
             weights = self.costs[objective].weights
             return sum(weights[Fraction(self._problem.figure(objective, unit))] for unit in units)
-        return int(self._problem.costs(units).measure(objective))
+        problem, units = self._problem, list(units)
+        items = (
+            {o for unit in units for o in problem.needs[unit]} & problem.kitchen if objective.row.item else ()
+        )
+        return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def doubt(self, units: Iterable[int]) -> int:
         """Give how many units weigh less than they cost by the rounded objective: what that hides is less."""
