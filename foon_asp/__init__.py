@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING
 from foon_asp.questions.index import INDEX, module_name
 
 if TYPE_CHECKING:
-    from foon_asp.api.alternatives import Alternatives as Alternatives
-    from foon_asp.api.alternatives import alternatives as alternatives
     from foon_asp.api.assist import Assistance as Assistance
     from foon_asp.api.assist import assist as assist
     from foon_asp.api.certified import (
@@ -82,6 +80,8 @@ if TYPE_CHECKING:
     from foon_asp.proof import Simulation as Simulation
     from foon_asp.proof import Verdict as Verdict
     from foon_asp.proof.verify import RefusedError as RefusedError
+    from foon_asp.questions.alternatives import Alternatives as Alternatives
+    from foon_asp.questions.alternatives import alternatives as alternatives
     from foon_asp.questions.answer import Answer as Answer
     from foon_asp.questions.answer import SoftAnswer as SoftAnswer
     from foon_asp.questions.check import Checked as Checked
@@ -109,7 +109,6 @@ __version__ = "0.1.0"
 
 # Where each public name lives beside the questions; a room is imported when a name of it is first asked for.
 _ROOMS = {
-    "api.alternatives": ("Alternatives", "alternatives"),
     "api.solve": ("solve", "solve_soft"),
     "questions.answer": ("Answer", "SoftAnswer"),
     "api.assist": ("Assistance", "assist"),

@@ -5,15 +5,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
-from pathlib import Path
 
 import pytest
 
-from foon_asp.asp import Settings, Status
+from foon_asp.asp import Status
 from foon_asp.errors import UserError
-from foon_asp.explain.alternatives import Alternatives, all_optimal, best_trees, most_different
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.menu import menu
 from foon_asp.questions.regret import Part, regret
 from tests import oracle
@@ -73,14 +72,13 @@ def test_all_optimal_trees_and_the_best_in_order(rule: ContainerRule) -> None:
         problem = choosing(seed, rule)
         objectives = drawn(seed)
         expected = sorted(key(problem, tree, objectives) for tree in minimal_trees(problem))
-        parsed = [Objective(name) for name in objectives]
-        ranked = best_trees(problem, parsed, Settings(), 1000)
+        ranked = alternatives(problem, objectives, best=1000)
         assert ranked.complete
         trees = sets_of(ranked)
         assert set(trees) == set(minimal_trees(problem))
         assert len(trees) == len(set(trees))
         assert [key(problem, tree, objectives) for tree in trees] == expected
-        optimal = all_optimal(problem, parsed, Settings(), 1000)
+        optimal = alternatives(problem, objectives, limit=1000)
         assert optimal.complete
         assert len(optimal.trees) == expected.count(expected[0]) if expected else not optimal.trees
         several += len(optimal.trees) > 1
@@ -90,9 +88,9 @@ def test_all_optimal_trees_and_the_best_in_order(rule: ContainerRule) -> None:
             assert frozenset(map(unit, optimal.in_every)) == frozenset.intersection(*best)
             assert frozenset(map(unit, optimal.in_some)) == frozenset.union(*best)
         for most in (1, 2):
-            some = best_trees(problem, parsed, Settings(), most)
+            some = alternatives(problem, objectives, best=most)
             assert [key(problem, tree, objectives) for tree in sets_of(some)] == expected[:most]
-            cut = all_optimal(problem, parsed, Settings(), most)
+            cut = alternatives(problem, objectives, limit=most)
             assert cut.complete == (len(optimal.trees) <= most)
     assert several >= 3
 
@@ -102,13 +100,14 @@ def test_constraints_hold_for_alternatives(rule: ContainerRule) -> None:
     for seed in range(7100, 7120):
         problem = choosing(seed, rule)
         motion = random.Random(seed).choice(problem.network.motions)
-        settings = Settings(constraints=(Path("forbid_motion"),), constants=(f"forbidden_motion={motion}",))
 
         def allowed(tree: tuple[FunctionalUnit, ...], motion: str = motion) -> bool:
             return all(unit.motion != motion for unit in tree)
 
         expected = minimal_trees(problem, allowed)
-        assert set(sets_of(best_trees(problem, [Objective.SUCCESS], settings, 1000))) == set(expected)
+        constants = {"forbidden_motion": motion}
+        found = alternatives(problem, "success", best=1000, constraints="forbid_motion", constants=constants)
+        assert set(sets_of(found)) == set(expected)
 
 
 @pytest.mark.parametrize("rule", RULES)
@@ -122,7 +121,7 @@ def test_trees_that_differ_most(rule: ContainerRule) -> None:
             continue
         least = min(len(tree) for tree in pool)
         near = [tree for tree in pool if len(tree) * 2 <= least * 3]
-        found = sets_of(most_different(problem, [Objective.UNITS], Settings(), 3, Fraction(1, 2), 100))
+        found = sets_of(alternatives(problem, different=3, within=50))
         assert len(found) == min(3, len(near))
         if len(near) > 3:
             chosen += 1

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from foon_asp.asp import Settings, Status, exact_success, solve
 from foon_asp.asp.exact_success import rate_scale
 from foon_asp.errors import UserError
-from foon_asp.explain.alternatives import best_trees
 from foon_asp.explain.assist import assist
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
+from foon_asp.questions.alternatives import alternatives
 from foon_asp.reduce import ALL, NONE, Reduction
 from tests import oracle
 from tests.conftest import Cli
@@ -105,14 +105,14 @@ def test_rates_next_to_1_and_0_are_told_apart(
 @pytest.mark.parametrize(("better", "worse"), NEAR_1)
 def test_trees_come_in_order_next_to_1_and_0(better: list[str], worse: list[str]) -> None:
     for problem in (two_ways(better, worse), two_ways(worse, better)):
-        ranked = best_trees(problem, (Objective.SUCCESS,), Settings(), 2)
+        ranked = alternatives(problem, "success", best=2)
         assert ranked.complete
         first, second = (tree.costs.success for tree in ranked.trees)
         assert first is not None
         assert second is not None
         assert first == max(math.prod(map(Fraction, way)) for way in (better, worse))
         assert first > second
-        assert best_trees(problem, (Objective.SUCCESS,), Settings(), 1).trees == ranked.trees[:1]
+        assert alternatives(problem, "success", best=1).trees == ranked.trees[:1]
 
 
 @pytest.mark.parametrize(("better", "worse"), NEAR_1)

@@ -10,7 +10,6 @@ import textwrap
 import threading
 import time
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -23,11 +22,11 @@ from foon_asp.dataset import dataset_files
 from foon_asp.dataset.reading import read_dataset
 from foon_asp.deadline import Deadline, LimitError, memory_size, seconds, size_text
 from foon_asp.errors import UserError
-from foon_asp.explain.alternatives import best_trees, most_different
 from foon_asp.grounding import worker_process
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective
 from foon_asp.proof import Verdict, simulate_for
+from foon_asp.questions.alternatives import alternatives
 from tests.conftest import Cli
 from tests.hard_problem import hard_problem
 
@@ -364,9 +363,7 @@ def test_the_most_different_trees_known_by_the_limit() -> None:
     problem = hard_problem(6, 8, 3, 3)
     for limit in (0.5, 2):
         with within(0, limit + LATE):
-            found = most_different(
-                problem, (Objective.UNITS,), Settings(time_limit=limit), 4, Fraction(1), 400
-            )
+            found = alternatives(problem, different=4, within=100, limit=400, time_limit=limit)
         assert not found.complete
         assert found.trees
         assert len(found.trees) <= 4
@@ -376,9 +373,9 @@ def test_the_most_different_trees_known_by_the_limit() -> None:
 
 def test_a_choice_that_is_stopped_is_from_all_that_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = hard_problem(3, 4, 2, 2)
-    everything = most_different(problem, (Objective.UNITS,), Settings(), 3, Fraction(1), 40)
-    monkeypatch.setattr("foon_asp.explain.alternatives.run", lambda *_, **__: Run())
-    found = most_different(problem, (Objective.UNITS,), Settings(), 3, Fraction(1), 40)
+    everything = alternatives(problem, different=3, within=100, limit=40)
+    monkeypatch.setattr("foon_asp.questions.alternatives.run", lambda *_, **__: Run())
+    found = alternatives(problem, different=3, within=100, limit=40)
     assert len(found.trees) == len(everything.trees) == 3
     assert not found.complete
 
@@ -386,7 +383,7 @@ def test_a_choice_that_is_stopped_is_from_all_that_is_known(monkeypatch: pytest.
 @pytest.mark.slow
 def test_trees_that_are_not_settled_are_given_as_such() -> None:
     problem = hard_problem()
-    found = best_trees(problem, (Objective.UNITS,), Settings(time_limit=2), 5)
+    found = alternatives(problem, best=5, time_limit=2)
     assert not found.complete
     assert found.trees
     assert found.unproved == len(found.trees)

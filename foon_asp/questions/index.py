@@ -41,6 +41,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.",
         ("clash", "Clash"),
     ),
+    "alternatives": Entry(
+        "Explain",
+        "List other trees: all that are optimal, the next best, or those that differ most.",
+        ("alternatives", "Alternatives"),
+    ),
     "pareto": Entry(
         "Explain",
         "Find the whole Pareto front of two or three objectives, with a tree for every point.",

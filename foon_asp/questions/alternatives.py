@@ -1,0 +1,335 @@
+"""What else: all optimal trees, the next best, those that differ most, and what all have in common."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.asp import Settings
+from foon_asp.asp.facts import write_distances
+from foon_asp.asp.own_encodings import question_encoding
+from foon_asp.asp.program import CLINGO_OPTIONS
+from foon_asp.asp.ranking import Ranked
+from foon_asp.asp.search import run
+from foon_asp.dataset.paths import File, Files
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
+from foon_asp.questions.arguments import (
+    Constants,
+    Objectives,
+    asked_with,
+    at_least,
+    chosen_objectives,
+    settings,
+)
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.tree import Tree
+from foon_asp.report.answer import costs_json, costs_text, counted, goal_lines, unit_json, unit_lines
+from foon_asp.report.drawing import Drawing
+from foon_asp.report.notebook import page_bundle
+
+_SHOWN = 20  # trees that are listed one by one for people
+_PICTURES = 4  # that a notebook shows
+
+
+class Alternative(NamedTuple):
+    """A tree by unit ids in an order that executes, and what it costs."""
+
+    units: tuple[int, ...]
+    costs: Costs
+
+
+@dataclass(frozen=True, repr=False)
+class Alternatives(Result):
+    """Trees in order of their costs, the optimal ones first; none holds another.
+
+    ``trees`` has for each its ``units`` by id and its ``costs``; :attr:`task_trees` has them as values.
+    ``complete`` says that no tree that was asked for is left out: where it is false, a limit came first, and
+    before each of the last ``unproved`` trees others may come that were not found. ``wanted`` is how many
+    trees were asked for, ``None`` where it was all that are optimal.
+    """
+
+    problem: Problem
+    objectives: tuple[Objective, ...]
+    trees: tuple[Alternative, ...]
+    complete: bool
+    wanted: int | None = None
+    unproved: int = 0
+
+    @property
+    def task_trees(self) -> tuple[Tree, ...]:
+        """The trees as values, in the same order."""
+        return tuple(
+            Tree.of(self.problem, tree.units, f"tree {number}: {costs_text(tree.costs)}")
+            for number, tree in enumerate(self.trees, 1)
+        )
+
+    @property
+    def optimal(self) -> tuple[Alternative, ...]:
+        """The trees that are proved optimal: those as good as the first, if that one is."""
+        if len(self.trees) == self.unproved:
+            return ()
+        order = levels(self.objectives)
+        return tuple(t for t in self.trees if t.costs.key(order) == self.trees[0].costs.key(order))
+
+    @property
+    def in_every(self) -> frozenset[int]:
+        """The units that all optimal trees shown have."""
+        optimal = [frozenset(tree.units) for tree in self.optimal]
+        return frozenset.intersection(*optimal) if optimal else frozenset()
+
+    @property
+    def in_some(self) -> frozenset[int]:
+        """The units that some optimal tree shown has."""
+        return frozenset(unit for tree in self.optimal for unit in tree.units)
+
+    @property
+    def ending(self) -> Ending:
+        """Done when nothing is left out of what was asked for."""
+        if not self.complete:
+            return Ending.LIMIT
+        return Ending.DONE if self.trees else Ending.NEGATIVE
+
+    def text(self) -> str:
+        """Say how many trees there are, what each costs, and in what it differs from the first.
+
+        Where all optimal ones were asked for, also what they have in common.
+        """
+        lines = _optimal_lines(self) if self.wanted is None else _lines(self, self.wanted)
+        return "\n".join([*goal_lines(self.problem), *lines]) + "\n"
+
+    def json_dict(self) -> object:
+        """Give the trees with what they cost, and the units that all optimal ones or some of them have."""
+        network = self.problem.network
+        return {
+            "goals": [str(network.objects[goal]) for goal in self.problem.goals],
+            "containers": str(self.problem.containers),
+            "level": network.level,
+            "objective": [str(objective) for objective in self.objectives],
+            "complete": self.complete,
+            "unproved": self.unproved,
+            "optimal": len(self.optimal),
+            "in_every_optimal": sorted(map(network.unit_number, self.in_every)),
+            "in_some_optimal": sorted(map(network.unit_number, self.in_some)),
+            "trees": [
+                {"costs": costs_json(tree.costs), "units": [unit_json(network, unit) for unit in tree.units]}
+                for tree in self.trees
+            ],
+        }
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture of the first tree shows."""
+        return self.task_trees[0].drawing() if self.trees else None
+
+    def _repr_mimebundle_(
+        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
+    ) -> dict[str, str]:
+        """Give what a notebook shows: the text, and the pictures of the first trees."""
+        return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_PICTURES]))
+
+
+@question(
+    GOALS,
+    OBJECTIVES,
+    CONTAINERS,
+    Option("best", "The K best trees, in order.", Kind.WHOLE, metavar="K", least=1),
+    Option("different", "K trees that differ most from each other.", Kind.WHOLE, metavar="K", least=2),
+    Option(
+        "within",
+        "With --different: how much worse by the first objective a tree may be.",
+        Kind.WHOLE,
+        default=0,
+        metavar="PERCENT",
+        least=0,
+    ),
+    Option("limit", "Trees to look at, at most.", Kind.WHOLE, default=100, metavar="N", least=1),
+    *RULES,
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp alternatives --goal macaroni             every optimal tree, and what all of them have
+    foon-asp alternatives --goal macaroni --best 5
+    foon-asp alternatives --goal macaroni --different 3 --within 20
+
+    A tree that holds all the units of another one that is listed, and some to spare, is not listed. Trees are
+    found one by one in order of their costs, which are compared exactly.
+
+    Exits with 0 when none is left out of what was asked for, 1 when there is no tree, 3 when a limit came
+    first.
+    """,
+)
+def alternatives(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    best: int | None = None,
+    different: int | None = None,
+    within: int = 0,
+    limit: int = 100,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Alternatives:
+    """Find all optimal trees; or with ``best`` so many of the best; or with ``different`` so unlike ones.
+
+    With ``different``, so many trees are chosen that differ most, among those whose first objective is worse
+    by no more than ``within`` percent: 10 allows 11 units where 10 are best, and a success of 0.9 times the
+    best. The two chosen trees that are most alike differ as much as can be (in how many units only one of
+    them has). At most ``limit`` trees are looked at; ``complete`` says that these were all, and that no
+    choice among them is better. The limits are for all of it. Otherwise as :func:`foon_asp.solve`.
+    """
+    if best is not None and different is not None:
+        raise UserError("best and different ask for different things; give one of them")
+    if within and different is None:
+        raise UserError("within goes with different")
+    worse = Fraction(at_least(within, 0, "within"), 100)
+    at_least(limit, 1, "limit")
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    problem = asked_with(problem, how)
+    if best is not None:
+        return replace(_ranked(problem, chosen, how, at_least(best, 1, "best"), None), wanted=best)
+    if different is not None:
+        at_least(different, 2, "different")
+        return _most_different(_ranked(problem, chosen, how, limit, worse), different, how)
+    return _ranked(problem, chosen, how, limit, Fraction(0))
+
+
+def _most_different(pool: Alternatives, count: int, how: Settings) -> Alternatives:
+    """Choose so many trees of a pool that differ most."""
+    pool = replace(pool, wanted=count)
+    if len(pool.trees) <= count:
+        return pool
+    ended = run(
+        (question_encoding("most_different.lp"),),
+        write_distances([tree.units for tree in pool.trees], count),
+        CLINGO_OPTIONS,
+        how.begun,
+        predicates=[("_chosen", 1)],
+    )
+    if ended.exhausted and not ended.atoms:
+        raise BugError("no trees could be chosen")
+    chosen = sorted(ended.atoms["_chosen"]) if ended.atoms else _far_apart(pool.trees, count)
+    return replace(
+        pool,
+        trees=tuple(pool.trees[number] for number in chosen),
+        complete=pool.complete and ended.exhausted,
+        unproved=sum(number >= len(pool.trees) - pool.unproved for number in chosen),
+    )
+
+
+def _far_apart(trees: Sequence[Alternative], count: int) -> list[int]:
+    """Choose so many trees, one after the other, each as far from those before it as can be."""
+    units = [frozenset(tree.units) for tree in trees]
+    chosen = [0]
+    while len(chosen) < count:
+        left = (number for number in range(len(trees)) if number not in chosen)
+        chosen.append(max(left, key=lambda n: min(len(units[n] ^ units[other]) for other in chosen)))
+    return sorted(chosen)
+
+
+def _ranked(
+    problem: Problem,
+    objectives: tuple[Objective, ...],
+    how: Settings,
+    most: int,
+    worse: Fraction | None,
+) -> Alternatives:
+    """Take trees in order until there are so many, or one that is too dear; ``None`` is never too dear.
+
+    With ``worse`` 0 only optimal trees are taken, by the whole list of objectives.
+    """
+    order = levels(objectives)
+    ranked = Ranked(problem, objectives, how, caller().reporter)
+    trees: list[Alternative] = []
+    complete = False
+    for units, costs in ranked:
+        if trees and worse is not None and _is_too_dear(costs, trees[0].costs, order, worse):
+            complete = True
+            break
+        if len(trees) == most:
+            complete = worse is None
+            break
+        trees.append(Alternative(units, costs))
+    else:
+        complete = ranked.complete
+    settled = len(trees)
+    for units, costs in ranked.known:
+        dear = trees and worse is not None and _is_too_dear(costs, trees[0].costs, order, worse)
+        if not dear and len(trees) < most:
+            trees.append(Alternative(units, costs))
+    unproved = len(trees) - settled
+    if settled and worse == 0:  # what is as good as an optimal tree is optimal
+        unproved = 0
+    return Alternatives(problem, objectives, tuple(trees), complete, unproved=unproved)
+
+
+def _is_too_dear(costs: Costs, best: Costs, order: tuple[Objective, ...], worse: Fraction) -> bool:
+    if not worse:
+        return costs.key(order) > best.key(order)
+    ours, least = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
+    return ours < least * (1 - worse) if multiplies(order[0]) else ours > least * (1 + worse)
+
+
+def _lines(found: Alternatives, wanted: int) -> Iterator[str]:
+    rule = found.problem.conditions
+    if not found.trees:
+        yield _no_tree(found)
+        return
+    if len(found.trees) < wanted and found.complete:
+        yield f"there are {counted(len(found.trees), 'tree')} and no more ({rule})"
+    elif not found.complete:
+        yield f"{counted(len(found.trees), 'tree')} of those found before a limit ({rule})"
+        if found.unproved:
+            yield f"before the last {found.unproved} of them others may come"
+    else:
+        yield f"{counted(len(found.trees), 'tree')} ({rule})"
+    yield from _trees(found)
+
+
+def _optimal_lines(found: Alternatives) -> Iterator[str]:
+    rule, best = found.problem.conditions, ", then ".join(found.objectives)
+    if not found.trees:
+        yield _no_tree(found)
+        return
+    costs = costs_text(found.trees[0].costs)
+    number = len(found.trees)
+    if number == found.unproved:
+        yield f"feasible, not proved best by {best} ({rule}; stopped at a limit): {costs}"
+    elif not found.complete:
+        yield f"at least {counted(number, 'optimal tree')} by {best} ({rule}; stopped at a limit): {costs}"
+    elif number == 1:
+        yield f"the optimal tree by {best} is the only one: proved ({rule}): {costs}"
+    else:
+        yield f"{number} optimal trees by {best}, and no others: proved ({rule}): {costs}"
+    if number > 1 and found.optimal:
+        yield f"in every one{' found' * (not found.complete)}: {counted(len(found.in_every), 'unit')}"
+        yield from unit_lines(found.problem.network, found.in_every)
+    yield from _trees(found)
+
+
+def _trees(found: Alternatives) -> Iterator[str]:
+    """List the trees, each but the first by what it has instead."""
+    first, network = found.trees[0], found.problem.network
+    for number, tree in enumerate(found.trees[:_SHOWN], 1):
+        yield f"tree {number}: {costs_text(tree.costs)}"
+        if number == 1:
+            yield from unit_lines(network, tree.units)
+            continue
+        gone, new = set(first.units) - set(tree.units), set(tree.units) - set(first.units)
+        yield from unit_lines(network, (unit for unit in first.units if unit in gone), "-")
+        yield from unit_lines(network, (unit for unit in tree.units if unit in new), "+")
+    if len(found.trees) > _SHOWN:
+        yield f"... and {len(found.trees) - _SHOWN} more trees; --format json lists all"
+
+
+def _no_tree(found: Alternatives) -> str:
+    rule = found.problem.conditions
+    if found.complete:
+        return f"infeasible: proved that no task tree exists ({rule})"
+    return f"unknown: stopped at a limit before any task tree was found ({rule})"
