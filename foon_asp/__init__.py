@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from foon_asp.api.certified import (
         verify as verify,
     )
-    from foon_asp.api.comparison import Compared as Compared
-    from foon_asp.api.comparison import compare_searches as compare_searches
     from foon_asp.api.cross_check import CrossChecked as CrossChecked
     from foon_asp.api.cross_check import cross_check as cross_check
     from foon_asp.api.difference import Difference as Difference
@@ -88,8 +86,12 @@ if TYPE_CHECKING:
     from foon_asp.questions.check import check as check
     from foon_asp.questions.clash import Clash as Clash
     from foon_asp.questions.clash import clash as clash
+    from foon_asp.questions.compare import Compared as Compared
+    from foon_asp.questions.compare import compare_searches as compare_searches
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
+    from foon_asp.questions.optima import Optima as Optima
+    from foon_asp.questions.optima import optima as optima
     from foon_asp.questions.pareto import Front as Front
     from foon_asp.questions.pareto import pareto as pareto
     from foon_asp.questions.regret import Regrets as Regrets
@@ -113,7 +115,6 @@ _ROOMS = {
     "questions.answer": ("Answer", "SoftAnswer"),
     "api.assist": ("Assistance", "assist"),
     "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
-    "api.comparison": ("Compared", "compare_searches"),
     "api.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),
     "foon": ("Foon", "build", "load"),

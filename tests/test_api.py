@@ -184,6 +184,25 @@ def test_the_answer_is_that_of_the_command_line(question: str, source: Path, cli
     assert str(answer).split("\n")[:2] == shown.out.split("\n")[:2]
 
 
+def test_optima_of_several_goals(source: Path, cli: Cli) -> None:
+    words = ["--objective", "inputs,success", "--objective", "kitchen", "--containers", "implied"]
+    given = ["optima", "--goal", "ice", "--goal", "tea", *words, *data_words(source)]
+    problem = foon_asp.load(source).problem("ice", "tea", containers="implied")
+    best = foon_asp.optima(problem, ["inputs,success", "kitchen"])
+    assert [outcome.problem.goals for outcome in best.outcomes] == [
+        (goal,) for goal in problem.goals for _ in "ab"
+    ]
+    assert timeless(best.json()) == timeless(cli(*given, "--format", "json").json)
+
+    def lines(text: str) -> list[list[str]]:
+        return [[word for word in line.split() if "." not in word] for line in text.split("\n")]
+
+    assert lines(str(best)) == lines(cli(*given).out.rstrip())
+    assert [str(outcome) for outcome in foon_asp.optima(problem, "kitchen").outcomes] == [
+        str(foon_asp.solve(problem.vary(name), "kitchen")) for name in ("ice", "tea")
+    ]
+
+
 @pytest.mark.parametrize(("containers", "objective"), [("strict", "success,kitchen"), ("implied", "inputs")])
 def test_every_goal_is_answered_as_on_the_command_line(
     containers: str, objective: str, foon: Foon, cli: Cli

@@ -29,6 +29,7 @@ BESIDE = {
     "contract",
     "index",
     "options",
+    "posing",
     "result",
     "searching",
     "tree",
@@ -48,8 +49,8 @@ def parameters(verb: str) -> dict[str, inspect.Parameter]:
 
 
 def asked_for(verb: str) -> dict[str, Option]:
-    parts = {Part.QUESTION, Part.COMMAND}
-    return {option.name: option for option in question_of(verb).options if option.part in parts}
+    parts = Part.QUESTION | Part.COMMAND
+    return {option.name: option for option in question_of(verb).options if option.part & parts}
 
 
 def test_every_file_is_in_the_index() -> None:
@@ -108,7 +109,7 @@ def test_help_begins_with_the_line_of_the_index(verb: str, cli: Cli) -> None:
 
 @pytest.mark.parametrize("verb", INDEX)
 def test_text_parameters_are_those_of_the_text(verb: str) -> None:
-    text = [option.name for option in question_of(verb).options if option.part is Part.TEXT]
+    text = [option.name for option in question_of(verb).options if option.part & Part.TEXT]
     result = inspect.signature(question_of(verb)).return_annotation
     assert text == [name for name in inspect.signature(result.text).parameters if name != "self"]
 

@@ -3,11 +3,14 @@
 import csv
 import io
 import json
+import pickle
 from fractions import Fraction
 from pathlib import Path
+from typing import Any, Self
 
 import pytest
 
+import foon_asp
 from foon_asp.compare import (
     Comparison,
     Distance,
@@ -15,6 +18,7 @@ from foon_asp.compare import (
     Optimum,
     ResultsFile,
     comparison_json,
+    many,
     summarize_comparisons,
 )
 from foon_asp.compare.results_file import read_comparison
@@ -126,12 +130,17 @@ def test_json_csv_and_markdown_agree(cli: Cli) -> None:
     assert sum(line.startswith("| ") for line in markdown.splitlines()) == 1 + 3 * 6
 
 
-def test_all_makeable_goals_are_summed_up_resumed_and_shared(cli: Cli, tmp_path: Path) -> None:
-    data = tmp_path / "pancake"
-    data.mkdir()
-    (data / "FOON.txt").write_text(NETWORK)
-    (data / "kitchen.json").write_text(KITCHEN)
-    (data / "motion.txt").write_text(RATES)
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    folder = tmp_path / "pancake"
+    folder.mkdir()
+    (folder / "FOON.txt").write_text(NETWORK)
+    (folder / "kitchen.json").write_text(KITCHEN)
+    (folder / "motion.txt").write_text(RATES)
+    return folder
+
+
+def test_all_makeable_goals_are_summed_up_resumed_and_shared(cli: Cli, data: Path, tmp_path: Path) -> None:
     results = tmp_path / "all.jsonl"
     words = ["compare", "--data", data, "--all-makeable", "--search", "bfs", "--search", "ids"]
     one = cli(*words, "--results", results)
@@ -162,6 +171,56 @@ def test_the_published_table_stands_beside_what_is_measured(cli: Cli, universal:
     assert "Agreeing: bfs 2 of 5, greedy-success 2 of 5, greedy-inputs 3 of 5, ids 5 of 5" in ran.out
     strict = cli("compare", "--data", universal, "--published")
     assert "the published searches use implied containers" in strict.err
+
+
+def test_a_published_goal_may_be_named_twice(cli: Cli) -> None:
+    words = ("compare", "--published", "--search", "bfs", "--containers", "implied", "--goal", "macaroni")
+    once = cli(*words)
+    assert once.code == 0
+    assert "| macaroni | 8 → 10 |" in once.out
+    assert cli(*words, "--goal", "macaroni").out == once.out
+
+
+def test_results_from_python_are_those_of_the_command_line(cli: Cli, data: Path, tmp_path: Path) -> None:
+    problem = foon_asp.load(data).problem("cake; warm")
+    everything = foon_asp.compare_searches(problem, all_makeable=True, results=tmp_path / "python.jsonl")
+    ran = cli("compare", "--data", data, "--all-makeable", "--results", tmp_path / "cli.jsonl")
+    assert str(everything) == ran.out.rstrip()
+    assert (tmp_path / "python.jsonl").read_text() == (tmp_path / "cli.jsonl").read_text()
+    # what is there is not done again
+    again = foon_asp.compare_searches(problem, all_makeable=True, results=tmp_path / "cli.jsonl")
+    assert again.comparisons == everything.comparisons
+    everything.write_chart(tmp_path / "all.svg")
+    assert (tmp_path / "all.svg").read_text().startswith("<?xml")
+
+
+def test_a_problem_of_an_open_store_is_handed_to_processes(
+    cli: Cli, data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = tmp_path / "data.foon"
+    assert cli("import", "--data", data, "--store", store).code == 0
+    problem = foon_asp.load(store).problem("pancake; done")
+    here = foon_asp.compare_searches(problem, ["bfs"])
+
+    class Pool:
+        """Takes what it is given as a process would: pickled."""
+
+        def __init__(self, jobs: int, context: object, initializer: Any, initargs: tuple[Any, ...]) -> None:
+            initializer(*pickle.loads(pickle.dumps(initargs)))
+
+        def __enter__(self) -> Self:
+            return self
+
+        def __exit__(self, *_: object) -> None: ...
+
+        def map(self, work: Any, goals: Any, chunksize: int) -> Any:
+            return map(work, goals)
+
+        def shutdown(self, wait: bool, cancel_futures: bool) -> None: ...
+
+    monkeypatch.setattr(many, "ProcessPoolExecutor", Pool)
+    monkeypatch.setattr(many, "_work", None)
+    assert foon_asp.compare_searches(problem, ["bfs"], jobs=2).comparisons == here.comparisons
 
 
 def test_bad_words_are_refused(cli: Cli) -> None:

@@ -43,6 +43,9 @@ class Reporter:
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
         """Hear of the proved bound on the objective that is being worked on."""
 
+    def step(self, word: str, done: int, total: int) -> None:
+        """Hear how many of many answers there are: first of those that were there before, then of each."""
+
 
 def solve(
     problem: Problem,

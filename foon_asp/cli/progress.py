@@ -29,6 +29,8 @@ class Progress(Reporter):
         self._live: Status | None = None
         self._tree = "no tree yet"
         self._bound = "no bound yet"
+        self._bar = contextlib.ExitStack()
+        self._advance: Callable[[], None] | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -38,6 +40,7 @@ class Progress(Reporter):
     ) -> None:
         if self._live:
             self._live.stop()
+        self._bar.close()
 
     def warning(self, message: str) -> None:
         """Print a warning at once."""
@@ -55,6 +58,13 @@ class Progress(Reporter):
         else:
             self._bound = f"proved: at least {bound} {objective}"
         self._show()
+
+    def step(self, word: str, done: int, total: int) -> None:
+        """Show a bar, and advance it."""
+        if self._advance is None:
+            self._advance = self._bar.enter_context(bar(word, total, done))
+        else:
+            self._advance()
 
     def _show(self) -> None:
         if not sys.stderr.isatty() or time.monotonic() - self._began < _PATIENCE:

@@ -3,6 +3,8 @@
 import importlib
 import textwrap
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +13,10 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import write_data
+from foon_asp.cli.output import console, write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
+from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Kind, Option, Part, Question
@@ -28,6 +31,7 @@ _STANDING = {
     "encodings": options.encodings_that_stand,
 }
 _LIMITS = frozenset({"time_limit", "memory_limit"})
+_SHOWN = frozenset({"text", "json", "csv", "markdown"})  # what is data alone is written to the byte
 
 
 def question_command(verb: str) -> click.Command:
@@ -37,7 +41,7 @@ def question_command(verb: str) -> click.Command:
     command: Callable[..., ExitCode] = _asking(question)
     command = options.data_options(command)
     command = options.format_option(*question.formats)(command)
-    own = [option for option in question.options if option.name not in _LIMITS]
+    own = [o for o in question.options if not (o.name in _LIMITS and o.part is Part.COMMAND)]
     if len(own) < len(question.options):
         command = options.limit_options(command)
     for option in reversed(own):
@@ -49,24 +53,22 @@ def question_command(verb: str) -> click.Command:
 def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
     parts = {option.name: option.part for option in question.options}
 
-    def command(format_: str, deadline: Deadline | None = None, **given: Any) -> ExitCode:
-        def those(*wanted: Part) -> dict[str, Any]:
-            return {name: given[name] for name, part in parts.items() if name in given and part in wanted}
+    def ask(format_: str, deadline: Deadline | None = None, **given: Any) -> ExitCode:
+        def those(wanted: Part) -> dict[str, Any]:
+            return {name: given[name] for name, part in parts.items() if name in given and part & wanted}
 
         charts = [file for files in those(Part.CHART).values() for file in files]
         for chart in charts:
             check_suffix(chart)
         check_outputs()
         data = {name: value for name, value in given.items() if name not in parts}
-        dataset = options.read_dataset(**data)
-        posed = those(Part.PROBLEM)
-        with options.reading():
-            goals = dataset.goals(posed["goals_named"])
-            problem = dataset.problem(goals, posed["containers"])
+        command = _Command(data)
         with Progress() as progress:
-            who = Caller(progress, options.session_here(), deadline, dataset.read_seconds, data["lenient"])
+            who = Caller(progress, options.session_here(), deadline, lenient=data["lenient"])
             with asked_by(who):
-                found = question(problem, **those(Part.QUESTION, Part.COMMAND))
+                about = question.pose(command, **those(Part.PROBLEM))
+            with asked_by(who._replace(read_seconds=command.dataset.read_seconds)):
+                found = question(about, **those(Part.QUESTION | Part.COMMAND))
         for chart in charts:
             try:
                 found.write_chart(chart)
@@ -76,19 +78,39 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
         _show(found, format_, those(Part.TEXT))
         return _CODES[found.ending]
 
-    return command
+    return ask
+
+
+class _Command:
+    """What poses a question is given: the data, and the limits of reading."""
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self._data = data
+
+    @cached_property
+    def dataset(self) -> Dataset:
+        """The data that is named; read when it is first looked at."""
+        return options.read_dataset(**self._data)
+
+    def reading(self) -> AbstractContextManager[object]:
+        """Stop what is read in a ``with`` block at the limits of the command."""
+        return options.reading()
 
 
 def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
     """Write what was found to standard output, and to stderr what its format does not say."""
-    if format_ == "text":
+    renderable = found.renderable() if format_ == "text" else None
+    if renderable is not None:
+        console().print(renderable)
+    elif format_ == "text":
         click.echo(found.text(**how), nl=False)
-        return
-    if format_ == "json":
+    elif format_ == "json":
         click.echo(found.json_text(), nl=False)
+    elif format_ in _SHOWN:
+        click.echo(getattr(found, format_)(), nl=False)
     else:
         write_data(getattr(found, format_)())
-    if found.remark:
+    if found.remark and format_ != "text":
         click.echo(found.remark, err=True)
 
 

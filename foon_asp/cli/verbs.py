@@ -11,8 +11,6 @@ from foon_asp.questions.index import INDEX, Entry
 # Verbs that ask nothing, and those whose question is not in the catalog.
 _OTHERS: Final[Mapping[str, Entry]] = {
     "solve": Entry("Find", "Find the best task tree for a goal, and prove that none is better."),
-    "optima": Entry("Find", "Solve every goal of the goals file under several objectives."),
-    "compare": Entry("Find", "Hold the searches of the literature against the optimum."),
     "batch": Entry("Find", "Answer every question of a file, thousands in one run."),
     "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
     "certify": Entry("Check", "Write a certificate: a proof that verify checks without a solver."),

@@ -2,7 +2,7 @@
 
 from foon_asp.compare.comparison import MEASURED, Comparison, Judgement, Optimum, compare, judge
 from foon_asp.compare.many import compare_goals, makeable
-from foon_asp.compare.results_file import ResultsFile, comparison_json
+from foon_asp.compare.results_file import ResultsFile, comparison_json, results_question
 from foon_asp.compare.rows_file import RowsFile
 from foon_asp.compare.summary import Distance, Summary, all_proved, summarize_comparisons
 
@@ -21,5 +21,6 @@ __all__ = [
     "comparison_json",
     "judge",
     "makeable",
+    "results_question",
     "summarize_comparisons",
 ]

@@ -31,7 +31,8 @@ def compare_goals(
 
     With more than one job, processes share the goals; the rows are the same.
     """
-    work = problem, tuple(searches), settings, time_limit
+    # the data behind the problem are not asked, and an open store could not be handed to a process
+    work = replace(problem, origin=None), tuple(searches), settings, time_limit
     if jobs == 1:
         for goal in goals:
             yield _compare(work, goal)

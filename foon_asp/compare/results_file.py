@@ -1,5 +1,8 @@
 """Comparisons as JSON Lines: written as they come, read back to go on after an interruption."""
 
+import hashlib
+import json
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, Self, TypeVar
@@ -7,9 +10,9 @@ from typing import Any, Self, TypeVar
 from foon_asp.asp import Status
 from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.compare.rows_file import RowsFile
-from foon_asp.problem import ContainerRule, Objective
+from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import Verdict
-from foon_asp.search import Ending
+from foon_asp.search import Ending, SearchSettings
 
 Plain = TypeVar("Plain")
 
@@ -104,6 +107,34 @@ def _fraction(text: str) -> Fraction:
     if not set(_of(text, str)) <= set("0123456789/-"):  # an exponent could stand for any number of digits
         raise ValueError(f"found {text!r}, expected a fraction")
     return Fraction(text)
+
+
+def results_question(
+    problem: Problem, searches: Sequence[str], settings: SearchSettings
+) -> dict[str, object]:
+    """Describe what is asked, so that results of another question are not taken for this one's."""
+    network = problem.network
+    digest = hashlib.sha256()
+    for part in (
+        [str(node) for node in network.objects],
+        [network.motions, network.inputs, network.outputs],
+        sorted(problem.kitchen),
+        sorted(problem.utensils),
+        sorted((motion, str(rate)) for motion, rate in (problem.rates or {}).items()),
+    ):
+        digest.update(json.dumps(part).encode())
+    return {
+        "data": digest.hexdigest()[:16],
+        "containers": str(problem.containers),
+        "level": problem.network.level,
+        "searches": list(searches),
+        "ties": str(settings.ties),
+        "count": str(settings.count),
+        "published": settings.published,
+        "depth_limit": settings.depth_limit,
+        "time_limit": settings.time_limit,
+        **({} if settings.memory_limit is None else {"memory_limit": settings.memory_limit}),
+    }
 
 
 class ResultsFile:

@@ -2,9 +2,10 @@
 
 import functools
 from collections.abc import Callable
-from enum import StrEnum
+from enum import Flag, StrEnum, auto
 from typing import Generic, NamedTuple, ParamSpec, TypeVar
 
+from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
 
 P = ParamSpec("P")
@@ -23,18 +24,18 @@ class Kind(StrEnum):
     FLAG = "flag"
 
 
-class Part(StrEnum):
-    """What an option belongs to."""
+class Part(Flag):
+    """What an option belongs to, which may be several."""
 
-    PROBLEM = "problem"
-    """The problem that is asked about, which has it in Python: goals, containers."""
-    QUESTION = "question"
+    PROBLEM = auto()
+    """The problem that is asked about, which has it in Python (goals, containers): it is posed by it."""
+    QUESTION = auto()
     """The question: it is a parameter of the function."""
-    COMMAND = "command"
+    COMMAND = auto()
     """A parameter that holds for a whole command: limits, and rules, to which a session may add."""
-    TEXT = "text"
+    TEXT = auto()
     """How what was found is said: a parameter of its text."""
-    CHART = "chart"
+    CHART = auto()
     """Files for a picture of what was found."""
 
 
@@ -64,14 +65,20 @@ class Question(Generic[P, R]):
     """A question: called, it gives what was found. ``options`` and ``help`` are for a command line.
 
     ``help`` is what follows after the line of the index, with examples and what it exits with. ``formats``
-    are those that the result has, the first by default.
+    are those that the result has, the first by default. ``pose`` makes for a command line what the function
+    is asked about, of the options of the problem.
     """
 
     def __init__(
-        self, ask: Callable[P, R], options: tuple[Option, ...], help_: str, formats: tuple[str, ...]
+        self,
+        ask: Callable[P, R],
+        options: tuple[Option, ...],
+        help_: str,
+        formats: tuple[str, ...],
+        pose: Pose,
     ) -> None:
         functools.update_wrapper(self, ask)
-        self.ask, self.options, self.help, self.formats = ask, options, help_, formats
+        self.ask, self.options, self.help, self.formats, self.pose = ask, options, help_, formats, pose
 
     def __call__(self, *args: P.args, **named: P.kwargs) -> R:
         """Ask, as Python does."""
@@ -82,11 +89,11 @@ class Question(Generic[P, R]):
 
 
 def question(
-    *options: Option, help_: str, formats: tuple[str, ...] = ("text", "json")
+    *options: Option, help_: str, formats: tuple[str, ...] = ("text", "json"), pose: Pose = one_problem
 ) -> Callable[[Callable[P, R]], Question[P, R]]:
     """Make a question of a function."""
 
     def decorate(ask: Callable[P, R]) -> Question[P, R]:
-        return Question(ask, options, help_, formats)
+        return Question(ask, options, help_, formats, pose)
 
     return decorate

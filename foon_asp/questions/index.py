@@ -16,10 +16,20 @@ class Entry(NamedTuple):
 
 
 INDEX: Final[Mapping[str, Entry]] = {
+    "optima": Entry(
+        "Find",
+        "Solve every goal of the goals file under several objectives.",
+        ("optima", "Optima"),
+    ),
     "search": Entry(
         "Find",
         "Retrieve a task tree as the literature does, and say whether it executes.",
         ("retrieve", "Retrieved"),
+    ),
+    "compare": Entry(
+        "Find",
+        "Hold the searches of the literature against the optimum.",
+        ("compare_searches", "Compared"),
     ),
     "check": Entry(
         "Check",

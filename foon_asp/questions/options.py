@@ -11,6 +11,7 @@ GOALS = Option(
     many=True,
     metavar="NAME",
 )
+EACH_GOAL = GOALS._replace(help="A goal by label or notation, a question of its own; repeatable.")
 CONTAINERS = Option(
     "containers",
     "Whether a unit needs every input, or takes utensils that hold one of them as given.",
@@ -68,3 +69,5 @@ LIMITS = (
         metavar="SIZE",
     ),
 )
+EACH_LIMITS = tuple(limit._replace(part=Part.QUESTION) for limit in LIMITS)
+"""The limits of each of many answers, none of which holds for the whole command."""

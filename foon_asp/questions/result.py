@@ -11,6 +11,7 @@ from foon_asp.report.notebook import page_bundle, svg_text
 
 if TYPE_CHECKING:
     from foon_asp.report.drawing import Drawing
+    from foon_asp.report.renderable import Renderable
 
 
 class Ending(StrEnum):
@@ -57,6 +58,13 @@ class Result:
     def foon(self) -> str:
         """Give the tree as FOON text; raises :class:`UserError` for what is no tree."""
         raise UserError("this is no tree, which FOON text could hold")
+
+    def renderable(self) -> "Renderable | None":
+        """Give what a console shows in place of the text, as wide and in such colours as it has.
+
+        ``None`` where that is the text.
+        """
+        return None
 
     @property
     def remark(self) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
+from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -30,9 +30,11 @@ RATIOS = "× how many times the proved optimum of that objective"
 _WIDTHS = {"search": 15, "units": 12, "inputs": 12, "success": 19, "executes": 18}
 
 
-def print_comparisons(comparisons: Sequence[Comparison], console: Console) -> None:
-    """Print one block of rows for each goal, the proved optimum first."""
-    console.print(f"Searches and the optimum ({comparisons[0].conditions})", style="bold")
+def comparisons_table(comparisons: Sequence[Comparison]) -> RenderableType:
+    """Lay out one block of rows for each goal, the proved optimum first."""
+    parts: list[RenderableType] = [
+        Text(f"Searches and the optimum ({comparisons[0].conditions})", style="bold")
+    ]
     for place, comparison in enumerate(comparisons):
         table = Table(
             box=SIMPLE_HEAD if place == 0 else None,
@@ -48,12 +50,8 @@ def print_comparisons(comparisons: Sequence[Comparison], console: Console) -> No
         for row in (goal, *rows):
             verdict = Text("  " + escaped(row[5]), style=_STYLES.get(row[5].removesuffix(" (cycle)"), ""))
             table.add_row(*row[1:5], verdict, style="bold" if row is goal else "")
-        console.print()
-        console.print(Text(escaped(comparison.goal), style="bold cyan"))
-        console.print(table)
-    console.print()
-    for note in _notes(comparisons):
-        console.print(Text(note, style="dim"))
+        parts += [Text(), Text(escaped(comparison.goal), style="bold cyan"), table]
+    return Group(*parts, Text(), *(Text(note, style="dim") for note in _notes(comparisons)))
 
 
 def comparisons_markdown(comparisons: Sequence[Comparison]) -> str:

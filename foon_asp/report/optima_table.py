@@ -1,18 +1,15 @@
 """The table of optima: one row for each tree that is best by something."""
 
-import json
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from foon_asp.asp import Outcome, Status
 from foon_asp.escapes import escaped
 from foon_asp.problem import Objective
-from foon_asp.report.answer import outcome_dict
 
 _STYLES = {
     Status.OPTIMAL: "green",
@@ -22,13 +19,8 @@ _STYLES = {
 }
 
 
-def optima_json(outcomes: Sequence[Outcome]) -> str:
-    """Give every outcome, as ``foon-asp solve --format json`` does, in a list."""
-    return json.dumps([outcome_dict(outcome) for outcome in outcomes], indent=2, ensure_ascii=False) + "\n"
-
-
-def print_optima(outcomes: Sequence[Outcome], console: Console) -> None:
-    """Print the table; outcomes of one goal stand together, and equal trees share a row."""
+def optima_table(outcomes: Sequence[Outcome]) -> Table:
+    """Lay out the table; outcomes of one goal stand together, and equal trees share a row."""
     table = Table(
         title=f"The best task trees ({outcomes[0].problem.conditions})",
         caption="optimal: proved best by the objective named, whose figure is bold\n"
@@ -51,7 +43,7 @@ def print_optima(outcomes: Sequence[Outcome], console: Console) -> None:
     for goal, rows in _by_goal(outcomes):
         for place, row in enumerate(rows):
             table.add_row(Text(escaped(goal) if place == 0 else ""), *_cells(row, asked))
-    console.print(table)
+    return table
 
 
 def _by_goal(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, list[list[Outcome]]]]:

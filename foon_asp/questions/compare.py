@@ -1,0 +1,262 @@
+"""The searches of the literature held against the optimum."""
+
+import contextlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from foon_asp.compare import (
+    Comparison,
+    ResultsFile,
+    all_proved,
+    compare_goals,
+    comparison_json,
+    makeable,
+    results_question,
+    summarize_comparisons,
+)
+from foon_asp.dataset.paths import File
+from foon_asp.errors import UserError
+from foon_asp.problem import Problem
+from foon_asp.questions.arguments import at_least, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS
+from foon_asp.questions.posing import Command, each_goal
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.searching import SEARCHING, search_settings, searched
+from foon_asp.report.bar_chart import write_chart
+from foon_asp.report.comparison_chart import comparison_chart
+from foon_asp.report.comparison_table import (
+    comparisons_csv,
+    comparisons_markdown,
+    comparisons_table,
+    summary_lines,
+)
+from foon_asp.report.published_table import PublishedTable, published_markdown, read_published
+from foon_asp.report.renderable import Renderable
+from foon_asp.resources import published_table
+from foon_asp.search import SEARCHES
+
+_CHARTED = 60  # goals that a chart has room for
+
+
+@dataclass(frozen=True, repr=False)
+class Compared(Result):
+    """One comparison for each goal of ``problem``: ``optima`` by objective, a judgement for each search.
+
+    ``comparison.ratio(judgement, objective)`` is a tree's measure over the optimum. ``published`` are figures
+    to lay beside them, if any; ``summed_up`` says that the text sums up all goals.
+    """
+
+    problem: Problem
+    comparisons: tuple[Comparison, ...]
+    published: PublishedTable | None = None
+    summed_up: bool = False
+
+    @property
+    def proved(self) -> bool:
+        """Whether all optima are proved."""
+        return all_proved(self.comparisons)
+
+    @property
+    def ending(self) -> Ending:
+        """Done when every optimum is proved."""
+        return Ending.DONE if self.proved else Ending.LIMIT
+
+    def text(self) -> str:
+        """Give the table in Markdown; a summary of everything that can be made."""
+        return self.markdown()
+
+    def markdown(self) -> str:
+        """Give the table in Markdown, or what is said in its place."""
+        if self.published is not None:
+            return published_markdown(self.published, self._labels(), self.comparisons)
+        if self.summed_up:
+            lines = summary_lines(summarize_comparisons(self.comparisons), self.proved)
+            return "\n".join(lines) + "\n"
+        return comparisons_markdown(self.comparisons)
+
+    def renderable(self) -> Renderable | None:
+        """Give the table, as wide and in such colours as a console has."""
+        return None if self.published or self.summed_up else comparisons_table(self.comparisons)
+
+    def csv(self) -> str:
+        """Give one line for each goal and search; fractions exact, ratios as decimals too."""
+        return comparisons_csv(self.comparisons)
+
+    def json_dict(self) -> object:
+        """Give the comparisons in a list."""
+        return [comparison_json(comparison) for comparison in self.comparisons]
+
+    def write_chart(self, file: File) -> None:
+        """Draw a bar chart of units into a file, SVG or PNG by its suffix.
+
+        Raises :class:`UserError` for more goals than can be read, for another suffix, and without the
+        packages of ``foon-asp[pictures]``.
+        """
+        _hold_readable(self.problem)
+        write_chart(comparison_chart(self._labels(), self.comparisons), Path(file))
+
+    def _labels(self) -> list[str]:
+        return [node.label for node in self.problem.goal_nodes]
+
+    def __repr__(self) -> str:
+        return f"<Compared: {', '.join(comparison.goal for comparison in self.comparisons)}>"
+
+    def _repr_mimebundle_(
+        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
+    ) -> dict[str, str]:
+        """Give what a notebook shows: the table."""
+        return {"text/plain": repr(self), "text/markdown": str(self)}
+
+
+def _posed(
+    command: Command,
+    goals_named: Sequence[str],
+    containers: str,
+    all_makeable: bool,
+    published: bool,
+    charts: Sequence[Path],
+) -> Problem:
+    """Pose the goals, and refuse what cannot be laid beside them before anything is solved."""
+    if published:
+        table = read_published(published_table())
+        goals_named = goals_named or tuple(table.goals)
+        if all_makeable or not table.goals.keys() >= set(goals_named):
+            raise UserError(f"the published table has the goals {', '.join(table.goals)} and no others")
+        if containers != table.containers:
+            caller().reporter.warning(
+                f"warning: the published searches use {table.containers} containers, this is {containers}: "
+                f"add --containers {table.containers}"
+            )
+    if all_makeable:
+        problem = _everything_makeable(command.dataset.problem((0,), containers, everything=True))
+    else:
+        problem = each_goal(command, goals_named, containers)
+    if charts:
+        _hold_readable(problem)
+    return problem
+
+
+def _everything_makeable(problem: Problem) -> Problem:
+    goals = makeable(problem)
+    if not goals:
+        raise UserError("there are no goals: nothing can be made that is not in the kitchen")
+    return replace(problem, goals=tuple(goals))
+
+
+def _hold_readable(problem: Problem) -> None:
+    if len(problem.goals) > _CHARTED:
+        raise UserError(
+            f"a chart of {len(problem.goals)} goals could not be read; name up to {_CHARTED} with --goal"
+        )
+
+
+@question(
+    EACH_GOAL,
+    Option(
+        "all_makeable",
+        "Every object that can be made; prints a summary.",
+        Kind.FLAG,
+        Part.PROBLEM | Part.QUESTION,
+        default=False,
+    ),
+    Option(
+        "searches",
+        "A search to run; repeatable.",
+        default=tuple(SEARCHES),
+        flags=("--search",),
+        many=True,
+        choices=tuple(SEARCHES),
+    ),
+    *SEARCHING,
+    Option(
+        "published",
+        "Lay the published table beside what is measured.",
+        Kind.FLAG,
+        Part.PROBLEM | Part.QUESTION,
+        default=False,
+    ),
+    CONTAINERS,
+    *EACH_LIMITS,
+    Option("jobs", "Processes to use.", Kind.WHOLE, default=1, least=1),
+    Option(
+        "results",
+        "JSON Lines, written as results come; run again to go on after an interruption.",
+        Kind.FILE,
+        metavar="FILE",
+    ),
+    Option(
+        "charts",
+        "Bar chart of units (.svg or .png); repeatable.",
+        Kind.FILE,
+        Part.CHART | Part.PROBLEM,
+        flags=("--chart",),
+        many=True,
+        metavar="FILE",
+    ),
+    help_="""
+    \b
+    foon-asp compare                                   every goal of the goals file
+    foon-asp compare --goal macaroni --containers implied
+    foon-asp compare --all-makeable --jobs 2 --results makeable.jsonl
+
+    The searches are run, every tree they return is simulated, and the optima are proved beside them. Each
+    goal is a question of its own, and the limits are for each of its answers. Exits with 0 when every
+    optimum is proved, and with 3 when one was stopped at a limit.
+    """,
+    formats=("text", "json", "csv", "markdown"),
+    pose=_posed,
+)
+def compare_searches(
+    problem: Problem,
+    searches: Iterable[str] = tuple(SEARCHES),
+    *,
+    all_makeable: bool = False,
+    ties: str = "first",
+    count: str = "ingredients",
+    depth_limit: int | None = None,
+    published: bool = False,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+    jobs: int = 1,
+    results: File | None = None,
+) -> Compared:
+    """Run searches for each goal of a problem, a question of its own each, and prove the optima beside them.
+
+    With ``all_makeable`` the goals are all objects that can be made, and the text is a summary.
+    ``published`` runs ids as published, and the text has the published figures beside ours, where all goals
+    have some. The limits are for each optimum and each search; ``jobs`` are processes to use. ``results`` is
+    a file that is written as results come, JSON Lines; what is in it already is not done again. Otherwise as
+    :func:`foon_asp.retrieve`.
+    """
+    names = [search.name for search in searched(searches)]
+    limits = settings(time_limit=time_limit, memory_limit=memory_limit)
+    how = search_settings(ties, count, depth_limit, published, limits.time_limit, limits.memory_limit)
+    at_least(jobs, 1, "jobs")
+    if all_makeable or results is not None:  # results are kept with a digest of all the data
+        problem = problem.whole
+    if all_makeable:
+        problem = _everything_makeable(problem)
+    goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
+    with contextlib.ExitStack() as stack:
+        done: dict[str, Comparison] = {}
+        file = None
+        if results is not None:
+            begun_for = results_question(problem, names, how)
+            file = stack.enter_context(ResultsFile(Path(results), begun_for))
+            done = file.done
+        left = [goal for name, goal in goals.items() if name not in done]
+        before = len(goals) - len(left)
+        caller().reporter.step("comparing", before, len(goals))
+        for number, row in enumerate(compare_goals(problem, left, names, how, how.time_limit, jobs), 1):
+            if file is None:
+                done[row.goal] = row
+            else:
+                file.add(row)
+            caller().reporter.step("comparing", before + number, len(goals))
+    table = read_published(published_table()) if published else None
+    if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
+        table = None
+    return Compared(problem, tuple(done[name] for name in goals), table, all_makeable)

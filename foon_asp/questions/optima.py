@@ -1,0 +1,81 @@
+"""The optimum of every goal under every objective, in one table."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from foon_asp.asp import solve as find
+from foon_asp.deadline import Deadline
+from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import question
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, OBJECTIVES
+from foon_asp.questions.posing import each_goal
+from foon_asp.questions.result import Ending, Result
+from foon_asp.report.answer import outcome_dict
+from foon_asp.report.optima_table import optima_table
+from foon_asp.report.renderable import Renderable, plain_text
+
+
+@dataclass(frozen=True, repr=False)
+class Optima(Result):
+    """The answers for each goal by itself, under each objective: goal by goal, in the order asked."""
+
+    outcomes: tuple[Answer, ...]
+
+    @property
+    def ending(self) -> Ending:
+        """Done when every answer is proved, a goal without a tree included."""
+        stopped = any(outcome.ending is Ending.LIMIT for outcome in self.outcomes)
+        return Ending.LIMIT if stopped else Ending.DONE
+
+    def text(self) -> str:
+        """Give the table; equal trees share a row."""
+        return plain_text(self.renderable())
+
+    def renderable(self) -> Renderable:
+        """Give the table, as wide and in such colours as a console has."""
+        return optima_table(self.outcomes)
+
+    def json_dict(self) -> object:
+        """Give the answers in a list."""
+        return [outcome_dict(outcome) for outcome in self.outcomes]
+
+    def __repr__(self) -> str:
+        return f"<Optima: {len(self.outcomes)} answers>"
+
+
+@question(
+    EACH_GOAL,
+    OBJECTIVES._replace(
+        help="An objective, or a list by commas of which the first counts most; one row each.",
+        default=("units", "inputs", "success"),
+    ),
+    CONTAINERS,
+    *EACH_LIMITS,
+    help_="""
+    The limits are for each answer. Exits with 0 when every answer is proved, a goal without a tree
+    included, and with 3 when one was stopped at the limit.
+    """,
+    pose=each_goal,
+)
+def optima(
+    problem: Problem,
+    objectives: str | Iterable[str] = ("units", "inputs", "success"),
+    *,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Optima:
+    """Solve every goal of a problem by itself, under several objectives.
+
+    Each of ``objectives`` is one, or a list by commas of which the first counts most. The limits are for each
+    answer. Raises :class:`UserError` where ``success`` is asked for and no rates are known.
+    """
+    texts = [objectives] if isinstance(objectives, str) else objectives
+    lists = [chosen_objectives(problem, text) for text in texts]
+    # limits are for each answer, ctrl-C is for all of them
+    how = settings(time_limit=time_limit, memory_limit=memory_limit)._replace(deadline=Deadline())
+    alone = [replace(problem, goals=(goal,)) for goal in problem.goals]
+    outcomes = (find(each, chosen, how, caller().reporter) for each in alone for chosen in lists)
+    return Optima(tuple(Answer._make(outcome) for outcome in outcomes))

@@ -1,0 +1,41 @@
+"""What a question is about, made of what a command line says and the data it names."""
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from typing import Protocol
+
+from foon_asp.dataset import Dataset
+from foon_asp.errors import UserError
+from foon_asp.problem import Problem
+
+
+class Command(Protocol):
+    """The command that a question is asked by."""
+
+    @property
+    def dataset(self) -> Dataset:
+        """The data that it names; read when it is first looked at."""
+
+    def reading(self) -> AbstractContextManager[object]:
+        """Stop what is read in a ``with`` block at the limits of the command."""
+
+
+Pose = Callable[..., object]
+"""Makes what a function is asked about: of a :class:`Command`, and the options of the problem by name."""
+
+
+def one_problem(command: Command, goals_named: Sequence[str], containers: str) -> Problem:
+    """Pose one problem, whose tree makes all goals that are named."""
+    dataset = command.dataset
+    with command.reading():
+        return dataset.problem(dataset.goals(goals_named), containers)
+
+
+def each_goal(command: Command, goals_named: Sequence[str], containers: str) -> Problem:
+    """Pose goals that are a question of their own each: those that are named, or all of the goals file."""
+    dataset = command.dataset
+    with command.reading():
+        goals = dataset.each_goal(goals_named)
+        if not goals:
+            raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
+        return dataset.problem(tuple(dict.fromkeys(goals)), containers)
