@@ -61,8 +61,8 @@ class Searches:
             for bound in answer.bounds:
                 if on_bound:
                     on_bound(bound)
-            for tree in answer.trees:
-                if on_tree:
+            for tree in (*answer.trees, answer.run.units):
+                if on_tree and tree is not None:
                     on_tree(tree)
             return dataclasses.replace(answer.run)
 
@@ -572,10 +572,10 @@ def test_trees_are_heard_of_from_every_search(monkeypatch: pytest.MonkeyPatch) -
     leave(monkeypatch, problem, (SUCCESS,), (0,))
     Searches(
         monkeypatch,
-        Answer(Run(numbers(problem, 1, 2, 3), (107_002_482, 3), True), [[0]], [numbers(problem, 1, 2, 3)]),
-        Answer(Run(numbers(problem, 4, 5), (107_002_483,), True), [[1]], [numbers(problem, 4, 5)]),
+        Answer(Run(numbers(problem, 1, 2, 3), (107_002_482, 3), True), [[0]]),
+        Answer(Run(numbers(problem, 4, 5), (107_002_483,), True), [[1]]),
         Answer(Run(exhausted=True), [[2]]),
-        Answer(Run(numbers(problem, 6), (1,), True), [[3]], [numbers(problem, 6)]),
+        Answer(Run(numbers(problem, 6), (1,), True), [[3]]),
     )
     assert solve(problem, (SUCCESS,), Settings(), heard).units == (6,)
     assert heard.trees == [problem.costs(tree) for tree in ((0,), (1, 2, 3), (4, 5), (6,))]
@@ -587,11 +587,31 @@ def test_trees_are_heard_of_from_every_search(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_better_tree_that_was_heard_of_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem = ways(["0.5"] * 3, ["0.5"] * 2, ["0.2"])
-    leave(monkeypatch, problem, (UNITS,), (0, 1, 2))
-    Searches(monkeypatch, Answer(Run(numbers(problem, 3, 4), (2,), True), trees=[numbers(problem, 5)]))
+    """What weighs least, at which a search ends, need not be the best of what it came by."""
+    problem = ways(["0.2"], ["0.7"] * 3, ["0.3430000001", "1"], ["0.3430000001"])
+    leave(monkeypatch, problem, (SUCCESS,), (0,))
+    long, two, one = numbers(problem, 1, 2, 3), numbers(problem, 4, 5), numbers(problem, 6)
+    least = Run(long, (107_002_482, 3), True)
+    none = Run(exhausted=True)
+    for answers, best in (
+        ([Answer(Run(long, (107_002_482, 3)), trees=[two])], (4, 5)),
+        ([Answer(least), Answer(Run(two, (107_002_483,)))], (4, 5)),
+        ([Answer(least), Answer(Run(), trees=[two])], (4, 5)),
+        ([Answer(least, trees=[two]), Answer(none), Answer(Run())], (4, 5)),
+        ([Answer(least, trees=[two]), Answer(none), Answer(Run(one, (1,)))], (6,)),
+    ):
+        Searches(monkeypatch, *answers)
+        outcome = solve(problem, (SUCCESS,), Settings())
+        assert (outcome.status, outcome.units) == (Status.FEASIBLE, best)
+
+
+def test_searches_that_contradict_each_other_are_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two units is the best tree of the last search, of one unit that of the first."""
+    problem = ways(["0.5"], ["0.5", "1"])
+    first, last = Run(numbers(problem, 0), (69_314_718, 1), True), Run(numbers(problem, 1, 2), (2,), True)
+    Searches(monkeypatch, Answer(first), Answer(Run(exhausted=True)), Answer(last))
     with pytest.raises(BugError, match="but one was found for"):
-        solve(problem, (UNITS,), Settings())
+        solve(problem, (SUCCESS,), SEARCHED)
 
 
 def test_costs_of_a_tree_in_hand_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -612,14 +632,15 @@ def test_costs_of_a_tree_in_hand_are_worked_out_once(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize(
-    ("chains", "objectives", "modes", "best"),
+    ("chains", "objectives", "first", "modes", "best"),
     [
         # 0.5 weighs 69314718: within that and what one unit may have lost, less 1, nothing else is
-        ((["0.5"], ["0.2"]), (SUCCESS,), ["opt", "opt,69314718", "opt,1"], (0,)),
+        ((["0.5"], ["0.2"]), (SUCCESS,), (69_314_718, 1), ["opt", "opt,69314718", "opt,1"], (0,)),
         # three times 0.7 weighs 107002482 and may have lost 2 more; 0.3430000001 is better, and one unit
         (
             (["0.7"] * 3, ["0.3430000001"]),
             (SUCCESS,),
+            (107_002_482, 3),
             ["opt", "opt,107002484", "opt,107002483", "opt,1"],
             (3,),
         ),
@@ -627,36 +648,70 @@ def test_costs_of_a_tree_in_hand_are_worked_out_once(monkeypatch: pytest.MonkeyP
         (
             (["0.7"] * 3, ["0.3429999999"]),
             (SUCCESS,),
+            (107_002_482, 3),
             ["opt", "opt,107002484", "opt,107002484", "opt,3"],
             (0, 1, 2),
         ),
         # of equal products fewest units count
-        ((["0.7"] * 3, ["0.343"]), (SUCCESS,), ["opt", "opt,107002484", "opt,3"], (3,)),
-        ((["0.7"] * 3, ["0.343"]), (KITCHEN, SUCCESS), ["opt,1", "opt,1,107002484", "opt,1,3"], (3,)),
-        ((["0.7"] * 3, ["0.343"]), (SUCCESS, KITCHEN), ["opt", "opt,107002484", "opt,1,3"], (3,)),
+        (
+            (["0.7"] * 3, ["0.343"]),
+            (SUCCESS,),
+            (107_002_482, 3),
+            ["opt", "opt,107002484", "opt,3"],
+            (3,),
+        ),
+        (
+            (["0.7"] * 3, ["0.343"]),
+            (KITCHEN, SUCCESS),
+            (1, 107_002_482, 3),
+            ["opt,1", "opt,1,107002484", "opt,1,3"],
+            (3,),
+        ),
+        (
+            (["0.7"] * 3, ["0.343"]),
+            (SUCCESS, KITCHEN),
+            (107_002_482, 1, 3),
+            ["opt", "opt,107002484", "opt,1,3"],
+            (3,),
+        ),
         # units of rate 1 lose nothing
-        ((["0.5", "1"], ["0.2"]), (SUCCESS,), ["opt", "opt,69314718", "opt,2"], (0, 1)),
+        (
+            (["0.5", "1"], ["0.2"]),
+            (SUCCESS,),
+            (69_314_718, 2),
+            ["opt", "opt,69314718", "opt,2"],
+            (0, 1),
+        ),
         # where units come first, nothing comes after
-        ((["0.5"], ["0.3"]), (UNITS, SUCCESS), ["opt,1", "opt,1,69314718"], (0,)),
+        ((["0.5"], ["0.3"]), (UNITS, SUCCESS), (1, 69_314_718), ["opt,1", "opt,1,69314718"], (0,)),
         # nothing is better than certain, but something that is not may weigh as little
-        ((["1", "1"], ["0.5"]), (SUCCESS,), ["opt", "opt,2"], (0, 1)),
-        ((["1", "1"], ["1"]), (SUCCESS,), ["opt,0,1"], (2,)),  # nothing is rounded
-        ((["0.9999999999"], ["1", "1"], ["0.5"]), (SUCCESS,), ["opt", "opt,0", "opt,2"], (1, 2)),
+        ((["1", "1"], ["0.5"]), (SUCCESS,), (0, 2), ["opt", "opt,2"], (0, 1)),
+        ((["0.9999999999"], ["1", "1"], ["0.5"]), (SUCCESS,), (0, 1), ["opt", "opt,0", "opt,2"], (1, 2)),
     ],
 )
 def test_products_within_the_band_are_compared(
     chains: tuple[list[str], ...],
     objectives: Objectives,
+    first: tuple[int, ...],
     modes: list[str],
     best: tuple[int, ...],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The first way is in hand; each search has a bound of its own."""
+    """The first way is found first; each search has a bound of its own."""
     problem = ways(*chains)
-    leave(monkeypatch, problem, objectives, range(len(chains[0])))
-    searches = Searches(monkeypatch)
+    way = range(len(chains[0]))
+    leave(monkeypatch, problem, objectives, way)
+    searches = Searches(monkeypatch, Answer(Run(numbers(problem, *way), first, True)))
     assert optimum(problem, objectives, Settings()) == best
     assert searches.modes == modes
+
+
+def test_where_all_rates_are_1_nothing_is_rounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = ways(["1", "1"], ["1"])
+    leave(monkeypatch, problem, (SUCCESS,), (0, 1))
+    searches = Searches(monkeypatch)
+    assert optimum(problem, (SUCCESS,), Settings()) == (2,)
+    assert searches.modes == ["opt,0,1"]
 
 
 def test_every_product_within_the_band_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -664,7 +719,7 @@ def test_every_product_within_the_band_is_compared(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("foon_asp.asp.exact_success._scale", lambda _: 10)
     problem = ways(["0.501"], ["0.505"], ["0.503"], ["0.504"], ["0.502"])
     leave(monkeypatch, problem, (SUCCESS,), (0,))
-    searches = Searches(monkeypatch)
+    searches = Searches(monkeypatch, Answer(Run(numbers(problem, 0), (6, 1), True)))
     assert optimum(problem, (SUCCESS,), Settings()) == (1,)
     assert searches.modes == ["opt", *["opt,6"] * 5, "opt,1"]
 
@@ -857,6 +912,10 @@ def test_nobody_knows_what_other_encodings_bound(tmp_path: Path, monkeypatch: py
     Searches(monkeypatch, None, Answer(Run(lower=[2])))
     outcome = solve(problem, (UNITS,), Settings(encodings=own), heard)
     assert (outcome.status, outcome.bounds) == (Status.FEASIBLE, {})
+    # what they call best counts, whatever was heard of before
+    last = Answer(Run(numbers(problem, 1, 2), (2,), True), trees=[numbers(problem, 0)])
+    Searches(monkeypatch, None, last)
+    assert optimum(problem, (UNITS,), Settings(encodings=own)) == (1, 2)
 
 
 @pytest.mark.parametrize(

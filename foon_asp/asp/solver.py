@@ -97,7 +97,7 @@ class _Solver:
         self.seconds: dict[str, float] = {}
         self._open: OpenProgram | None = None
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
-        self._best: Costs | None = None  # the best tree reported
+        self._best: tuple[Units, Costs] | None = None  # the best tree reported
         self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
         problem.require_rates_for(self.levels)
         self.program: Program = assemble(settings, reporter.warning)
@@ -144,12 +144,15 @@ class _Solver:
                 return self._limited(incumbent, ended.lower)
             self.holds.require(strict, lambda: "a tree is at hand, but the encodings say that there is none")
             return self._optimal(incumbent)
-        best, proved = ended.units, ended.exhausted
-        if not self.program.replaced:
-            best = min(best, incumbent, key=lambda units: self._costs(units).key(self.levels))
+        best, proved = self._in_hand(ended.units), ended.exhausted
         if self._measures_agree(ended.units, ended.cost, self.levels) and proved:
             best, proved = self._settle(best)
         return self._optimal(best) if proved else self._limited(best, ended.lower)
+
+    def _in_hand(self, units: Units) -> Units:
+        """Give the best tree that was heard of; of replaced encodings nobody knows, and these units count."""
+        assert self._best is not None
+        return units if self.program.replaced else self._best[0]
 
     def cut(self) -> Units | None:
         """Cut the network down to what can matter; give some tree, or ``None`` when there is none.
@@ -209,7 +212,8 @@ class _Solver:
 
     def _limited(self, units: Units, lower: Sequence[int]) -> Outcome:
         """State what is known at a limit; nobody knows what replaced encodings have bounds on."""
-        return self._outcome(Status.FEASIBLE, units, {} if self.program.replaced else self._bounds(lower))
+        bounds = {} if self.program.replaced else self._bounds(lower)
+        return self._outcome(Status.FEASIBLE, self._in_hand(units), bounds)
 
     @cached_property
     def facts(self) -> str:
@@ -452,16 +456,17 @@ class _Solver:
         if multiplies(first):
             return {first: min(bounds[first], proved)}
         assert self._best is not None
+        _, best = self._best
         bounds[first] = max(bounds[first], proved)
         for objective, bound in bounds.items():
             if not multiplies(objective):
-                bounds[objective] = min(bound, self._best.measure(objective))
-        return bounds if bounds[first] == self._best.measure(first) else {first: bounds[first]}
+                bounds[objective] = min(bound, best.measure(objective))
+        return bounds if bounds[first] == best.measure(first) else {first: bounds[first]}
 
     def _report_tree(self, units: Units) -> None:
         costs = self._costs(units)
-        if self._best is None or costs.key(self.levels) < self._best.key(self.levels):
-            self._best = costs
+        if self._best is None or costs.key(self.levels) < self._best[1].key(self.levels):
+            self._best = units, costs
             self.reporter.tree(costs)
 
     def _report_bound(self, lower: Sequence[int]) -> None:
@@ -506,7 +511,8 @@ class _Solver:
             cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
             stopped=stopped,
         )
-        self.holds.outcome(outcome, None if self.program.replaced else self._best, self.reduced)
+        assert self._best is not None
+        self.holds.outcome(outcome, None if self.program.replaced else self._best[1], self.reduced)
         self._spent("check", began)
         return outcome
 
