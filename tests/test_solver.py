@@ -949,3 +949,25 @@ def test_success_needs_rates() -> None:
     assert optimum(problem, (UNITS,)) == (0,)
     with pytest.raises(UserError, match="the objective success needs the success rates of the motions"):
         solve(problem, (UNITS, SUCCESS))
+
+
+@pytest.mark.parametrize(
+    ("objectives", "wrong"),
+    [
+        ((UNITS,), {UNITS: 2}),
+        ((UNITS, INPUTS), {INPUTS: 0}),
+        ((SUCCESS,), {SUCCESS: Fraction("0.50001")}),
+        ((SUCCESS,), {UNITS: 2}),
+        ((KITCHEN, SUCCESS), {KITCHEN: 0}),
+    ],
+)
+def test_costs_are_held_against_what_units_weigh(
+    objectives: Objectives, wrong: ByObjective, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever is wrong with what trees are said to cost, clingo counts otherwise."""
+    costs = Problem.costs
+    monkeypatch.setattr(
+        Problem, "costs", lambda problem, units: Costs({**costs(problem, units).measures, **wrong})
+    )
+    with pytest.raises(BugError, match=r"the units \[0\] weigh \[.*\], but cost \['"):
+        solve(ways(["0.5"]), objectives, SEARCHED)

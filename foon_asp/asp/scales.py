@@ -134,6 +134,13 @@ class Scales:
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
         return Fraction(weight, self.costs[objective].scale) if objective in self.costs else weight
 
+    def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
+        """Whether units of a weight can cost so much by an objective: just that, where nothing is rounded."""
+        bound = self.bound(objective, weight)
+        if objective is not self.rounded:
+            return figure == bound
+        return figure <= bound if multiplies(objective) else figure >= bound
+
     def _rounds(self, objective: Objective) -> bool:
         if multiplies(objective):
             # a weight of 0 may be a rate below 1

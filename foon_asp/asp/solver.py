@@ -398,12 +398,20 @@ class _Solver:
         return ended.units, ended.exhausted
 
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
-        """Hold clingo's cost vector (modulo 2^32) against the costs computed from the units.
+        """Hold clingo's cost vector (modulo 2^32) against what the units weigh, and that against their costs.
 
         A replaced objectives.lp may measure something else: then the optimum is the one it defines. A program
         that is kept measures all levels, and what was not asked for as nothing.
         """
-        weights = {objective: self._scaled().weight(objective, units) for objective in objectives}
+        scales, costs = self._scaled(), self._costs(units)
+        weights = {objective: scales.weight(objective, units) for objective in objectives}
+        self.holds.require(
+            all(scales.allows(o, weight, costs.measure(o)) for o, weight in weights.items()),
+            lambda: (
+                f"the units {sorted(units)} weigh {list(weights.values())}, "
+                f"but cost {[str(costs.measure(o)) for o in weights]}"
+            ),
+        )
         listed = self.levels if len(cost) == len(self.levels) else objectives
         ours = [weights.get(objective, 0) for objective in listed]
         agree = [mine % 2**32 for mine in ours] == [theirs % 2**32 for theirs in cost]
