@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING
 from foon_asp.questions.index import INDEX, module_name
 
 if TYPE_CHECKING:
-    from foon_asp.api.assist import Assistance as Assistance
-    from foon_asp.api.assist import assist as assist
     from foon_asp.api.certified import (
         Certified as Certified,
     )
@@ -82,6 +80,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.alternatives import alternatives as alternatives
     from foon_asp.questions.answer import Answer as Answer
     from foon_asp.questions.answer import SoftAnswer as SoftAnswer
+    from foon_asp.questions.assist import Assistance as Assistance
+    from foon_asp.questions.assist import assist as assist
     from foon_asp.questions.check import Checked as Checked
     from foon_asp.questions.check import check as check
     from foon_asp.questions.clash import Clash as Clash
@@ -113,7 +113,6 @@ __version__ = "0.1.0"
 _ROOMS = {
     "api.solve": ("solve", "solve_soft"),
     "questions.answer": ("Answer", "SoftAnswer"),
-    "api.assist": ("Assistance", "assist"),
     "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
     "api.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),

@@ -14,10 +14,10 @@ import pytest
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
 from foon_asp.errors import UserError
-from foon_asp.explain import assist as module
-from foon_asp.explain.assist import Assistance, assist
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.questions.assist import Assistance, assist
+from foon_asp.questions.assist import assistant as module
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import MOTIONS, RATES, SERIES, UTENSILS, random_problem
@@ -149,7 +149,7 @@ def test_every_number_of_units(
     helpful = several = infeasible = 0
     for seed in range(5000, 5000 + 60 // part):
         problem, person = drawn(seed, rule), table(seed)
-        found = assist(problem, person)
+        found = assist(problem, person=person)
         assert found.complete
         expected = check_rows(found, person)
         if expected[-1] is None:
@@ -178,11 +178,11 @@ def test_rows_end_where_they_are_asked_to(part: int, rule: ContainerRule) -> Non
     reached = missed = short = 0
     for seed in range(5200, 5200 + 36 // part):
         problem, person = drawn(seed, rule), table(seed)
-        everything = assist(problem, person)
+        everything = assist(problem, person=person)
         if everything.greatest is None:
             continue
         for most in (0, 2, 7):
-            found = assist(problem, person, most=most)
+            found = assist(problem, most, person=person)
             expected = check_rows(found, person)
             assert found.rows[-1].most <= most
             # what is left out is no better, and has no fewer units
@@ -190,7 +190,7 @@ def test_rows_end_where_they_are_asked_to(part: int, rule: ContainerRule) -> Non
         rng = random.Random(seed)
         wanted = rng.choice([row.success for row in everything.rows] + [Fraction(1), Fraction(1, 2)])
         assert wanted is not None
-        found = assist(problem, person, wanted=wanted)
+        found = assist(problem, person=person, reach=wanted)
         everyone = shares(problem, person, len(problem.network), anything)
         fewest = sorted(len(helped) for failure, _, helped in everyone if -failure >= wanted)
         assert found.smallest == (fewest[0] if fewest else None)
@@ -200,7 +200,7 @@ def test_rows_end_where_they_are_asked_to(part: int, rule: ContainerRule) -> Non
         else:
             assert found.exhausted
             missed += 1
-        both = assist(problem, person, most=1, wanted=wanted)
+        both = assist(problem, 1, person=person, reach=wanted)
         assert both.smallest == (fewest[0] if fewest and fewest[0] <= 1 else None)
         short += both.smallest != found.smallest
     assert reached >= 3 // part
@@ -218,16 +218,15 @@ def test_a_constraint_holds_whoever_does_a_unit(part: int, rule: ContainerRule, 
         motion = random.Random(seed).choice(MOTIONS)
         gone = seed % len(problem.network)
         by_number.write_text(f":- use({gone}).\n", encoding="utf-8")
-        settings = Settings(
-            constraints=(Path("forbid_motion"), by_number), constants=(f"forbidden_motion={motion}",)
-        )
+        rules = ("forbid_motion", by_number)
+        constants = {"forbidden_motion": motion}
 
         unit = problem.network.unit(gone)
 
         def allowed(tree: Tree, _: object, word: str = motion, gone: FunctionalUnit = unit) -> bool:
             return gone not in tree and all(unit.motion != word for unit in tree)
 
-        found = assist(problem, person, settings=settings)
+        found = assist(problem, person=person, constraints=rules, constants=constants)
         assert found.complete
         check_rows(found, person, allowed)
 
@@ -257,8 +256,8 @@ def test_a_constraint_can_look_at_who_does_a_unit(part: int, rule: ContainerRule
             least = all(table[unit.motion] >= Fraction("0.2") for unit, table in zip(tree, who, strict=True))
             return least and not any(unit.motion == "cut" for unit in helped)
 
-        settings = Settings(constraints=(mine, Path("least_rate")), constants=("least_rate=200000",))
-        found = assist(problem, person, settings=settings)
+        rules = (mine, "least_rate")
+        found = assist(problem, person=person, constraints=rules, constants={"least_rate": 200000})
         assert found.complete
         expected = check_rows(found, person, allowed)
         late += expected[0] is None and expected[-1] is not None
@@ -280,7 +279,7 @@ def test_no_tree_has_a_unit_twice(part: int, rule: ContainerRule, tmp_path: Path
     possible = 0
     for seed in range(5500, 5500 + 30 // part):
         problem = drawn(seed, rule)
-        found = assist(problem, None, settings=Settings(constraints=(twice,)))
+        found = assist(problem, constraints=twice)
         possible += check_rows(found, None, allowed)[-1] is not None
     assert possible >= 2 // part
 
@@ -290,18 +289,20 @@ def test_no_tree_has_a_unit_twice(part: int, rule: ContainerRule, tmp_path: Path
 def test_other_encodings(rule: ContainerRule) -> None:
     for seed in range(5600, 5620):
         problem, person = drawn(seed, rule), table(seed)
-        found = assist(problem, person, settings=Settings(encodings=Path("by_need")))
-        assert [row.success for row in found.rows] == [row.success for row in assist(problem, person).rows]
+        found = assist(problem, person=person, encodings="by_need")
+        assert [row.success for row in found.rows] == [
+            row.success for row in assist(problem, person=person).rows
+        ]
 
 
-@pytest.mark.parametrize("constraint", [(), (Path("least_rate"),)], ids=["priced", "counted"])
+@pytest.mark.parametrize("constraint", [(), ("least_rate",)], ids=["priced", "counted"])
 def test_a_stop_leaves_rows_with_their_bounds(
-    constraint: tuple[Path, ...], monkeypatch: pytest.MonkeyPatch
+    constraint: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whichever search a limit ends, the rows before are proved, and the last one is between its bounds."""
     problem = ways(5002, ContainerRule.STRICT)
-    settings = Settings(constraints=constraint, constants=("least_rate=1",) if constraint else ())
-    everything = assist(problem, settings=settings)
+    constants = {"least_rate": 1} if constraint else None
+    everything = assist(problem, constraints=constraint, constants=constants)
     assert len(everything.rows) > 2
     left = 0
 
@@ -317,7 +318,7 @@ def test_a_stop_leaves_rows_with_their_bounds(
     lengths = set()
     for searches in range(100):
         left = searches
-        found = assist(problem, settings=settings)
+        found = assist(problem, constraints=constraint, constants=constants)
         lengths.add(len(found.rows))
         assert found.complete == (left >= 0)
         if found.complete:
@@ -336,11 +337,11 @@ def test_a_stop_while_trees_are_looked_at_one_by_one(monkeypatch: pytest.MonkeyP
 
     seeds = range(5000, 5060, 3)
     asked = [(ways(seed, ContainerRule.STRICT), table(seed)) for seed in seeds]
-    proved = [assist(*each) for each in asked]
+    proved = [assist(problem, person=person) for problem, person in asked]
     monkeypatch.setattr(module, "Ranked", Late)
     stopped = 0
-    for each, everything in zip(asked, proved, strict=True):
-        found = assist(*each)
+    for (problem, person), everything in zip(asked, proved, strict=True):
+        found = assist(problem, person=person)
         if not found.complete:
             check_stopped(found, everything)
             stopped += 1
@@ -380,7 +381,7 @@ def test_an_interruption_leaves_the_rows_so_far(monkeypatch: pytest.MonkeyPatch)
 def test_rates_are_needed_and_above_0() -> None:
     problem = random_problem(1, ContainerRule.STRICT)
     with pytest.raises(UserError, match=r"pour.*above 0"):
-        assist(problem, {"pour": Fraction(0)})
+        assist(problem, person={"pour": 0})
     without = Problem(problem.network, problem.kitchen, problem.goals, None, problem.utensils)
     with pytest.raises(UserError, match="--rates"):
         assist(without)

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from foon_asp.asp import Settings, Status, exact_success, solve
 from foon_asp.asp.exact_success import rate_scale
 from foon_asp.errors import UserError
-from foon_asp.explain.assist import assist
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.questions.alternatives import alternatives
+from foon_asp.questions.assist import assist
 from foon_asp.reduce import ALL, NONE, Reduction
 from tests import oracle
 from tests.conftest import Cli

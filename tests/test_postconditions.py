@@ -14,9 +14,10 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.soft import solve_soft
 from foon_asp.errors import BugError, UserError
-from foon_asp.explain.assist import assist
 from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels, parse_objectives
+from foon_asp.questions.assist import assist
+from foon_asp.questions.assist.priced_help import PricedHelp
 from foon_asp.questions.menu import menu
 from foon_asp.questions.pareto import pareto
 from foon_asp.questions.regret import regret
@@ -317,8 +318,6 @@ def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch
 def test_help_that_is_not_given_is_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = two_ways(["0.5", "0.5"], ["0.2"])
     assert assist(problem).complete
-    monkeypatch.setattr(
-        "foon_asp.explain.priced_help.PricedHelp.helped", lambda _self, units, _most: frozenset(units)
-    )
+    monkeypatch.setattr(PricedHelp, "helped", lambda _self, units, _most: frozenset(units))
     with pytest.raises(BugError, match="with help for"):
         assist(two_ways(["0.5", "0.5"], ["0.2", "0.1"]), most=1)

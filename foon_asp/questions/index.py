@@ -71,6 +71,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Solve several goals by one tree, and goal by goal, and say what is shared.",
         ("menu", "Menu"),
     ),
+    "assist": Entry(
+        "Explain",
+        "Find the best success when a person does at most 0, 1, 2, ... units, and which.",
+        ("assist", "Assistance"),
+    ),
 }
 
 

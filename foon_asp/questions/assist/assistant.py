@@ -1,6 +1,6 @@
-"""With a person's help: the best success when a person does up to so many of the units."""
+"""The best trees when a person does up to 0, 1, 2, ... of the units, one after the other."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -12,9 +12,8 @@ from foon_asp.asp.assisted import assisted, sees_who_does_it
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Bounded
 from foon_asp.asp.ranking import Ranked
-from foon_asp.errors import UserError
-from foon_asp.explain.priced_help import PricedHelp
 from foon_asp.problem import Costs, Objective, Problem, reach, relevant
+from foon_asp.questions.assist.priced_help import PricedHelp
 
 _SUCCESS = (Objective.SUCCESS,)
 _TREES = 200  # that are looked at one by one before units are counted
@@ -40,60 +39,24 @@ class Assisted(NamedTuple):
         """The product of the rates of those who do the units; ``None`` without a tree."""
         return None if self.costs is None else self.costs.success
 
+    def reaches(self, wanted: Fraction) -> bool:
+        """Whether the tree succeeds as often as is wanted."""
+        return self.success is not None and self.success >= wanted
 
-class Assistance(NamedTuple):
-    """The best trees with at most 0, 1, 2, ... units done by a person, in this order.
 
-    ``person`` has the rates of the motions that the person can do, or is ``None`` for one who never fails.
-    ``greatest`` is the best success with any number of them, ``None`` where there is no tree at all and where
-    a limit came first. ``wanted`` is the success that was to be reached, if one was. ``complete`` says that
-    every row is proved and none is left out of what was asked for.
+class Rows(NamedTuple):
+    """The rows that were asked for, as far as they were found.
+
+    ``greatest`` is the best success with any number of units done by the person, ``None`` where there is no
+    tree at all and where a limit came first. ``complete`` says that every row is proved and none is left out.
     """
 
-    problem: Problem
-    person: Mapping[str, Fraction] | None
     rows: tuple[Assisted, ...]
     greatest: Fraction | None
-    wanted: Fraction | None
     complete: bool
 
-    @property
-    def smallest(self) -> int | None:
-        """The fewest units to be done by a person for the wanted success; ``None`` where no row has it."""
-        if self.wanted is None:
-            return None
-        return next((row.most for row in self.rows if _reaches(row, self.wanted)), None)
 
-    @property
-    def exhausted(self) -> bool:
-        """Whether more help than that of the last row changes nothing."""
-        return bool(self.rows) and self.greatest is not None and self.rows[-1].success == self.greatest
-
-
-def assist(
-    problem: Problem,
-    person: Mapping[str, Fraction] | None = None,
-    most: int | None = None,
-    wanted: Fraction | None = None,
-    settings: Settings | None = None,
-    reporter: Reporter | None = None,
-) -> Assistance:
-    """Find the greatest success when a person does at most 0, 1, 2, ... of a tree's units.
-
-    ``person`` gives the rates of the motions that the person can do; without it, all of them, without ever
-    failing. The person takes over only what has a greater rate than the robot's. Among trees that succeed as
-    often one with the fewest units is best. The rows end with ``most``, with the first that succeeds as often
-    as ``wanted``, or where more help changes nothing.
-
-    The question is that of the weighted FOON, a tree with M human-assisted motions (Paulius, Dong and Sun,
-    Task planning with a weighted functional object-oriented network, 2021), answered for all trees. The time
-    limit is for everything. Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rates of 0.
-    """
-    _check_rates(problem, person)
-    return _Assistant(problem, person, settings or Settings(), reporter or Reporter()).answer(most, wanted)
-
-
-class _Assistant:
+class Assistant:
     """A problem, and what the person does better than the robot.
 
     Where nothing looks at who does a unit, :class:`PricedHelp` answers for each number of units. Where a
@@ -108,8 +71,9 @@ class _Assistant:
         settings: Settings,
         reporter: Reporter,
     ) -> None:
-        self._problem, self._person = problem, person
-        self._settings, self._reporter = settings.limited(), reporter
+        """Take rates, those of the person too where there are any, and settings whose deadline has begun."""
+        self._problem = problem
+        self._settings, self._reporter = settings, reporter
         self._first = True
         self._better: dict[str, Fraction] = {}
         for motion, robot in (problem.rates or {}).items():
@@ -122,14 +86,18 @@ class _Assistant:
             self._priced = PricedHelp(problem, self._better, self._unbounded, self._ranked)
         self._twins: Problem | None = None
 
-    def answer(self, most: int | None, wanted: Fraction | None) -> Assistance:
-        """Solve the question for one number after another."""
+    def rows(self, most: int | None, wanted: Fraction | None) -> Rows:
+        """Solve the question for one number of units after another.
+
+        They end with ``most``, with the first that succeeds as often as ``wanted``, or where more help
+        changes nothing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+        """
         rows: list[Assisted] = []
         last: Outcome | None = None  # with any number of units done by the person
 
-        def answered(complete: bool) -> Assistance:
+        def found(complete: bool) -> Rows:
             greatest = None if last is None or last.costs is None else last.costs.success
-            return Assistance(self._problem, self._person, tuple(rows), greatest, wanted, complete)
+            return Rows(tuple(rows), greatest, complete)
 
         for number in count():
             try:
@@ -139,24 +107,24 @@ class _Assistant:
                 self._check(row, rows[-1] if rows else None)
                 rows.append(row)
                 if row.status in {Status.FEASIBLE, Status.UNKNOWN}:
-                    return answered(complete=False)
+                    return found(complete=False)
                 if last is None:
                     best = self._unlimited()
                     if best.status in {Status.FEASIBLE, Status.UNKNOWN}:
-                        return answered(complete=False)
+                        return found(complete=False)
                     last = best
             except KeyboardInterrupt:
                 if not rows:
                     raise
-                return answered(complete=False)
-            if wanted is not None and _reaches(row, wanted):
+                return found(complete=False)
+            if wanted is not None and row.reaches(wanted):
                 break
             if last.costs is None or number == most:
                 break
             # a number that is asked for is answered, since with more help fewer units may do
             if row.success == last.costs.success and (most is None or _key(row.costs) == _key(last.costs)):
                 break
-        return answered(complete=True)
+        return found(complete=True)
 
     def _check(self, row: Assisted, before: Assisted | None) -> None:
         """Require that the person does few enough units, that the costs say so, and that help never hurts."""
@@ -287,18 +255,3 @@ def _beside(row: Assisted, before: Assisted, unlimited: Outcome | None) -> Assis
 
 def _key(costs: Costs | None) -> tuple[int | Fraction, ...]:
     return () if costs is None else costs.key((Objective.SUCCESS, Objective.UNITS))
-
-
-def _reaches(row: Assisted, wanted: Fraction) -> bool:
-    return row.success is not None and row.success >= wanted
-
-
-def _check_rates(problem: Problem, person: Mapping[str, Fraction] | None) -> None:
-    problem.require_rates_for([Objective.SUCCESS])
-    assert problem.rates is not None
-    of_person: Sequence[tuple[str, Fraction]] = [] if person is None else list(person.items())
-    for motion, rate in (*problem.rates.items(), *of_person):
-        if not 0 < rate <= 1:
-            raise UserError(
-                f"found the success rate {rate} of {motion!r}, expected one above 0 and at most 1"
-            )
