@@ -1,8 +1,11 @@
-"""Graphs of the reductions written down as lists of numbers, and random ones."""
+"""Graphs of the reductions and questions written down as lists of numbers, and random graphs."""
 
 import random
 from collections.abc import Collection, Iterable, Sequence
+from fractions import Fraction
 
+from foon_asp.network import NetworkBuilder, ObjectNode, Source
+from foon_asp.problem import ContainerRule, Problem
 from foon_asp.reduce.graph import Graph
 
 Action = tuple[Sequence[int], Sequence[int]]  # what it needs, what it gives
@@ -20,6 +23,35 @@ def plain(actions: Sequence[Action], goals: Iterable[int], start: Iterable[int] 
         units=len(actions),
         goals=tuple(goals),
     )
+
+
+def plain_problem(
+    actions: Sequence[Action], goals: Iterable[int], prices: Sequence[int] = (), rates: Sequence[str] = ()
+) -> Problem:
+    """Ask for things that come of the kitchen's item 0, by units of as many inputs as their price.
+
+    Without prices each unit has what it needs, and item 0 where that is nothing. What makes up for the
+    price are items of the kitchen. Units have the numbers of the actions.
+    """
+    builder = NetworkBuilder()
+    for number, (needs, gives) in enumerate(actions):
+        missing = prices[number] - len(needs) if prices else not needs
+        inputs = [*map(_thing, needs), *(_thing(0, str(n)) for n in range(missing))]
+        builder.add(f"motion {number}", inputs, list(map(_thing, gives)), Source("plain", number + 1))
+    network = builder.build()
+    ids = {node: o for o, node in enumerate(network.objects)}
+    return Problem(
+        network,
+        frozenset(o for node, o in ids.items() if node.label == "thing 0"),
+        tuple(ids[_thing(goal)] for goal in goals),
+        {f"motion {n}": Fraction(rate) for n, rate in enumerate(rates)} if rates else None,
+        frozenset(),
+        ContainerRule.STRICT,
+    )
+
+
+def _thing(number: int, *states: str) -> ObjectNode:
+    return ObjectNode.of(f"thing {number}", states)
 
 
 def random_graph(seed: int, actions: int = 9, objects: int = 8) -> Graph:

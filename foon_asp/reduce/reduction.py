@@ -3,7 +3,7 @@
 import gc
 import sys
 from collections.abc import Callable, Collection, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import NamedTuple
 
 from foon_asp.bounds import Cuts, landmark_cuts
@@ -31,8 +31,8 @@ class Reduced(NamedTuple):
     ``tree`` are the units of a tree, or ``None`` where there is none. ``units`` are those that a better tree
     can have and those of the tree, ascending. ``settled`` says that the tree is proved optimal. ``costs``
     compares trees exactly and ``bound`` is a lower bound by it on every tree; ``None`` and 0 where there is
-    none. ``cuts`` are the weighted cuts that gave it, over the units left at the time. ``interrupted`` says
-    that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
+    none. ``cuts`` are the weighted cuts of the greatest sum, over the units left at the time. ``interrupted``
+    says that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
     """
 
     tree: frozenset[int] | None
@@ -94,7 +94,7 @@ class _Reducer:
         self.expired, self.listener = expired, listener
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse = CoarseCosts(problem, objectives[0])
-        self.left: Collection[int] = ()
+        self.left: Collection[int]  # there before a tree is
         self.tree: set[int] = set()
         self.costs: ExactCosts | None = None
         self.bound = 0
@@ -107,8 +107,7 @@ class _Reducer:
                 guide = self._near_goals() or self._whole()
                 hopeless = guide is None
                 if guide is not None and self.reductions:
-                    self.tree = without_spare(self.graph, self.tree, self.coarse)
-                    self.listener.tree(self._units(self.tree))
+                    self._take(without_spare(self.graph, self.tree, self.coarse))
                     settled = self._narrow(guide)
                 ended = True
         except KeyboardInterrupt:
@@ -134,8 +133,8 @@ class _Reducer:
         found = narrow(graph, few, self.coarse, size // 4) if len(few) >= _FIRST else None
         if found is None:
             return None
-        made, self.tree = found
         self.left = everything
+        made, self.tree = found
         return made.cost
 
     def _whole(self) -> dict[int, int] | None:
@@ -155,23 +154,26 @@ class _Reducer:
         self.tree = self.tree or tree
         return made.cost
 
-    def _narrow(self, guide: dict[int, int] | None) -> bool:
+    def _narrow(self, guide: dict[int, int]) -> bool:
         """Go around until nothing changes; whether the tree is proved optimal."""
-        try:
+        costs: ExactCosts | None = None
+        with suppress(TooFineError):
             self.costs = costs = ExactCosts(self.problem, self.objectives, self.left)
-        except TooFineError:
-            costs = None
         if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
-            self._offer(derive(self.graph, self.left, costs, added=True).tree(self.graph, self.graph.goals))
+            self._follow_added(costs)
         thorough = False  # as a last resort
         for _ in range(_ROUNDS):
             before = len(self.left), self.tree
             if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
-                if self._bound(costs, guide or {}, thorough):
+                cuts = self._bound(costs, guide)
+                met = self._met(costs, cuts)
+                if not met and not self.expired():
+                    self._improve(costs, cuts, thorough)
+                    met = self._met(costs, cuts)
+                if met:
                     return True
-                if self.expired():
-                    break
-                self._drop_dear(costs)
+                if Reduction.DEAR in self.reductions and not self.expired():
+                    self._drop_dear(costs, cuts)
             if self.expired():
                 break
             if isinstance(self.left, range):
@@ -188,11 +190,17 @@ class _Reducer:
             guide = derive(self.graph, self.left, costs or self.coarse, added=False).cost
         return False
 
-    def _bound(self, costs: ExactCosts, guide: dict[int, int], thorough: bool) -> bool:
-        """Find cuts, and better trees near what they leave; whether bounds meet."""
-        searched = Reduction.BOUNDS in self.reductions
+    def _follow_added(self, costs: ExactCosts) -> None:
+        """Take the tree to which estimates lead that add needs up, if it is better than the one in hand."""
+        found = derive(self.graph, self.left, costs, added=True).tree(self.graph, self.graph.goals)
+        slim = without_spare(self.graph, found or self.tree, costs)
+        if sum(map(costs, slim)) < self._total(costs):
+            self._take(slim)
+
+    def _bound(self, costs: ExactCosts, guide: dict[int, int]) -> Cuts:
+        """Find cuts, and with them a bound: what is left always has a tree."""
         lazy = isinstance(self.left, range)  # a guide to all of them would have to look at all of them
-        self.cuts = cuts = landmark_cuts(
+        cuts = landmark_cuts(
             self.graph,
             self.graph.goals,
             self.left,
@@ -201,46 +209,31 @@ class _Reducer:
             self.expired,
             None if lazy else lambda rest: derive(self.graph, self.left, rest, added=False).cost,
         )
-        total = self._total(costs)
-        bound = total if cuts.hopeless else min(cuts.bound, total)
+        if self.cuts is None or cuts.bound > self.cuts.bound:
+            self.cuts = cuts
+        bound = min(cuts.bound, self._total(costs))
         if bound > self.bound:
             self.bound = bound
             self.listener.bound(costs, bound)
         if cuts.interrupted:
             raise KeyboardInterrupt
-        if searched and (cuts.hopeless or costs.met(cuts, self.tree)):
-            return True
-        if self.expired():
-            return False
+        return cuts
 
-        def rest(action: int) -> int:
-            return cuts.left[action] if action in cuts.left else costs(action)
+    def _met(self, costs: ExactCosts, cuts: Cuts) -> bool:
+        """Whether cuts prove that nothing is better than the tree in hand, and nothing else is wanted."""
+        return Reduction.BOUNDS in self.reductions and costs.met(cuts, self.tree)
 
-        few = near(self.graph, self.left, rest, total - cuts.bound, most=_MANY)
+    def _improve(self, costs: ExactCosts, cuts: Cuts, thorough: bool) -> None:
+        """Look for better trees near what cuts leave."""
+        rest = _rests(costs, cuts)
+        few = near(self.graph, self.left, rest, self._total(costs) - cuts.bound, most=_MANY)
         better = improved(self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough)
         if better is not self.tree:
-            self.tree = better
-            self.listener.tree(self._units(better))
-        return searched and costs.met(cuts, better)
+            self._take(better)
 
-    def _offer(self, tree: set[int] | None) -> None:
-        """Take a tree in hand if it is better than the one there, once spare units are left out of it."""
-        if tree is None or self.costs is None:
-            return
-        slim = without_spare(self.graph, tree, self.costs)
-        if sum(map(self.costs, slim)) < self._total(self.costs):
-            self.tree = slim
-            self.listener.tree(self._units(slim))
-
-    def _drop_dear(self, costs: ExactCosts) -> None:
+    def _drop_dear(self, costs: ExactCosts, cuts: Cuts) -> None:
         """Leave out what only trees have that are no better than the one in hand."""
-        if Reduction.DEAR not in self.reductions or self.cuts is None:
-            return
-        cuts = self.cuts
-
-        def rest(action: int) -> int:
-            return cuts.left[action] if action in cuts.left else costs(action)
-
+        rest = _rests(costs, cuts)
         limit = self._total(costs) - cuts.bound + costs.doubt
         if Reduction.BOUNDS in self.reductions and not costs.doubt:
             limit -= 1
@@ -253,6 +246,10 @@ class _Reducer:
             left = nearer
         self.left = left
 
+    def _take(self, tree: set[int]) -> None:
+        self.tree = tree
+        self.listener.tree(self._units(tree))
+
     def _total(self, costs: ExactCosts) -> int:
         return sum(map(costs, self.tree))
 
@@ -262,9 +259,13 @@ class _Reducer:
     def _result(self, settled: bool) -> Reduced:
         tree = self._units(self.tree)
         early = isinstance(self.left, range)  # nothing was left out, and there is no time to begin with it
-        left = set() if settled or early else set(self._units(self.left))
-        if self.reductions:
-            left |= tree
+        left = tree if settled or early else tree | self._units(self.left)
         return Reduced(
             tree, tuple(sorted(left)), settled, self.costs, self.bound, self.cuts, early and not settled
         )
+
+
+def _rests(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
+    """Give what cuts leave of the costs of actions."""
+    left = cuts.left
+    return lambda action: left[action] if action in left else costs(action)
