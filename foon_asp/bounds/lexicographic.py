@@ -69,6 +69,10 @@ class Lexicographic:
                 return _product_sign(rates, exponents)
         return 0
 
+    def compare(self, one: Vector, other: Vector) -> int:
+        """Give -1, 0 or 1 for a cost below, equal to or above another, exactly."""
+        return self.sign([a - b for a, b in zip(one, other, strict=True)])
+
     def approximate(self, vector: Sequence[Fraction]) -> list[float]:
         """Give each level as a float, for methods that guess what is then checked."""
         values: list[float] = []
