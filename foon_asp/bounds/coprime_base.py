@@ -7,21 +7,22 @@ equal exponents. Finding them takes greatest common divisors alone, and no prime
 
 import math
 from collections.abc import Iterable, Sequence
+from fractions import Fraction
 
 
 def coprime_base(numbers: Iterable[int]) -> list[int]:
     """Give numbers above 1, no two with a common divisor, whose powers multiply to each of these numbers."""
     base: list[int] = []
-    waiting = sorted({n for n in numbers if n > 1})
+    waiting = sorted(set(numbers))
     while waiting:
         number = waiting.pop()
+        if number == 1:
+            continue
         for place, other in enumerate(base):
             common = math.gcd(number, other)
-            if common == number == other:
-                break
             if common > 1:
                 del base[place]
-                waiting += [n for n in (common, number // common, other // common) if n > 1]
+                waiting += [common, *Fraction(number, other).as_integer_ratio()]
                 break
         else:
             base.append(number)

@@ -6,8 +6,7 @@ Costs add up coordinate by coordinate, can be multiplied by rational numbers, an
 at which they differ decides. So linear programming works on them as on numbers, and nothing is rounded.
 """
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -19,7 +18,6 @@ Vector = tuple[Fraction, ...]
 _MARGIN = 1e-9  # of a sum of logarithms, beyond which its float cannot have the wrong sign
 _TINY = 1e-290  # below this, floats lose their last digits
 _DIGITS = 60  # of a logarithm, at first
-_SMALL = 200_000  # bits of powers that are sooner multiplied out than compared by more digits
 
 
 class Lexicographic:
@@ -30,10 +28,12 @@ class Lexicographic:
 
     def __init__(self, levels: Sequence[Sequence[Fraction] | None]) -> None:
         self.levels = tuple(None if rates is None else tuple(rates) for rates in levels)
-        self.width = sum(1 if rates is None else len(rates) for rates in self.levels)
-        self._logarithms = [
-            [float(_minus_log(rate, _DIGITS)[0]) for rate in rates or ()] for rates in self.levels
+        # what a coordinate counts in its level, in floats
+        self._measures = [
+            [1.0] if rates is None else [float(minus_log(rate, _DIGITS)[0]) for rate in rates]
+            for rates in self.levels
         ]
+        self.width = sum(map(len, self._measures))
 
     @property
     def zero(self) -> Vector:
@@ -49,101 +49,93 @@ class Lexicographic:
 
         It can be 0 for a vector that is not: 7/10 * 7/10 is 49/100.
         """
-        place = 0
-        for level, (rates, logarithms) in enumerate(zip(self.levels, self._logarithms, strict=True)):
-            if rates is None:
-                value = vector[place]
-                place += 1
-                if value:
-                    return 1 if value > 0 else -1
-                continue
-            exponents = vector[place : place + len(rates)]
-            place += len(rates)
-            if any(exponents):
-                terms = [float(e) * log for e, log in zip(exponents, logarithms, strict=True)]
-                total, size = sum(terms), sum(map(abs, terms))
-                if abs(total) > _MARGIN * size + _TINY:
-                    return 1 if total > 0 else -1
-                if self._is_one(level, exponents):
-                    continue
-                return _product_sign(rates, exponents)
+        for level, part in self._parts(vector):
+            rates = self.levels[level]
+            found = _sign(part[0]) if rates is None else self._sign_of_product(level, rates, part)
+            if found != 0:
+                return found
         return 0
 
     def compare(self, one: Vector, other: Vector) -> int:
         """Give -1, 0 or 1 for a cost below, equal to or above another, exactly."""
-        return self.sign([a - b for a, b in zip(one, other, strict=True)])
+        return self.sign(minus(one, other))
 
-    def approximate(self, vector: Sequence[Fraction]) -> list[float]:
+    def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
         """Give each level as a float, for methods that guess what is then checked."""
-        values: list[float] = []
-        place = 0
-        for rates, logarithms in zip(self.levels, self._logarithms, strict=True):
-            if rates is None:
-                values.append(float(vector[place]))
-                place += 1
-            else:
-                exponents = vector[place : place + len(rates)]
-                values.append(sum(float(e) * log for e, log in zip(exponents, logarithms, strict=True)))
-                place += len(rates)
-        return values
+        return [sum(self._terms(level, part)) for level, part in self._parts(vector)]
+
+    def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
+        """Give the coordinates of each level."""
+        begin = 0
+        for level, measures in enumerate(self._measures):
+            end = begin + len(measures)
+            yield level, vector[begin:end]
+            begin = end
+
+    def _terms(self, level: int, part: Sequence[Fraction | int]) -> list[float]:
+        return [float(e) * measure for e, measure in zip(part, self._measures[level], strict=True)]
+
+    def _sign_of_product(
+        self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
+    ) -> int:
+        """Compare a product of powers of a level's rates with 1: -1 where it is above 1."""
+        if not any(exponents):
+            return 0
+        terms = self._terms(level, exponents)
+        about = sum(terms)
+        if abs(about) > _MARGIN * sum(map(abs, terms)) + _TINY:
+            return _sign(about)
+        if self._is_one(level, exponents):
+            return 0
+        digits = _DIGITS
+        while True:
+            total = error = Fraction(0)
+            for place, exponent in enumerate(exponents):
+                logarithm, off = minus_log(rates[place], digits)
+                total += logarithm * exponent
+                error += abs(off * exponent)
+            if abs(total) > error:
+                return _sign(total)
+            digits += digits
 
     @cached_property
-    def _factors(self) -> list[list[dict[int, int]]]:
-        """For each rate of each level its power of every number of a base without common divisors."""
-        found: list[list[dict[int, int]]] = []
+    def _factors(self) -> list[dict[int, dict[int, int]]]:
+        """For each level numbers without common divisors, with the power of each in the rates, by place."""
+        found: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
-            base = coprime_base([n for rate in rates or () for n in rate.as_integer_ratio()])
-            parts = []
-            for rate in rates or ():
-                under = powers(rate.denominator, base)
-                over = powers(rate.numerator, base)
-                parts.append({b: over.get(b, 0) - under.get(b, 0) for b in over.keys() | under.keys()})
-            found.append(parts)
+            base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())
+            factors: dict[int, dict[int, int]] = {b: {} for b in base}
+            for place, rate in enumerate(rates or ()):
+                for b, power in powers(rate.numerator, base).items():
+                    factors[b][place] = power
+                for b, power in powers(rate.denominator, base).items():
+                    factors[b][place] = -power
+            found.append(factors)
         return found
 
     def _is_one(self, level: int, exponents: Sequence[Fraction | int]) -> bool:
         """Whether a product of powers of a level's rates is 1, however large the powers are."""
-        total: dict[int, Fraction] = {}
-        for factors, exponent in zip(self._factors[level], exponents, strict=True):
-            for b, power in factors.items():
-                total[b] = total.get(b, Fraction(0)) + power * exponent
-        return not any(total.values())
+        return not any(
+            sum(power * exponents[place] for place, power in rates.items())
+            for rates in self._factors[level].values()
+        )
+
+
+def minus(one: Vector, other: Vector) -> Vector:
+    """Take one cost from another."""
+    return tuple(a - b for a, b in zip(one, other, strict=True))
 
 
 @lru_cache(maxsize=4096)
-def _minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
+def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
     """Give ``-log(rate)`` to so many digits, and by how much it may be off; the rate is below 1."""
     # close to 1, the logarithms of denominator and numerator share their first digits
     shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
     precise = Context(prec=digits + shared + 10)
     below, above = (Fraction(precise.ln(Decimal(n))) for n in (rate.denominator, rate.numerator))
-    return below - above, (below + above + 1) / Fraction(10 ** (precise.prec - 1))
+    # each is off by half of its last digit, at most
+    return below - above, (below + above) / Fraction(10 ** (precise.prec - 1))
 
 
-def _product_sign(rates: Sequence[Fraction], exponents: Sequence[Fraction | int]) -> int:
-    """Compare 1 with a product of rational powers that is not 1: -1 where the product is above 1."""
-    digits = _DIGITS
-    while True:
-        total = error = Fraction(0)
-        for rate, exponent in zip(rates, exponents, strict=True):
-            if exponent:
-                logarithm, off = _minus_log(rate, digits)
-                total += logarithm * exponent
-                error += off * (exponent if exponent > 0 else -exponent)
-        if abs(total) > error:
-            return 1 if total > 0 else -1
-        common = math.lcm(*(e.denominator for e in exponents))
-        whole = [int(e * common) for e in exponents]
-        if sum(abs(p) * r.denominator.bit_length() for r, p in zip(rates, whole, strict=True)) <= _SMALL:
-            return _compared(rates, whole)
-        digits *= 2
-
-
-def _compared(rates: Sequence[Fraction], whole: Sequence[int]) -> int:
-    """Compare a product of powers with 1 by multiplying it out."""
-    over, under = 1, 1
-    for rate, power in zip(rates, whole, strict=True):
-        one, other = rate.numerator ** abs(power), rate.denominator ** abs(power)
-        over *= one if power > 0 else other
-        under *= other if power > 0 else one
-    return (over < under) - (over > under)
+def _sign(number: Fraction | float) -> int:
+    return (number > 0) - (number < 0)

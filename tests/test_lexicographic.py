@@ -1,0 +1,114 @@
+"""Costs of several levels: what is compared how closely, and what numbers are taken apart into."""
+
+import random
+import sys
+from fractions import Fraction
+
+import pytest
+
+from foon_asp.bounds import Lexicographic
+from foon_asp.bounds.coprime_base import coprime_base, powers
+from foon_asp.bounds.lexicographic import minus_log
+
+ONE, HALF = Fraction(1), Fraction(1, 2)
+COUNT = Lexicographic([None])
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_products_that_differ_in_a_late_digit_are_ordered(seed: int) -> None:
+    rng = random.Random(seed)
+    one, other = Fraction(rng.randint(100, 999), 1000), Fraction(rng.randint(100, 999), 1001)
+    for digits in (8, 69, 70, 71, 72, 140):
+        for late in (-1, 1):
+            third = one * other * (1 + late * Fraction(1, 10**digits))
+            order = Lexicographic([[one, other, third], None])
+            assert order.sign((ONE, ONE, -ONE, Fraction(0))) == late
+            assert order.sign((-ONE, -ONE, ONE, Fraction(0))) == -late
+            assert order.sign((-HALF, -HALF, HALF, ONE)) == -late
+            assert (
+                order.compare((ONE, ONE, Fraction(0), Fraction(0)), (Fraction(0), Fraction(0), ONE, ONE))
+                == late
+            )
+
+
+@pytest.mark.parametrize(
+    ("rates", "exponents"),
+    [
+        (["2/3", "3/4", "1/2"], [1, 1, -1]),
+        (["1/2", "1/4", "1/8"], [-5, 1, 1]),
+        (["2/3", "4/9", "8/27"], [3, -3, 1]),
+        (["6/35", "2/5", "3/7"], [2, -2, -2]),
+        (["6/35", "2/5", "3/7"], [0, 0, 0]),
+    ],
+)
+def test_products_that_are_1_leave_it_to_the_next_level(rates: list[str], exponents: list[int]) -> None:
+    order = Lexicographic([[Fraction(rate) for rate in rates], None])
+    for share in (ONE, Fraction(1, 7), Fraction(10**200)):
+        parts = [share * exponent for exponent in exponents]
+        assert [order.sign((*parts, Fraction(count))) for count in (-2, 0, 2)] == [-1, 0, 1]
+
+
+def test_what_is_too_small_for_a_float_is_above_0() -> None:
+    tiny = Fraction(1, 10**400)
+    order = Lexicographic([[HALF, Fraction(1, 3)], None])
+    assert order.sign((tiny, Fraction(0), -ONE)) == 1
+    assert order.sign((Fraction(0), -tiny, ONE)) == -1
+    assert order.sign((tiny, -tiny, ONE)) == -1
+    assert order.sign((Fraction(0), Fraction(0), -tiny)) == -1
+    assert order.approximate((tiny, ONE, tiny)) == [pytest.approx(1.0986122886681098), 0.0]
+
+
+def test_a_vector_of_another_width_is_an_error() -> None:
+    order = Lexicographic([None, [HALF, Fraction(1, 3)]])
+    assert order.width == 3
+    assert Lexicographic([]).zero == ()
+    for function in (
+        order.sign,
+        order.approximate,
+        lambda vector: order.total([vector]),
+        lambda vector: order.compare(vector, order.zero),
+    ):
+        function(order.zero)
+        with pytest.raises(ValueError, match="zip"):
+            function((Fraction(0), ONE))
+
+    with pytest.raises(ValueError, match="zip"):
+        order.compare((*order.zero, ONE), order.zero)
+
+
+def test_where_floats_tell_nothing_is_taken_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(sys.modules["foon_asp.bounds.lexicographic"], "coprime_base")
+    order = Lexicographic([[HALF, Fraction(1, 3)], [Fraction(1, 5), Fraction(1, 6)]])
+    assert order.sign((ONE, -HALF, Fraction(0), Fraction(0))) == 1
+    assert order.sign((Fraction(1, 10**6), Fraction(-1, 10**6), Fraction(0), Fraction(0))) == -1
+    assert order.sign((Fraction(0), Fraction(0), -ONE, ONE)) == 1
+    assert order.sign(order.zero) == 0
+    with pytest.raises(NameError):
+        order.sign((ONE, Fraction(-6309297535714574, 10**16), Fraction(0), Fraction(0)))  # log 2 / log 3
+
+
+def test_logarithms_have_ten_digits_more_than_are_asked_for_and_those_that_numbers_next_to_1_share() -> None:
+    assert minus_log(Fraction(1, 8), 2) == (Fraction("2.07944154168"), Fraction("2.07944154168") / 10**11)
+    assert minus_log(HALF, 2) == (Fraction("0.693147180560"), Fraction("0.693147180560") / 10**11)
+    # ln 10 - ln 9, of 13 digits each
+    assert minus_log(Fraction(9, 10), 2) == (
+        Fraction("2.302585092994") - Fraction("2.197224577336"),
+        Fraction("4.499809670330") / 10**12,
+    )
+    for rate in (HALF, Fraction(2, 3), Fraction(1, 10**50), 1 - Fraction(1, 10**50), 1 - Fraction(1, 3**400)):
+        exact = minus_log(rate, 200)[0]
+        for digits in (1, 10, 60):
+            found, off = minus_log(rate, digits)
+            assert abs(found - exact) < off < found / 10**digits
+
+
+def test_numbers_are_taken_apart_into_coprime_ones() -> None:
+    assert coprime_base([]) == coprime_base([1, 1]) == []
+    assert coprime_base([7, 1, 7]) == [7]
+    assert sorted(coprime_base([12, 18])) == [2, 3]
+    assert sorted(coprime_base([4, 16, 64])) == [4]
+    assert sorted(coprime_base([10, 21, 35])) == [2, 3, 5, 7]
+    assert sorted(coprime_base([8, 9])) == [8, 9]
+    assert powers(72, [2, 3, 5]) == {2: 3, 3: 2}
+    assert powers(64, [8]) == {8: 2}
+    assert powers(1, [2]) == {}
