@@ -3,20 +3,13 @@
 import math
 import random
 from fractions import Fraction
-from itertools import combinations
 
 import pytest
 
 from foon_asp.bounds import (
-    Branch,
-    CheaperError,
     Cutter,
-    Hopeless,
     Hypergraph,
     Lexicographic,
-    Packing,
-    Proof,
-    Prover,
 )
 from foon_asp.bounds.exact_optimum import exact_optimum
 
@@ -136,119 +129,6 @@ def test_the_exact_optimum_of_a_triangle_is_a_half_of_each() -> None:
         assert found.value == (Fraction(3, 2), Fraction(3))
     assert exact_optimum(rows, costs, order, [0], [2]) is None  # singular
     assert exact_optimum(rows, costs, order, [0], [0]) is None  # the last row is not covered
-
-
-def covering(sets: list[list[int]], elements: int) -> tuple[Hypergraph, list[int]]:
-    """Ask for elements, each of which needs one of the sets that hold it; sets cost, elements do not."""
-    needs: list[list[int]] = [[] for _ in sets]
-    gives = [[number] for number in range(len(sets))]
-    for number, members in enumerate(sets):
-        for element in members:
-            needs.append([number])
-            gives.append([len(sets) + element])
-    return Hypergraph(len(sets) + elements, needs, gives, []), [len(sets) + e for e in range(elements)]
-
-
-def least_cover(sets: list[list[int]], elements: int) -> list[int]:
-    for size in range(len(sets) + 1):
-        for chosen in combinations(range(len(sets)), size):
-            if {e for number in chosen for e in sets[number]} == set(range(elements)):
-                return list(chosen)
-    raise AssertionError
-
-
-def check(
-    graph: Hypergraph, targets: list[int], costs: list[tuple[Fraction]], proof: Proof
-) -> Fraction | None:
-    """Recompute what a proof proves: the least of its leaves, ``None`` where there is no derivation."""
-
-    def bound(proof: Proof, used: frozenset[int], without: frozenset[int]) -> Fraction | None:
-        if isinstance(proof, Branch):
-            sides = (
-                bound(proof.without, used, without | {proof.action}),
-                bound(proof.using, used | {proof.action}, without),
-            )
-            return min((side for side in sides if side is not None), default=None)
-        wanted = {*targets, *(o for a in used for o in graph.needs[a])}
-        cuts = [proof.cut] if isinstance(proof, Hopeless) else [cut for cut, _ in proof.weights]
-        for cut in cuts:
-            assert wanted & {*cut.objects}
-        if isinstance(proof, Hopeless):
-            assert not {*proof.cut.members} - without
-            return None
-        assert isinstance(proof, Packing)
-        for action, (cost,) in enumerate(costs):
-            load = sum((weight for cut, (weight,) in proof.weights if action in cut.members), Fraction(0))
-            assert load <= (0 if action in used else cost) or action in without
-        return sum((w for _, (w,) in proof.weights), Fraction(0)) + sum(
-            (costs[a][0] for a in used), Fraction(0)
-        )
-
-    return bound(proof, frozenset(), frozenset())
-
-
-def test_branching_closes_the_gap_of_random_covers() -> None:
-    branched = 0
-    for seed in range(40):
-        rng = random.Random(seed)
-        elements = rng.randint(4, 7)
-        sets = [rng.sample(range(elements), 2) for _ in range(rng.randint(6, 9))]
-        sets += [[e] for e in range(elements) if not any(e in members for members in sets)]
-        graph, targets = covering(sets, elements)
-        costs = [(Fraction(number < len(sets)),) for number in range(len(graph.needs))]
-        best = least_cover(sets, elements)
-        derivation = [*best, *_deliveries(sets, best, elements)]
-        prover = Prover(graph, targets, costs, COUNT)
-        proof = prover.prove(derivation)
-        assert proof is not None
-        assert check(graph, targets, costs, proof) == len(best)
-        branched += isinstance(proof, Branch)
-        worse = [*range(len(sets)), *_deliveries(sets, list(range(len(sets))), elements)]
-        if len(best) < len(sets):
-            with pytest.raises(CheaperError) as found:
-                prover.prove(worse)
-            assert Cutter(graph, targets).reached_by(found.value.actions)
-            assert sum(a < len(sets) for a in found.value.actions) < len(sets)
-    assert branched >= 5
-
-
-def _deliveries(sets: list[list[int]], chosen: list[int], elements: int) -> list[int]:
-    """Give for each element one action that takes it from a chosen set."""
-    actions = [(number, element) for number, members in enumerate(sets) for element in members]
-    first: dict[int, int] = {}
-    for place, (number, element) in enumerate(actions):
-        if number in chosen:
-            first.setdefault(element, len(sets) + place)
-    return [first[element] for element in range(elements)]
-
-
-def test_the_relaxation_gives_what_it_has() -> None:
-    graph, targets = covering([[0, 1], [0, 2], [1, 2]], 3)
-    costs = [(Fraction(number < 3),) for number in range(len(graph.needs))]
-    relaxed = Prover(graph, targets, costs, COUNT).relax([])
-    assert relaxed is not None
-    packing, value = relaxed
-    assert value == (Fraction(3, 2),)
-    assert check(graph, targets, costs, packing) == Fraction(3, 2)
-
-
-def test_time_is_kept() -> None:
-    graph, targets = covering([[0, 1], [0, 2], [1, 2]], 3)
-    assert Prover(graph, targets, ones(graph), COUNT, expired=lambda: True).prove([0, 1, 3, 4, 6]) is None
-
-
-def test_targets_at_hand_cost_nothing() -> None:
-    assert Prover(KITCHEN, [0, 1], ones(KITCHEN), COUNT).prove([]) == Packing(())
-
-
-def test_what_is_forbidden_is_out_of_every_proof() -> None:
-    prover = Prover(KITCHEN, [4], ones(KITCHEN), COUNT, frozenset({1}))
-    proof = prover.prove([0, 3, 2])
-    assert isinstance(proof, Packing)
-    assert all(1 not in cut.members for cut, _ in proof.weights)
-    lost = Cutter(KITCHEN, [4], frozenset({1, 3})).hopeless
-    assert lost is not None
-    assert lost.members == ()
 
 
 @pytest.mark.parametrize("seed", range(200))

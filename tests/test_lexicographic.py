@@ -1,12 +1,11 @@
 """Costs of several levels: what is compared how closely, and what numbers are taken apart into."""
 
 import random
-import sys
 from fractions import Fraction
 
 import pytest
 
-from foon_asp.bounds import Lexicographic
+from foon_asp.bounds import Lexicographic, lexicographic
 from foon_asp.bounds.coprime_base import coprime_base, powers
 from foon_asp.bounds.lexicographic import minus_log
 
@@ -77,7 +76,7 @@ def test_a_vector_of_another_width_is_an_error() -> None:
 
 
 def test_where_floats_tell_nothing_is_taken_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr(sys.modules["foon_asp.bounds.lexicographic"], "coprime_base")
+    monkeypatch.delattr(lexicographic, "coprime_base")
     order = Lexicographic([[HALF, Fraction(1, 3)], [Fraction(1, 5), Fraction(1, 6)]])
     assert order.sign((ONE, -HALF, Fraction(0), Fraction(0))) == 1
     assert order.sign((Fraction(1, 10**6), Fraction(-1, 10**6), Fraction(0), Fraction(0))) == -1

@@ -1,9 +1,18 @@
 """The linear relaxation of hitting every landmark, in floats: where exact weights start from."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from foon_asp.errors import BugError
+
+_OPTIONS: Final[dict[str, bool | str | float]] = {
+    "output_flag": False,
+    "presolve": "off",
+    "solver": "simplex",
+    "threads": 1,
+    "primal_feasibility_tolerance": 1e-10,
+    "dual_feasibility_tolerance": 1e-10,
+}
 
 
 class Relaxed(NamedTuple):
@@ -32,14 +41,7 @@ class Covering:
 
         self._library, self._array = highspy, np.array
         self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
-        for option, value in (
-            ("output_flag", False),
-            ("presolve", "off"),
-            ("solver", "simplex"),
-            ("threads", 1),
-            ("primal_feasibility_tolerance", 1e-10),
-            ("dual_feasibility_tolerance", 1e-10),
-        ):
+        for option, value in _OPTIONS.items():
             self._highs.setOptionValue(option, value)
         count = len(costs)
         self._highs.addVars(count, np.zeros(count), np.full(count, highspy.kHighsInf))
@@ -55,7 +57,8 @@ class Covering:
         """Find a basic optimum of the rows so far."""
         highs = self._highs
         highs.run()
-        if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal:
+        status = self._library.HighsModelStatus
+        if highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty}:
             raise BugError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
         basis, solution = highs.getBasis(), highs.getSolution()
         basic = self._library.HighsBasisStatus.kBasic

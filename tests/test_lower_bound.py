@@ -1,0 +1,433 @@
+"""Proofs and bounds on small graphs: what is proved, by which cuts, and what is asked for it."""
+
+import random
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+import pytest
+
+from foon_asp.bounds import (
+    Branch,
+    CheaperError,
+    Cut,
+    Cutter,
+    Hopeless,
+    Hypergraph,
+    Lexicographic,
+    Packing,
+    Proof,
+    Prover,
+    lower_bound,
+)
+from foon_asp.bounds.exact_optimum import ExactOptimum, exact_optimum
+from foon_asp.bounds.relaxation import Covering, Relaxed
+from foon_asp.errors import BugError
+
+COUNT = Lexicographic([None])
+
+# 0 and 1 are at hand; 4 is made of 2 and 3, 2 from 0 or from 3, 3 from 1 or from 2: there is a circle.
+KITCHEN = Hypergraph(5, needs=[[2, 3], [0], [3], [1], [2]], gives=[[4], [2], [2], [3], [3]], start=[0, 1])
+
+
+def costs(*values: int) -> list[tuple[Fraction]]:
+    return [(Fraction(value),) for value in values]
+
+
+def ones(graph: Hypergraph) -> list[tuple[Fraction]]:
+    return costs(*[1] * len(graph.needs))
+
+
+def covering(sets: list[list[int]], elements: int) -> tuple[Hypergraph, list[int]]:
+    """Ask for elements, each of which needs one of the sets that hold it; sets cost, elements do not."""
+    needs: list[list[int]] = [[] for _ in sets]
+    gives = [[number] for number in range(len(sets))]
+    for number, members in enumerate(sets):
+        for element in members:
+            needs.append([number])
+            gives.append([len(sets) + element])
+    return Hypergraph(len(sets) + elements, needs, gives, []), [len(sets) + e for e in range(elements)]
+
+
+def least_cover(sets: list[list[int]], elements: int) -> list[int]:
+    for size in range(len(sets) + 1):
+        for chosen in combinations(range(len(sets)), size):
+            if {e for number in chosen for e in sets[number]} == set(range(elements)):
+                return list(chosen)
+    raise AssertionError
+
+
+def check(
+    graph: Hypergraph, targets: list[int], costs: list[tuple[Fraction]], proof: Proof
+) -> Fraction | None:
+    """Recompute what a proof proves: the least of its leaves, ``None`` where there is no derivation."""
+
+    def bound(proof: Proof, used: frozenset[int], without: frozenset[int]) -> Fraction | None:
+        if isinstance(proof, Branch):
+            sides = (
+                bound(proof.without, used, without | {proof.action}),
+                bound(proof.using, used | {proof.action}, without),
+            )
+            return min((side for side in sides if side is not None), default=None)
+        wanted = {*targets, *(o for a in used for o in graph.needs[a])}
+        cuts = [proof.cut] if isinstance(proof, Hopeless) else [cut for cut, _ in proof.weights]
+        for cut in cuts:
+            assert wanted & {*cut.objects}
+        if isinstance(proof, Hopeless):
+            assert not {*proof.cut.members} - without
+            return None
+        assert isinstance(proof, Packing)
+        for action, (cost,) in enumerate(costs):
+            load = sum((weight for cut, (weight,) in proof.weights if action in cut.members), Fraction(0))
+            assert load <= (0 if action in used else cost) or action in without
+        return sum((w for _, (w,) in proof.weights), Fraction(0)) + sum(
+            (costs[a][0] for a in used), Fraction(0)
+        )
+
+    return bound(proof, frozenset(), frozenset())
+
+
+def test_branching_closes_the_gap_of_random_covers() -> None:
+    branched = 0
+    for seed in range(40):
+        rng = random.Random(seed)
+        elements = rng.randint(4, 7)
+        sets = [rng.sample(range(elements), 2) for _ in range(rng.randint(6, 9))]
+        sets += [[e] for e in range(elements) if not any(e in members for members in sets)]
+        graph, targets = covering(sets, elements)
+        costs = [(Fraction(number < len(sets)),) for number in range(len(graph.needs))]
+        best = least_cover(sets, elements)
+        derivation = [*best, *_deliveries(sets, best, elements)]
+        prover = Prover(graph, targets, costs, COUNT)
+        proof = prover.prove(derivation)
+        assert proof is not None
+        assert check(graph, targets, costs, proof) == len(best)
+        branched += isinstance(proof, Branch)
+        worse = [*range(len(sets)), *_deliveries(sets, list(range(len(sets))), elements)]
+        if len(best) < len(sets):
+            with pytest.raises(CheaperError) as found:
+                prover.prove(worse)
+            assert Cutter(graph, targets).reached_by(found.value.actions)
+            assert sum(a < len(sets) for a in found.value.actions) < len(sets)
+    assert branched >= 5
+
+
+def _deliveries(sets: list[list[int]], chosen: list[int], elements: int) -> list[int]:
+    """Give for each element one action that takes it from a chosen set."""
+    actions = [(number, element) for number, members in enumerate(sets) for element in members]
+    first: dict[int, int] = {}
+    for place, (number, element) in enumerate(actions):
+        if number in chosen:
+            first.setdefault(element, len(sets) + place)
+    return [first[element] for element in range(elements)]
+
+
+def test_the_relaxation_gives_what_it_has() -> None:
+    graph, targets = covering([[0, 1], [0, 2], [1, 2]], 3)
+    costs = [(Fraction(number < 3),) for number in range(len(graph.needs))]
+    relaxed = Prover(graph, targets, costs, COUNT).relax([])
+    assert relaxed is not None
+    packing, value = relaxed
+    assert value == (Fraction(3, 2),)
+    assert check(graph, targets, costs, packing) == Fraction(3, 2)
+
+
+def test_time_is_kept() -> None:
+    graph, targets = covering([[0, 1], [0, 2], [1, 2]], 3)
+    assert Prover(graph, targets, ones(graph), COUNT, expired=lambda: True).prove([0, 1, 3, 4, 6]) is None
+
+
+def test_targets_at_hand_cost_nothing() -> None:
+    assert Prover(KITCHEN, [0, 1], ones(KITCHEN), COUNT).prove([]) == Packing(())
+
+
+def test_what_is_forbidden_is_out_of_every_proof() -> None:
+    prover = Prover(KITCHEN, [4], ones(KITCHEN), COUNT, frozenset({1}))
+    proof = prover.prove([0, 3, 2])
+    assert isinstance(proof, Packing)
+    assert all(1 not in cut.members for cut, _ in proof.weights)
+    lost = Cutter(KITCHEN, [4], frozenset({1, 3})).hopeless
+    assert lost is not None
+    assert lost.members == ()
+
+
+class Watched(Covering):
+    """A relaxation that takes only rows that its last solution misses."""
+
+    def __init__(self, costs: Sequence[float]) -> None:
+        super().__init__(costs)
+        self.rows: list[list[int]] = []
+        self.solutions: list[Relaxed] = []
+
+    def add(self, row: Sequence[int]) -> None:
+        assert sum(self.solutions[-1].x[column] for column in row) < 0.999999
+        assert row not in self.rows
+        self.rows.append(list(row))
+        super().add(row)
+
+    def solve(self) -> Relaxed:
+        self.solutions.append(super().solve())
+        return self.solutions[-1]
+
+
+@pytest.fixture
+def watched(monkeypatch: pytest.MonkeyPatch) -> list[Watched]:
+    """Give the relaxations as they are made, the first of all the root's."""
+    made: list[Watched] = []
+
+    def make(costs: Sequence[float]) -> Watched:
+        made.append(Watched(costs))
+        return made[-1]
+
+    monkeypatch.setattr(lower_bound, "Covering", make)
+    return made
+
+
+@pytest.fixture
+def floats_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have every basis lead nowhere."""
+    monkeypatch.setattr(lower_bound, "exact_optimum", lambda *_: None)
+
+
+# Two triangles that share set 0: elements are their sides, sets their corners. Half of each set costs 5/2.
+BOWTIE = [[0, 1, 3, 4], [0, 2], [1, 2], [3, 5], [4, 5]]
+
+
+def test_a_cheaper_derivation_may_be_found_among_those_that_use_an_action() -> None:
+    graph, targets = covering(BOWTIE, 6)
+    price = costs(*[1] * 5, *[0] * 12)
+    without = [1, 2, 3, 4]
+    with pytest.raises(CheaperError, match=r"^a cheaper derivation was found$") as found:
+        Prover(graph, targets, price, COUNT).prove([*without, *_deliveries(BOWTIE, without, 6)])
+    sets = [action for action in found.value.actions if action < 5]
+    assert len(sets) == 3
+    assert sets[0] == 0
+    assert Cutter(graph, targets).reached_by(found.value.actions)
+
+
+def test_the_most_expensive_of_those_half_taken_is_branched_on() -> None:
+    sets = [[0, 1], [0, 2], [1, 2]]
+    graph, targets = covering(sets, 3)
+    for dear in range(3):
+        price = costs(*(3 if number == dear else 2 for number in range(3)), *[0] * 6)
+        best = sorted({0, 1, 2} - {dear})
+        proof = Prover(graph, targets, price, COUNT).prove([*best, *_deliveries(sets, best, 3)])
+        assert isinstance(proof, Branch)
+        assert proof.action == dear
+        assert check(graph, targets, price, proof) == 4
+        same = Prover(graph, targets, costs(*[1] * 3, *[0] * 6), COUNT)
+        again = same.prove([*best, *_deliveries(sets, best, 3)])
+        assert isinstance(again, Branch)
+        assert again.action == 0  # the first where all cost the same
+
+
+def test_what_is_nearest_to_half_taken_is_branched_on() -> None:
+    # four sets of which each element is in three, for a third of each, and a triangle of cheap ones
+    sets = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3], [4, 5], [4, 6], [5, 6]]
+    graph, targets = covering(sets, 7)
+    price = costs(*[9] * 4, *[1] * 3, *[0] * 18)
+    best = [0, 1, 4, 5]
+    proof = Prover(graph, targets, price, COUNT).prove([*best, *_deliveries(sets, best, 7)])
+    assert isinstance(proof, Branch)
+    assert proof.action == 4
+    assert check(graph, targets, price, proof) == 20
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_floats_take_for_nothing_is_proved_too(seed: int) -> None:
+    rng = random.Random(seed)
+    sets = [rng.sample(range(6), rng.randint(2, 3)) for _ in range(8)] + [[e] for e in range(6)]
+    graph, targets = covering(sets, 6)
+    price = costs(*[1] * len(sets), *[0] * (len(graph.needs) - len(sets)))
+    best = least_cover(sets, 6)
+    order = Lexicographic([[1 - Fraction(1, 10**400)]])
+    proof = Prover(graph, targets, price, order).prove([*best, *_deliveries(sets, best, 6)])
+    assert proof is not None
+    assert check(graph, targets, price, proof) == len(best)
+
+
+def test_what_is_out_of_reach_is_proved_by_its_cut() -> None:
+    prover = Prover(KITCHEN, [4], ones(KITCHEN), COUNT, frozenset({1, 3}))
+    assert prover.prove([0, 1, 3]) == Hopeless(Cut((2, 3, 4), ()))
+    assert prover.relax([0, 1, 3]) is None
+
+
+def test_a_branch_may_be_out_of_reach() -> None:
+    # an element that only set 3 holds besides a triangle: 3 holds a side of it, too
+    sets = [[0, 1], [0, 2], [1, 2], [3]]
+    graph, targets = covering(sets, 4)
+    price = costs(1, 1, 1, 5, *[0] * 7)
+    best = [0, 1, 3]
+    proof = Prover(graph, targets, price, COUNT).prove([*best, *_deliveries(sets, best, 4)])
+    assert proof is not None
+    assert check(graph, targets, price, proof) == 7
+
+
+def test_where_all_is_at_hand_nothing_is_cheaper_than_anything() -> None:
+    with pytest.raises(CheaperError) as found:
+        Prover(KITCHEN, [0, 1], ones(KITCHEN), COUNT).prove([2])
+    assert found.value.actions == ()
+
+
+# targets 1, 2 and 3, and what makes them: actions 0 and 1 make 1, 1 and 2 make 2, 3 makes 3
+THREE = Hypergraph(4, needs=[[], [0], [], []], gives=[[1], [1, 2], [2], [3]], start=[0])
+
+
+@pytest.mark.parametrize(
+    ("price", "known", "weights"),
+    [
+        ([3, 2, 1, 1], [[1], [2], [3]], [((1,), (0, 1), 2), ((3,), (3,), 1)]),
+        ([3, 2, 1, 1], [[2], [1], [3]], [((2,), (1, 2), 1), ((1,), (0, 1), 1), ((3,), (3,), 1)]),
+        ([1, 2, 1, 0], [[3], [1], [2]], [((1,), (0, 1), 1), ((2,), (1, 2), 1)]),
+    ],
+)
+def test_known_cuts_are_given_what_their_members_have_left(
+    price: list[int],
+    known: list[list[int]],
+    weights: list[tuple[tuple[int, ...], tuple[int, ...], int]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delattr(lower_bound, "Covering")  # not even asked for
+    prover = Prover(THREE, [1, 2, 3], costs(*price), COUNT, known=map(iter, known))
+    proof = prover.prove([1, 3])
+    assert proof == Packing(tuple((Cut(o, m), (Fraction(w),)) for o, m, w in weights))
+
+
+def test_known_cuts_are_weighed_by_the_first_level_that_differs() -> None:
+    half = Fraction(1, 2)
+    order = Lexicographic([[half, half**2], None])
+    price = [tuple(map(Fraction, cost)) for cost in ((2, 0, 1), (0, 1, 0), (0, 1, 0), (1, 0, 9))]
+    proof = Prover(THREE, [1, 2, 3], price, order, known=[[1], [3]]).prove([1, 3])
+    assert proof == Packing(((Cut((1,), (0, 1)), price[1]), (Cut((3,), (3,)), price[3])))
+
+
+def test_known_cuts_that_fall_short_are_no_proof() -> None:
+    prover = Prover(THREE, [1, 2, 3], costs(2, 2, 2, 1), COUNT, known=[[1]])
+    proof = prover.prove([1, 3])
+    assert isinstance(proof, Packing)
+    assert check(THREE, [1, 2, 3], costs(2, 2, 2, 1), proof) == 3
+    with pytest.raises(CheaperError) as found:
+        prover.prove([0, 2, 3])
+    assert found.value.actions == (1, 3)
+
+
+def test_cuts_are_looked_for_until_the_bound_is_enough(
+    watched: list[Watched], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # ten targets, made two by two: one by one, or both for the same of something that costs as much again
+    needs: list[list[int]] = [[] for _ in range(15)] + [[10 + number] for number in range(5)]
+    gives = [[number] for number in range(15)] + [[2 * number, 2 * number + 1] for number in range(5)]
+    graph = Hypergraph(15, needs, gives, [])
+    price = costs(*[1] * 10, *[2] * 10)
+    solved: list[int] = []
+
+    def counted(rows: list[list[int]], *words: Any) -> ExactOptimum | None:
+        solved.append(len(rows))
+        return exact_optimum(rows, *words)
+
+    monkeypatch.setattr(lower_bound, "exact_optimum", counted)
+    proof = Prover(graph, range(10), price, COUNT).prove(range(10))
+    assert isinstance(proof, Packing)
+    assert check(graph, [*range(10)], price, proof) == 10
+    (only,) = watched
+    values = [solution.value for solution in only.solutions]
+    assert values[0] == 0
+    assert values == sorted(set(values))
+    assert values[-1] == 10
+    assert solved == [len(only.rows)]
+
+
+def test_a_bound_that_floats_take_for_enough_is_raised_further() -> None:
+    needs: list[list[int]] = [
+        [],
+        *[[] for _ in range(10)],
+        *[[11 + n] for n in range(10)],
+        *[[] for _ in range(10)],
+    ]
+    gives = [
+        [0],
+        *[[1 + n] for n in range(10)],
+        *[[1 + n] for n in range(10)],
+        *[[11 + n] for n in range(10)],
+    ]
+    graph = Hypergraph(21, needs, gives, [])
+    price = costs(10**9, *[1] * 10, *[0] * 10, *[1] * 10)
+    proof = Prover(graph, range(11), price, COUNT).prove(range(11))
+    assert isinstance(proof, Packing)
+    assert check(graph, [*range(11)], price, proof) == 10**9 + 10
+
+
+@pytest.mark.usefixtures("floats_alone")
+def test_floats_alone_prove_nothing_and_find_what_is_cheaper() -> None:
+    graph, targets = covering(BOWTIE, 6)
+    price = costs(*[1] * 5, *[0] * 12)
+    best, worse = [0, 1, 3], [0, 1, 2, 3, 4]
+    prover = Prover(graph, targets, price, COUNT)
+    assert prover.relax([*best, *_deliveries(BOWTIE, best, 6)]) is None
+    assert prover.prove([*best, *_deliveries(BOWTIE, best, 6)]) is None
+    assert Prover(KITCHEN, [4], ones(KITCHEN), COUNT).prove([0, 1, 3]) is None  # all are taken, for as much
+    with pytest.raises(CheaperError) as found:
+        prover.prove([*worse, *_deliveries(BOWTIE, worse, 6)])
+    assert Cutter(graph, targets).reached_by(found.value.actions)
+    assert [action for action in found.value.actions if action < 5] == [1, 2, 3, 4]
+
+
+def test_time_may_be_up_at_any_step() -> None:
+    graph, targets = covering(BOWTIE, 6)
+    price = costs(*[1] * 5, *[0] * 12)
+    derivation = [0, 1, 3, *_deliveries(BOWTIE, [0, 1, 3], 6)]
+    answers = iter([False] * 1000)
+    assert Prover(graph, targets, price, COUNT, expired=answers.__next__).prove(derivation) is not None
+    for steps in range(1000 - len(list(answers))):
+        answers = iter([False] * steps + [True])
+        prover = Prover(graph, targets, price, COUNT, expired=answers.__next__)
+        assert prover.prove(derivation) is None
+    assert Prover(graph, targets, price, COUNT, expired=lambda: True).relax(derivation) is None
+
+
+def test_a_level_counts_much_less_than_the_one_before_it() -> None:
+    third = Fraction(1, 3)
+    counted = Prover(
+        KITCHEN,
+        [4],
+        [(Fraction(a), Fraction(b), Fraction(3)) for a, b in ((2, 0), (1, 7), (0, 1), (2, 2), (1, 1))],
+        Lexicographic([None] * 3),
+    )
+    assert counted.scaled((Fraction(1), Fraction(0), Fraction(0))) == 1
+    assert counted.scaled((Fraction(0), Fraction(1), Fraction(0))) == pytest.approx(1e-4 / 3)
+    assert counted.scaled((Fraction(0), Fraction(0), Fraction(1))) == pytest.approx(1e-4 / 3 * 1e-4 / 8)
+    assert counted.scaled((Fraction(5), Fraction(3), third)) == pytest.approx(5 + 1e-4 + 1e-8 / 72)
+
+
+def test_rates_are_measured_by_the_least_of_them() -> None:
+    half = Fraction(1, 2)
+    order = Lexicographic([[half, half**2], None])
+    price = [tuple(map(Fraction, cost)) for cost in ((1, 0, 1), (0, 1, 4), (0, 1, 1), (1, 0, 1), (0, 0, 1))]
+    prover = Prover(KITCHEN, [4], price, order)
+    assert prover.scaled((Fraction(0), Fraction(1), Fraction(0))) == pytest.approx(1)
+    assert prover.scaled((Fraction(1), Fraction(0), Fraction(0))) == pytest.approx(0.5)
+    assert prover.scaled((Fraction(0), Fraction(0), Fraction(4))) == pytest.approx(2e-4)
+    # so near to 1 that floats have nothing for it
+    near = Lexicographic([[1 - Fraction(1, 10**400)], None])
+    lost = Prover(KITCHEN, [4], [(Fraction(1), Fraction(1))] * 5, near)
+    assert lost.scaled((Fraction(1), Fraction(1))) == pytest.approx(1e-4)
+
+
+def test_the_relaxation_gives_shares_and_its_basis() -> None:
+    relaxation = Covering([1.0, 1.0, 1.0, 5.0])
+    assert relaxation.solve() == Relaxed(0.0, [0.0] * 4, [], [])
+    for row in ([0, 1, 3], [1, 2], [0, 2, 3], [0, 1, 2]):
+        relaxation.add(row)
+    assert relaxation.solve() == Relaxed(1.5, [0.5, 0.5, 0.5, 0.0], [0, 1, 2], [0, 1, 2])
+    relaxation.add([3])
+    assert relaxation.solve().value == 6.0
+    assert Covering([]).solve() == Relaxed(0.0, [], [], [])
+
+
+def test_a_row_that_nothing_covers_is_a_bug(capfd: pytest.CaptureFixture[str]) -> None:
+    relaxation = Covering([1.0])
+    relaxation.add([])
+    with pytest.raises(BugError, match=r"HiGHS ends a covering problem with HighsModelStatus\.kInfeasible"):
+        relaxation.solve()
+    assert capfd.readouterr() == ("", "")
