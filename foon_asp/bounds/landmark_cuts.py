@@ -5,6 +5,7 @@ need none of the set, every derivation uses one. Costs are divided among landmar
 Domshlak 2009): each takes from all of its members what the cheapest has left.
 """
 
+import math
 from collections.abc import Callable, Container, Iterable, Mapping
 from typing import NamedTuple
 
@@ -57,14 +58,16 @@ def landmark_cuts(
     needs, makers = graph.needs, graph.makers
     left: dict[int, int] = {}
     free = _Free(graph)
-    dearest = 1 + max(dear.values(), default=0)
     found: list[WeightedCut] = []
     bound = 0
 
     def rest_of(action: int) -> int:
         return left[action] if action in left else cost(action)
 
-    remaining = sorted(targets, key=lambda o: (dear.get(o, dearest), o))
+    def dearness(o: int) -> tuple[float, int]:
+        return dear.get(o, math.inf), o
+
+    remaining = sorted(targets, key=dearness)
     try:
         while remaining and not expired():
             if remaining[-1] in free.objects:
@@ -72,7 +75,6 @@ def landmark_cuts(
                 continue
             if guide is not None and found and len(found) % _FRESH == 0:
                 dear = guide(rest_of)
-                dearest = 1 + max(dear.values(), default=0)
             zone = {remaining[-1]}
             stack = [remaining[-1]]
             edge: dict[int, None] = {}
@@ -81,13 +83,13 @@ def landmark_cuts(
                 for action in makers[stack.pop()]:
                     if action in passed or action in edge or action not in allowed:
                         continue
-                    if left.get(action, 1):
+                    if left.get(action, True):
                         edge[action] = None
                         continue
                     passed.add(action)
                     needed = needs[action]
                     if zone.isdisjoint(needed):
-                        o = max(free.lacking(action), key=lambda o: (dear.get(o, dearest), o))
+                        o = max(free.lacking(action), key=dearness)
                         zone.add(o)
                         stack.append(o)
             members = tuple(action for action in edge if zone.isdisjoint(needs[action]))
