@@ -93,6 +93,13 @@ def test_only_what_is_allowed_counts() -> None:
     assert landmark_cuts(KITCHEN, [3], (), price, {}, lambda: False) == (0, {}, [], True, False)
 
 
+def test_an_action_that_lacks_an_object_of_the_cut_asks_for_no_other() -> None:
+    # both actions that give 0 need 1, one of them 2 as well
+    graph = Hypergraph(3, needs=[[1], [1, 2], [], []], gives=[[0], [0], [1], [2]], start=[])
+    found = landmark_cuts(graph, [0], range(4), [1, 1, 5, 7].__getitem__, {}, lambda: False)
+    assert found.cuts == [cut({0}, (0, 1), 0, 1), cut({0, 1}, (2,), 2, 5)]
+
+
 def test_what_was_found_stands_when_time_is_up_or_ctrl_c_comes() -> None:
     price = [2, 3, 1, 5, 4, 1]
     answers = iter([False, False, True])

@@ -78,28 +78,25 @@ def landmark_cuts(
             zone = {remaining[-1]}
             stack = [remaining[-1]]
             edge: dict[int, None] = {}
-            passed: set[int] = set()
             while stack:
                 for action in makers[stack.pop()]:
-                    if action in passed or action in edge or action not in allowed:
+                    if action not in allowed:
                         continue
                     if left.get(action, True):
                         edge[action] = None
-                        continue
-                    passed.add(action)
-                    needed = needs[action]
-                    if zone.isdisjoint(needed):
+                    elif zone.isdisjoint(needs[action]):
                         o = max(free.lacking(action), key=dearness)
                         zone.add(o)
                         stack.append(o)
             members = tuple(action for action in edge if zone.isdisjoint(needs[action]))
             if not members:
                 return Cuts(bound, left, found, hopeless=True)
-            rests = [rest_of(a) for a in members]
-            weight = min(rests)
+            rests = {action: rest_of(action) for action in members}
+            cheapest = min(rests, key=rests.__getitem__)
+            weight = rests[cheapest]
             bound += weight
-            found.append(WeightedCut(frozenset(zone), members, members[rests.index(weight)], weight))
-            for action, rest in zip(members, rests, strict=True):
+            found.append(WeightedCut(frozenset(zone), members, cheapest, weight))
+            for action, rest in rests.items():
                 left[action] = rest - weight
                 if rest == weight:
                     free.release(action)
@@ -128,13 +125,11 @@ class _Free:
         self._missing[action] = len(lacking)
         for o in lacking:
             self._waiting.setdefault(o, []).append(action)
-        gives, start, free = self._graph.gives, self._graph.start, self.objects
         stack = [] if lacking else [action]
         while stack:
-            for o in gives[stack.pop()]:
-                if o not in free and o not in start:
-                    free.add(o)
-                    for taker in self._waiting.pop(o, ()):
-                        self._missing[taker] -= 1
-                        if not self._missing[taker]:
-                            stack.append(taker)
+            for o in self._graph.gives[stack.pop()]:
+                self.objects.add(o)
+                for taker in self._waiting.pop(o, ()):
+                    self._missing[taker] -= 1
+                    if not self._missing[taker]:
+                        stack.append(taker)
