@@ -12,8 +12,8 @@ import click
 
 from foon_asp.asp import Reporter
 from foon_asp.cli.output import console
-from foon_asp.problem import Costs, Objective, multiplies
-from foon_asp.report.answer import costs_text, success_text
+from foon_asp.problem import Costs, Objective
+from foon_asp.report.answer import bound_text, costs_text
 
 if TYPE_CHECKING:
     from rich.status import Status
@@ -53,10 +53,7 @@ class Progress(Reporter):
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
         """Note the bound."""
-        if multiplies(objective):
-            self._bound = f"proved: success at most {success_text(Fraction(bound))}"
-        else:
-            self._bound = f"proved: at least {bound} {objective}"
+        self._bound = f"proved: {bound_text(objective, bound)}"
         self._show()
 
     def step(self, word: str, done: int, total: int) -> None:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
 from foon_asp.network import Network
-from foon_asp.problem import Costs, Problem, levels, multiplies
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.text import write_units
 
 _DIGITS = 4  # of a success, where so many tell several apart
@@ -27,21 +27,41 @@ def costs_json(costs: Costs | None) -> dict[str, object] | None:
     """Give all measures of a tree."""
     if costs is None:
         return None
+    known = costs.measures
+    said = {Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS, Objective.KITCHEN}
+    others = (objective for objective in Objective if objective not in said)
     return {
         "units": costs.units,
         "inputs": costs.inputs,
         "ingredients": costs.ingredients,
         "kitchen": costs.kitchen,
-        "success": fraction_json(costs.success),
+        **{str(each): figure_json(each, known[each]) if each in known else None for each in others},
     }
+
+
+def figure_json(objective: Objective, figure: int | Fraction) -> object:
+    """Give what is measured by an objective: a whole number, or an exact fraction."""
+    whole = objective.row.whole and not multiplies(objective)
+    return int(figure) if whole else fraction_json(Fraction(figure))
+
+
+def figure_text(objective: Objective, figure: int | Fraction) -> str:
+    """Give what is measured by an objective in words: whole, or to four digits with ``≈`` where rounded."""
+    if multiplies(objective):
+        return success_text(Fraction(figure))
+    shown = str(figure) if objective.row.whole else _four_digits(Fraction(figure))
+    return shown if Fraction(shown) == figure else f"≈ {shown}"
+
+
+def bound_text(objective: Objective, bound: int | Fraction) -> str:
+    """Say between what and a bound an objective is: ``units at least 3``, ``success at most 0.5``."""
+    side = "at most" if multiplies(objective) else "at least"
+    return f"{objective} {side} {figure_text(objective, bound)}"
 
 
 def bounds_json(outcome: Outcome) -> dict[str, object]:
     """Give the proved bounds by objective."""
-    return {
-        str(objective): fraction_json(Fraction(bound)) if multiplies(objective) else bound
-        for objective, bound in outcome.bounds.items()
-    }
+    return {str(objective): figure_json(objective, bound) for objective, bound in outcome.bounds.items()}
 
 
 def unit_json(network: Network, unit: int) -> dict[str, object]:
@@ -159,14 +179,17 @@ def headline(outcome: Outcome) -> str:
     if outcome.encodings is not None:
         rule += f", as {outcome.encodings} has it"
     claim = "optimal" if outcome.status is Status.OPTIMAL else "feasible, not proved best"
-    return f"{claim} by {best} ({rule}): {costs_text(outcome.costs)}"
+    return f"{claim} by {best} ({rule}): {costs_text(outcome.costs, outcome.objectives)}"
 
 
-def costs_text(costs: Costs) -> str:
-    """Give the measures of a tree in a few words."""
+def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
+    """Give the measures of a tree in a few words, those by some objectives among them."""
     text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
-    if costs.success is not None:
-        text += f", success {success_text(costs.success)}"
+    shown = {Objective.UNITS, Objective.INPUTS}
+    others = [Objective.SUCCESS] if costs.success is not None else []
+    for objective in dict.fromkeys((*others, *objectives)):
+        if objective not in shown:
+            text += f", {objective} {figure_text(objective, costs.measure(objective))}"
     return text
 
 
@@ -209,12 +232,7 @@ def counted(number: int, noun: str) -> str:
 
 
 def _bound_line(outcome: Outcome) -> str:
-    bounds = [
-        f"success at most {success_text(Fraction(bound))}"
-        if multiplies(objective)
-        else f"{objective} at least {bound}"
-        for objective, bound in outcome.bounds.items()
-    ]
+    bounds = [bound_text(objective, bound) for objective, bound in outcome.bounds.items()]
     return "proved so far: " + (", ".join(bounds) or "nothing")
 
 
