@@ -27,6 +27,7 @@ from foon_asp.problem import (
     multiplies,
 )
 from foon_asp.proof import verify
+from foon_asp.questions.pareto import pareto
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduction
 from foon_asp.reduce.exact_costs import TooFineError
 from foon_asp.resources import encodings_folder
@@ -133,6 +134,36 @@ def test_other_engines_are_asked_about_a_new_objective(new: str, monkeypatch: py
             with pytest.raises(DisagreementError):
                 list(cross_check(Asked(outcome._replace(units=order, costs=costs))))
     assert agreed > 12
+
+
+@pytest.mark.parametrize("new", NEW)
+def test_the_front_of_a_new_objective(new: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    objective = NEW[new]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+    asked = (Objective.INPUTS, objective)
+    monkeypatch.setattr("foon_asp.questions.pareto.chosen_objectives", lambda *_: asked)
+    points = 0
+    for seed in range(120):
+        problem = random_problem(seed, ContainerRule.STRICT)
+        trees = [
+            [u for n in tree if (u := problem.network.unit_id(n)) is not None]
+            for tree in oracle.trees(problem)
+        ]
+        keys = {problem.costs(tree).key(asked) for tree in trees}
+        front = sorted(
+            key for key in keys if not any(o != key and o[0] <= key[0] and o[1] <= key[1] for o in keys)
+        )
+        try:
+            found = pareto(problem)
+        except UserError as error:
+            assert "too large for clingo" in str(error)  # 1/rate of a rate next to 0
+            assert new == "rounded"
+            continue
+        assert found.complete
+        assert [point.costs.key(asked) for point in found.points] == front
+        points += len(front) > 1
+        found.text(), found.json()
+    assert points > 1
 
 
 def test_two_objectives_that_have_to_be_rounded_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -216,7 +216,9 @@ class Postconditions:
             "reductions": ", ".join(sorted(how.reductions)) or "none",
             "options of clingo": " ".join(how.clingo_options),
             "soft constraints or dropped ones": ", ".join(map(str, how.relaxed.files)) if how.relaxed else "",
-            "bounds": how.bounded.rules.replace("\n", " ").strip() if how.bounded else "",
+            "bounds": f"{how.bounded.rules} {how.bounded.below or ''}".replace("\n", " ").strip()
+            if how.bounded
+            else "",
             "time limit": "" if how.time_limit is None else f"{how.time_limit} s",
             "session": "yes" if how.session is not None else "",
         }

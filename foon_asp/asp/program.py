@@ -1,6 +1,7 @@
 """Which encodings make up the program: ours or a replacement, and what the user adds."""
 
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -8,6 +9,7 @@ from foon_asp.asp.own_encodings import exact_success, is_own
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import Source
+from foon_asp.problem import Objective
 from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
 
@@ -59,11 +61,13 @@ class Bounded(NamedTuple):
 
     ``files`` are encodings of ours (``encodings/questions``) and ``rules`` the facts that they read. A tree
     that meets them has to meet them still when units are left out of it: then what the goals do not need
-    cannot matter, bounded or not.
+    cannot matter, bounded or not. ``below`` are sets of costs, in each of which a tree has
+    to be below one: those of objectives that are fractions, written down when it is known to which scale.
     """
 
     rules: str
     files: tuple[Path, ...]
+    below: tuple[Mapping[Objective, int | Fraction], ...] = ()
 
 
 class Settings(NamedTuple):

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from decimal import Decimal
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -37,7 +38,8 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     exact = common * most <= _LARGEST
     scale = common if exact else min(_FINE, 10 ** max(0, len(str(math.floor(_LARGEST / most))) - 1))
     if scale * most > _LARGEST:
-        raise UserError(f"a unit costs {float(most):.4g}, which is too large for clingo's numbers of 32 bits")
+        shown = Decimal(most.numerator) / Decimal(most.denominator)
+        raise UserError(f"a unit costs {shown:.4g}, which is too large for clingo's numbers of 32 bits")
     weights = {cost: math.floor(scale * cost) for cost in different}
     return CostScale(scale, exact, weights, {cost: place for place, cost in enumerate(different)})
 
@@ -91,6 +93,18 @@ class Scales:
             {o for unit in units for o in problem.needs[unit]} & problem.kitchen if objective.row.item else ()
         )
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
+
+    def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
+        """Give what clingo adds up for a cost; raises :class:`UserError` for an objective that is rounded."""
+        if objective not in self.costs:
+            return int(cost)
+        scale = self.costs[objective]
+        if not scale.exact:
+            raise UserError(
+                f"the objective {objective} has to be rounded for the solver, so no bound can be put on it: "
+                "leave it out, or the other objective that has to be rounded"
+            )
+        return int(scale.scale * cost)
 
     def doubt(self, units: Iterable[int]) -> int:
         """Give how many units weigh less than they cost by the rounded objective: what that hides is less."""

@@ -222,6 +222,10 @@ class _Solver:
         with self.deadline.watched("writing facts"):
             with_sources = not self.program.own
             facts = write_facts(self.problem, self.units, self._scaled(), with_sources)
+            if self.settings.bounded is not None and self.settings.bounded.below:
+                from foon_asp.asp.at_most import write_below  # noqa: PLC0415 (for few questions)
+
+                facts += write_below(self.settings.bounded.below, self._scaled())
         self._spent("facts", began)
         return facts
 

@@ -26,6 +26,7 @@ from foon_asp.report.answer import (
     costs_json,
     costs_text,
     counted,
+    figure_text,
     fraction_json,
     goal_lines,
     success_texts,
@@ -198,14 +199,15 @@ def pareto(
     problem = asked_with(problem, how)
     reporter = caller().reporter
     later = _Silent(reporter)
-    # One objective leads: success, which no sum can bound, if it is there, else the first. Each tree is
+    # One objective leads: success, which no sum can bound, if it is there, else one that is a fraction
+    # and may have to be rounded, else the first. Each tree is
     # the best by the leading objective, then by the others, among those that are better than every tree
     # before it by one of the others. What would be better than a tree everywhere, or as good and
     # somewhere better, would be among those too, and come before it: so no tree found is dominated. When
     # no tree is left, each tree there is was left out first with some tree that is as good as it by the
     # others, and no worse by the leading objective, by which that tree was the best of those that were
     # left. So every point of the front is there, and it took one search more than there are points.
-    leading = Objective.SUCCESS if Objective.SUCCESS in asked else asked[0]
+    leading = min(asked, key=lambda objective: (not multiplies(objective), objective.row.whole))
     others = tuple(objective for objective in asked if objective is not leading)
     began = time.monotonic()
     found: list[Point] = []
@@ -299,7 +301,11 @@ def _table(front: Front) -> Iterator[str]:
     columns = [["point", *(str(number + 1) for number in range(len(front.points)))]]
     for objective in front.objectives:
         figures = [point.costs.measure(objective) for point in front.points]
-        texts = success_texts([Fraction(f) for f in figures]) if multiplies(objective) else figures
+        texts = (
+            success_texts([Fraction(f) for f in figures])
+            if multiplies(objective)
+            else [figure_text(objective, f) for f in figures]
+        )
         columns.append([str(objective), *map(str, texts)])
     widths = [max(map(len, column)) for column in columns]
     words = ["", *(_words(front, number) for number in range(len(front.points)))]

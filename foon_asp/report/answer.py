@@ -15,12 +15,15 @@ _MOST_DIGITS = 40
 
 
 def fraction_json(value: Fraction | None) -> dict[str, object] | None:
-    """Give an exact number and a float beside it for people; ``None`` stays ``None``."""
+    """Give an exact number and a float beside it for people; ``None`` stays ``None``.
+
+    There is no float (``None``) beside a number above all of them.
+    """
     if value is None:
         return None
     # through Decimal: products of long rates have more digits than Python turns into text at once
     parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
-    return {"exact": "/".join(parts) if value.denominator != 1 else parts[0], "approx": float(value)}
+    return {"exact": "/".join(parts) if value.denominator != 1 else parts[0], "approx": _float(value)}
 
 
 def costs_json(costs: Costs | None) -> dict[str, object] | None:
@@ -205,9 +208,18 @@ def success_text(success: Fraction) -> str:
 
 
 def _four_digits(value: Fraction) -> str:
-    if value and not float(value):  # the product of many rates can be below the least float above 0
+    approx = _float(value)
+    if approx is None or (value and not approx):  # there are numbers below the least float, and above all
         return f"{Decimal(value.numerator) / Decimal(value.denominator):.4g}"
-    return f"{float(value):.4g}"
+    return f"{approx:.4g}"
+
+
+def _float(value: Fraction) -> float | None:
+    """Give the nearest float; ``None`` for a number above all."""
+    try:
+        return float(value)
+    except OverflowError:
+        return None
 
 
 def success_texts(values: Sequence[Fraction]) -> list[str]:

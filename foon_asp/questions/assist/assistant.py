@@ -10,7 +10,6 @@ from typing import NamedTuple
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.assisted import assisted, sees_who_does_it
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.program import Bounded
 from foon_asp.asp.ranking import Ranked
 from foon_asp.problem import Costs, Objective, Problem, reach, relevant
 from foon_asp.questions.assist.priced_help import PricedHelp
@@ -211,7 +210,9 @@ class Assistant:
         )
         others = self._settings.bounded
         if others is not None:
-            bounded = Bounded(others.rules + bounded.rules, (*others.files, *bounded.files))
+            bounded = bounded._replace(
+                rules=others.rules + bounded.rules, files=(*others.files, *bounded.files), below=others.below
+            )
         return solve(self._twins, _SUCCESS, self._settings._replace(bounded=bounded), self._heard())
 
     @cached_property
