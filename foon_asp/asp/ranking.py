@@ -14,7 +14,7 @@ from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach, relevant
 
 Rounded = tuple[int, ...]  # costs as clingo adds them up
 
@@ -124,7 +124,12 @@ class Ranked:
             raise UserError("a tree was found with units that the network has not: check the encodings")
         order = self._holds.tree(known)
         costs = self.problem.costs(order)
-        rounded = (self._scales.weight(objective, order) for objective in self.levels)
+        rounded = (
+            int(costs.measure(objective))
+            if objective.row.whole and not multiplies(objective)
+            else self._scales.weight(objective, order)
+            for objective in self.levels
+        )
         return _Tree(order, costs, tuple(rounded))
 
     def _check(self, ended: Run, tree: _Tree, known: Sequence[_Tree]) -> None:
