@@ -14,7 +14,7 @@ from foon_asp.asp.search import run
 from foon_asp.asp.solver import Reporter
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
 
 Rounded = tuple[int, ...]  # costs as clingo adds them up
 
@@ -125,9 +125,7 @@ class Ranked:
         order = self._holds.tree(known)
         costs = self.problem.costs(order)
         rounded = (
-            int(costs.measure(objective))
-            if objective.row.whole and not multiplies(objective)
-            else self._scales.weight(objective, order)
+            int(costs.measure(objective)) if objective.row.whole else self._scales.weight(objective, order)
             for objective in self.levels
         )
         return _Tree(order, costs, tuple(rounded))

@@ -65,7 +65,7 @@ class Scales:
         self.costs: dict[Objective, CostScale] = {
             objective: cost_scale(Fraction(problem.figure(objective, unit)) for unit in units)
             for objective in objectives
-            if not (objective.row.whole or multiplies(objective))
+            if not objective.row.whole and not multiplies(objective)
         }
         rounded = list(filter(self._rounds, objectives))
         if len(rounded) > 1:

@@ -151,7 +151,7 @@ class _Check:
         self.outcome, self.problem = asked.outcome, asked.outcome.problem
         self.levels = levels(self.outcome.objectives)
         self.weights: dict[Objective, dict[int, int]] = {
-            objective: {} for objective in self.levels if multiplies(objective) or not objective.row.whole
+            objective: {} for objective in self.levels if not objective.row.whole
         }
         by_term = {objective.row.term: weights for objective, weights in self.weights.items()}
         for term, number, weight in _STRING_OR_WEIGHT.findall(program.facts):

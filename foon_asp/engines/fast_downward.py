@@ -15,7 +15,7 @@ from pathlib import Path
 
 from foon_asp.engines.engine import EngineAnswer, backwards, cost, taken
 from foon_asp.errors import BugError
-from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.problem import Objective, Problem
 
 NAME = "Fast Downward"
 _SCALE = 10**6  # of logarithms of rates, which it adds as whole numbers
@@ -78,7 +78,7 @@ def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> 
     scope = backwards(problem, forbidden)
     items = taken(problem, scope.units) if objective.row.item else []
     places = {o: place for place, o in enumerate([*scope.objects, *items])}
-    scale = 1 if objective.row.whole and not multiplies(objective) else _SCALE
+    scale = 1 if objective.row.whole else _SCALE
     yield from ("begin_version", "3", "end_version", "begin_metric", "1", "end_metric", str(len(places) or 1))
     for place in range(len(places) or 1):
         yield from ("begin_variable", f"var{place}", "-1", "2", f"Atom at-hand({place})")

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from foon_asp.engines.engine import EngineAnswer, backwards, cost, taken
 from foon_asp.errors import BugError
-from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.problem import Objective, Problem
 
 NAME = "HiGHS"
 _CLOSE = 1e-6  # within which HiGHS keeps to a sum of logarithms
@@ -106,7 +106,7 @@ class _Program:
         values = self._highs.getSolution().col_value
         terms = self._costs(objective)
         now = sum(value * round(values[variable]) for variable, value in terms)
-        close = 0.5 if objective.row.whole and not multiplies(objective) else _CLOSE
+        close = 0.5 if objective.row.whole else _CLOSE
         self._at_least(-now - close, [(variable, -value) for variable, value in terms])
 
     def units(self) -> tuple[int, ...]:

@@ -71,7 +71,9 @@ class Objective(StrEnum):
     )
     SUCCESS = (
         "success",
-        Row("success", "success rate", lambda unit: unit.rate, multiplies=True, needs_rates=True),
+        Row(
+            "success", "success rate", lambda unit: unit.rate, multiplies=True, needs_rates=True, whole=False
+        ),
     )
     KITCHEN = "kitchen", Row("kitchen", "kitchen items", lambda _: 0, item=1)
 

@@ -44,7 +44,7 @@ def costs_json(costs: Costs | None) -> dict[str, object] | None:
 
 def figure_json(objective: Objective, figure: int | Fraction) -> object:
     """Give what is measured by an objective: a whole number, or an exact fraction."""
-    whole = objective.row.whole and not multiplies(objective)
+    whole = objective.row.whole
     return int(figure) if whole else fraction_json(Fraction(figure))
 
 
