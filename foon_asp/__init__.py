@@ -88,6 +88,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.clash import clash as clash
     from foon_asp.questions.compare import Compared as Compared
     from foon_asp.questions.compare import compare_searches as compare_searches
+    from foon_asp.questions.draw import Drawn as Drawn
+    from foon_asp.questions.draw import draw as draw
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.optima import Optima as Optima

@@ -35,7 +35,7 @@ BESIDE = {
     "tree",
 }
 # parameters that the command line has no option for: it has them from elsewhere
-PYTHON_ONLY = {"problem", "reporter"}
+PYTHON_ONLY = {"problem", "about", "reporter"}
 
 
 def question_of(verb: str) -> Question[..., Result]:

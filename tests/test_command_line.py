@@ -1,5 +1,6 @@
 """``foon-asp`` as a user meets it: results on stdout, messages on stderr, documented exit codes."""
 
+import os
 from pathlib import Path
 
 import click
@@ -212,6 +213,14 @@ def test_check_reads_answers_and_is_as_lenient_as_asked(cli: Cli, data: Path, tm
     lenient = cli("check", tree, "--data", data, "--lenient")
     assert lenient.out == executes
     assert f"{tree}:" in lenient.err
+
+
+def test_check_reads_a_tree_from_a_pipe(cli: Cli, data: Path) -> None:
+    reading, writing = os.pipe()
+    os.write(writing, cli("solve", "--data", data, "--format", "foon").out.encode())
+    os.close(writing)
+    assert cli("check", f"/dev/fd/{reading}", "--data", data).code == 0
+    os.close(reading)
 
 
 def test_check_finds_an_order_or_says_what_is_missing(cli: Cli, data: Path, tmp_path: Path) -> None:

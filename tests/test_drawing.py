@@ -14,9 +14,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from foon_asp.cli import draw
+import foon_asp
+from foon_asp.cli import question_command
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.questions.result import Ending
 from foon_asp.report.dot import dot_text
 from foon_asp.report.drawing import Box, Drawing, Role, draw_network, draw_tree
 from foon_asp.report.mermaid import mermaid_text
@@ -391,7 +393,7 @@ def test_png_is_not_for_a_terminal(cli: Cli, monkeypatch: pytest.MonkeyPatch) ->
     class Terminal:
         stdout = type("", (), {"isatty": lambda self: True})()
 
-    monkeypatch.setattr(draw, "sys", Terminal)
+    monkeypatch.setattr(question_command, "sys", Terminal)
     assert "terminal" in cli("draw", "--unit", "1", "--format", "png").err
 
 
@@ -411,3 +413,60 @@ def test_real_trees(cli: Cli, tmp_path: Path, universal: Path) -> None:
     refused = cli("draw", "--data", universal, "-o", tmp_path / "whole.svg")
     assert (refused.code, refused.err.count("2376 functional units are too many")) == (2, 1)
     assert cli("draw", "--data", universal, "--format", "dot").out.count('fillcolor="#c62828"') == 2376 + 1
+
+
+# In Python
+
+
+def test_python_draws_what_the_command_line_draws(cli: Cli, tmp_path: Path) -> None:
+    foon = foon_asp.load()
+    problem = foon.problem("macaroni")
+    best = foon_asp.draw(problem, "success")
+    words = ("--goal", "macaroni", "--objective", "success")
+    assert best.dot() == cli("draw", *words, "--format", "dot").out
+    assert best.mermaid() == cli("draw", *words, "--format", "mermaid").out
+    assert best.outcome is not None
+    assert best.outcome.costs == foon_asp.solve(problem, "success").costs
+    file = tmp_path / "tree.md"
+    best.write(file)
+    assert file.read_text(encoding="utf-8") == f"```mermaid\n{best.mermaid()}```\n"
+    best.write(file, "svg")
+    assert file.read_text(encoding="utf-8") == best.svg()
+    assert best.png().startswith(b"\x89PNG")
+
+    tree = saved(tmp_path / "tree.txt", cli("search", "bfs", "--goal", "macaroni", "--format", "foon").out)
+    given = ("draw", "--format", "dot", "--tree", tree)
+    assert str(foon_asp.draw(problem, tree=tree)) + "\n" == cli(*given, "--goal", "macaroni").out
+    nothing = ("--containers", "implied")
+    assert str(foon_asp.draw(foon, tree=tree, containers="implied")) + "\n" == cli(*given, *nothing).out
+    assert (
+        foon_asp.draw(problem, tree=problem.tree([0, 1])).picture
+        == foon_asp.check(problem, problem.tree([0, 1])).drawing()
+    )
+    assert foon_asp.draw(problem, units=[12]).dot() == cli("draw", "--unit", "12", "--goal", "macaroni").out
+    assert foon_asp.draw(foon).dot() == cli("draw").out
+    assert repr(foon_asp.draw(foon)) == "<Drawn: A network of 220 units>"
+
+
+def test_what_python_cannot_draw_is_said(tmp_path: Path) -> None:
+    foon = foon_asp.load()
+    pie = foon_asp.draw(foon.problem("apple pie"))
+    assert (pie.picture, pie.ending) == (None, Ending.NEGATIVE)
+    assert str(pie).startswith("infeasible: proved that no task tree exists")
+    with pytest.raises(UserError, match="no tree to draw"):
+        pie.write(tmp_path / "pie.dot")
+    assert not list(tmp_path.iterdir())
+    ice = foon_asp.draw(foon, units=[3])
+    with pytest.raises(UserError, match=r"end it in \.dot"):
+        ice.write(tmp_path / "ice.jpg")
+    with pytest.raises(UserError, match="found the format 'jpg', expected one of dot, svg"):
+        ice.write(tmp_path / "ice.svg", "jpg")
+    with pytest.raises(UserError, match="two different drawings"):
+        foon_asp.draw(foon, units=[3], tree=[])
+    with pytest.raises(UserError, match="no functional unit"):
+        foon_asp.draw(foon, tree=[])
+
+
+def saved(file: Path, content: str) -> Path:
+    file.write_text(content, encoding="utf-8")
+    return file

@@ -9,10 +9,10 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import utf_8, write_data
+from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
-from foon_asp.report.whole_file import write_whole
+from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text import (
     Converted,
     Converter,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TextIO, cast
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable, escaped_lines, forget_line_ends
+from foon_asp.report.whole_file import utf_8
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -103,19 +104,6 @@ def write_data(content: str | bytes) -> None:
     Raises :class:`UserError` for text that UTF-8 cannot hold.
     """
     cast(SafeStream, sys.stdout).write_data(utf_8(content) if isinstance(content, str) else content)
-
-
-def utf_8(text: str) -> bytes:
-    """Give the bytes of a text; raises :class:`UserError` for half a character, which has none."""
-    try:
-        return text.encode()
-    except UnicodeEncodeError as error:
-        line = text.count("\n", 0, error.start) + 1
-        found = ascii(text[error.start])
-        raise UserError(
-            f"line {line} of what would be written has {found}, half a character, which UTF-8 cannot hold: "
-            "correct the name it stands in"
-        ) from None
 
 
 def console(err: bool = False) -> "Console":

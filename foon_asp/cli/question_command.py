@@ -1,6 +1,8 @@
 """A command for each question of the catalog, made from what the question says of itself."""
 
+import contextlib
 import importlib
+import sys
 import textwrap
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
@@ -9,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
@@ -18,6 +21,7 @@ from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import Progress
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline, memory_size, seconds
+from foon_asp.errors import UserError
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Kind, Option, Part, Question
 from foon_asp.questions.index import INDEX, module_name, question_name
@@ -40,12 +44,13 @@ def question_command(verb: str) -> click.Command:
     question: Question[..., Result] = getattr(module, question_name(verb))
     command: Callable[..., ExitCode] = _asking(question)
     command = options.data_options(command)
-    command = options.format_option(*question.formats)(command)
+    for option in _format_options(question):
+        command = option(command)
     own = [o for o in question.options if not (o.name in _LIMITS and o.part is Part.COMMAND)]
     if len(own) < len(question.options):
         command = options.limit_options(command)
-    for option in reversed(own):
-        command = _parameter(option)(command)
+    for each in reversed(own):
+        command = _parameter(each)(command)
     help_ = f"{INDEX[verb].line}\n\n{textwrap.dedent(question.help).strip()}"
     return click.command(verb, help=help_)(command)
 
@@ -53,13 +58,16 @@ def question_command(verb: str) -> click.Command:
 def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
     parts = {option.name: option.part for option in question.options}
 
-    def ask(format_: str, deadline: Deadline | None = None, **given: Any) -> ExitCode:
+    def ask(
+        format_: str | None, output: Path | None = None, deadline: Deadline | None = None, **given: Any
+    ) -> ExitCode:
         def those(wanted: Part) -> dict[str, Any]:
             return {name: given[name] for name, part in parts.items() if name in given and part & wanted}
 
         charts = [file for files in those(Part.CHART).values() for file in files]
         for chart in charts:
             check_suffix(chart)
+        form = _form(question, format_, output)
         check_outputs()
         data = {name: value for name, value in given.items() if name not in parts}
         command = _Command(data)
@@ -75,10 +83,43 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
                 click.echo(f"wrote {chart}", err=True)
             except NothingToDrawError as nothing:
                 click.echo(f"{chart} is not written: {nothing}", err=True)
-        _show(found, format_, those(Part.TEXT))
+        if output is None:
+            _show(found, form, those(Part.TEXT))
+        else:
+            _write(found, form, output)
         return _CODES[found.ending]
 
     return ask
+
+
+def _format_options(question: "Question[..., Result]") -> list[Callable[[options.Command], options.Command]]:
+    """Make ``--format``, and ``--output`` for a question whose result can be written into a file."""
+    if not question.suffixes:
+        return [options.format_option(*question.formats)]
+    first = question.formats[0].upper()
+    return [
+        click.option(
+            "--format",
+            "format_",
+            type=click.Choice(question.formats),
+            help=f"In which format, whatever the file is called; without a file {first}, to stdout.",
+        ),
+        click.option(
+            "-o",
+            "--output",
+            type=click.Path(path_type=NamedPath),
+            metavar="FILE",
+            help=f"Where to write; {' '.join(question.suffixes)} say in which format.",
+        ),
+    ]
+
+
+def _form(question: "Question[..., Result]", named: str | None, output: Path | None) -> str:
+    """Choose the format, before anything is read or solved."""
+    form = named or (question.formats[0] if output is None else question.format_of(output))
+    if form == "png" and output is None and sys.stdout.isatty():
+        raise UserError("a terminal cannot show PNG: name a file with -o")
+    return form
 
 
 class _Command:
@@ -91,6 +132,11 @@ class _Command:
     def dataset(self) -> Dataset:
         """The data that is named; read when it is first looked at."""
         return options.read_dataset(**self._data)
+
+    def given(self, option: str) -> bool:
+        """Whether an option, by name, stands in its own words, and not in the session or by default."""
+        source = click.get_current_context().get_parameter_source(option)
+        return source not in {None, ParameterSource.DEFAULT, ParameterSource.DEFAULT_MAP}
 
     def reading(self) -> AbstractContextManager[object]:
         """Stop what is read in a ``with`` block at the limits of the command."""
@@ -109,9 +155,19 @@ def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
     elif format_ in _SHOWN:
         click.echo(getattr(found, format_)(), nl=False)
     else:
-        write_data(getattr(found, format_)())
+        with contextlib.suppress(NothingToDrawError):  # the remark says why
+            write_data(getattr(found, format_)())
     if found.remark and format_ != "text":
         click.echo(found.remark, err=True)
+
+
+def _write(found: Result, format_: str, output: Path) -> None:
+    """Write what was found into a file, and say so."""
+    if found.remark:
+        click.echo(found.remark, err=True)
+    with contextlib.suppress(NothingToDrawError):
+        found.write(output, format_)
+        click.echo(f"wrote {output}", err=True)
 
 
 def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Path, int]:

@@ -15,7 +15,6 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
     "certify": Entry("Check", "Write a certificate: a proof that verify checks without a solver."),
     "verify": Entry("Check", "Check a certificate against the data it speaks about."),
-    "draw": Entry("Show", "Draw a task tree, functional units, or a network."),
     "diff": Entry("Show", "Show what two task trees have in common, and where they part."),
     "stats": Entry("Show", "Count what is in a network."),
     "facts": Entry("Show", "Print the facts that clingo is given for a goal."),

@@ -1,10 +1,12 @@
 """What a question is: a function that Python calls, with options that a command line is made from."""
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import Flag, StrEnum, auto
+from pathlib import Path
 from typing import Generic, NamedTuple, ParamSpec, TypeVar
 
+from foon_asp.errors import UserError
 from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
 
@@ -65,7 +67,8 @@ class Question(Generic[P, R]):
     """A question: called, it gives what was found. ``options`` and ``help`` are for a command line.
 
     ``help`` is what follows after the line of the index, with examples and what it exits with. ``formats``
-    are those that the result has, the first by default. ``pose`` makes for a command line what the function
+    are those that the result has, the first by default. ``suffixes`` say by the name of a file in which of
+    them it is written, for a result that has a ``write``. ``pose`` makes for a command line what the function
     is asked about, of the options of the problem.
     """
 
@@ -75,25 +78,39 @@ class Question(Generic[P, R]):
         options: tuple[Option, ...],
         help_: str,
         formats: tuple[str, ...],
+        suffixes: Mapping[str, str],
         pose: Pose,
     ) -> None:
         functools.update_wrapper(self, ask)
         self.ask, self.options, self.help, self.formats, self.pose = ask, options, help_, formats, pose
+        self.suffixes = suffixes
 
     def __call__(self, *args: P.args, **named: P.kwargs) -> R:
         """Ask, as Python does."""
         return self.ask(*args, **named)
+
+    def format_of(self, file: Path) -> str:
+        """Give the format that the name of a file says; raises :class:`UserError` where it says none."""
+        form = self.suffixes.get(file.suffix.lower())
+        if form is None:
+            ends = " ".join(self.suffixes)
+            raise UserError(f"{file}: the name says no format: end it in {ends}, or name one (--format)")
+        return form
 
     def __repr__(self) -> str:
         return f"<question {self.ask.__name__}>"
 
 
 def question(
-    *options: Option, help_: str, formats: tuple[str, ...] = ("text", "json"), pose: Pose = one_problem
+    *options: Option,
+    help_: str,
+    formats: tuple[str, ...] = ("text", "json"),
+    suffixes: Mapping[str, str] | None = None,
+    pose: Pose = one_problem,
 ) -> Callable[[Callable[P, R]], Question[P, R]]:
     """Make a question of a function."""
 
     def decorate(ask: Callable[P, R]) -> Question[P, R]:
-        return Question(ask, options, help_, formats, pose)
+        return Question(ask, options, help_, formats, suffixes or {}, pose)
 
     return decorate

@@ -76,6 +76,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find the best success when a person does at most 0, 1, 2, ... units, and which.",
         ("assist", "Assistance"),
     ),
+    "draw": Entry(
+        "Show",
+        "Draw a task tree, functional units, or a network.",
+        ("draw", "Drawn"),
+    ),
 }
 
 

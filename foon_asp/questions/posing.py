@@ -16,6 +16,9 @@ class Command(Protocol):
     def dataset(self) -> Dataset:
         """The data that it names; read when it is first looked at."""
 
+    def given(self, option: str) -> bool:
+        """Whether an option, by name, stands in its own words."""
+
     def reading(self) -> AbstractContextManager[object]:
         """Stop what is read in a ``with`` block at the limits of the command."""
 

@@ -71,6 +71,14 @@ class Result:
         """What is said beside a format that does not say it; empty where nothing is."""
         return ""
 
+    def write(self, file: File, format_: str | None = None) -> None:
+        """Write the result into a file, in the format that its name says if none is given.
+
+        Raises :class:`NothingToDrawError` where there is nothing to write, and :class:`UserError` for a
+        result that is not written into files.
+        """
+        raise UserError(f"{file}: this is not written into files")
+
     def write_chart(self, file: File) -> None:
         """Draw a chart of what was found into a file, SVG or PNG by its suffix.
 

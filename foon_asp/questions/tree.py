@@ -1,13 +1,13 @@
 """Task trees that know what they are for, and show themselves."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import Self
 
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Source, TaskTree, unit_at_level
+from foon_asp.network import FunctionalUnit, ObjectNode, Source, TaskTree, unit_at_level
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.questions.caller import caller
 from foon_asp.report.drawing import Drawing, draw_tree
@@ -55,15 +55,8 @@ class Tree(TaskTree):
         It is a tree for the goals of the problem, whatever goals an answer names. Raises
         :class:`UserError` for a file that is not understood or has no tree.
         """
-        who = caller()
-        reader = FoonReader(who.lenient)
-        listed = read_listed_tree(Path(file), reader)
-        for remark in summarize(reader.diagnostics):
-            who.reporter.warning(remark)
-        if listed.units is None:
-            raise UserError(f"{file}: the answer has no tree ({listed.status})")
-        units = [unit for unit, _ in listed.units]
-        return cls.given(problem, units, [place for _, place in listed.units])
+        listed, _ = read_listed(Path(file))
+        return cls.given(problem, [unit for unit, _ in listed], [place for _, place in listed])
 
     def __str__(self) -> str:
         return write_units(self.units, filter(None, [f"Task tree for: {self._goals()}", self.claim]))
@@ -100,3 +93,18 @@ class Tree(TaskTree):
     ) -> dict[str, str]:
         """Give what a notebook shows: the picture."""
         return picture_bundle(self, self.drawing())
+
+
+def read_listed(file: Path) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Sequence[ObjectNode]]:
+    """Read the units of a tree with their places in the order listed, and the goals, which an answer knows.
+
+    Who asks hears of what was assumed. Raises :class:`UserError` as :meth:`Tree.read`.
+    """
+    who = caller()
+    reader = FoonReader(who.lenient)
+    listed = read_listed_tree(file, reader)
+    for remark in summarize(reader.diagnostics):
+        who.reporter.warning(remark)
+    if listed.units is None:
+        raise UserError(f"{file}: the answer has no tree ({listed.status})")
+    return listed.units, listed.goals

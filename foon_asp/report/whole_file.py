@@ -27,6 +27,19 @@ def write_whole(file: Path, content: bytes) -> None:
         raise UserError(f"{file}: cannot be written: {error.strerror or error}") from None
 
 
+def utf_8(text: str) -> bytes:
+    """Give the bytes of a text; raises :class:`UserError` for half a character, which has none."""
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        line = text.count("\n", 0, error.start) + 1
+        found = ascii(text[error.start])
+        raise UserError(
+            f"line {line} of what would be written has {found}, half a character, which UTF-8 cannot hold: "
+            "correct the name it stands in"
+        ) from None
+
+
 def _replace(target: Path, content: bytes) -> None:
     # A name that nobody has: no other file of the user's is written over on the way.
     partial = target.with_name(f".foon-asp.{token_hex(8)}")

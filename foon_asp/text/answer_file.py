@@ -27,9 +27,12 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
 
     Raises :class:`UserError` for an answer that is not of the form of ``docs/json.md``.
     """
-    answer = _answer(file)
+    if not file.exists():
+        raise UserError(f"{file}: no such file")
+    text = read_plain_text(file)  # once: a pipe can be read no more than that
+    answer = _answer(text)
     if answer is None:
-        return ListedTree(tuple(reader.read_tree(file)))
+        return ListedTree(tuple(reader.tree_units(text, str(file))))
     try:
         units = None if answer["units"] is None else tuple(map(_unit, answer["units"]))
         goals = tuple(parse_node(goal) for goal in answer.get("goals", ()))
@@ -38,11 +41,8 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         raise UserError(f"{file}: expected an answer of foon-asp in JSON, but {_what(error)}") from None
 
 
-def _answer(file: Path) -> dict[str, Any] | None:
+def _answer(text: str) -> dict[str, Any] | None:
     """Give the object of an answer; of a shopping list that is the tree it makes possible."""
-    if not file.is_file():
-        raise UserError(f"{file}: no such file")
-    text = read_plain_text(file)
     if not text.lstrip().startswith("{"):
         return None
     try:

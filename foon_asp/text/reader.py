@@ -75,10 +75,14 @@ class FoonReader:
 
     def read_tree(self, file: Path) -> list[tuple[FunctionalUnit, Source]]:
         """Read one file as units in listed order, copies kept; raises :class:`InputError`."""
+        return self.tree_units(read_plain_text(file), str(file))
+
+    def tree_units(self, text: str, file: str) -> list[tuple[FunctionalUnit, Source]]:
+        """Give the units of a text in listed order, copies kept; raises :class:`InputError`."""
         earlier = len(self.diagnostics)
         units = [
             (FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs), unit.source)
-            for unit in self.units(self.text(file), str(file))
+            for unit in self.units(text, file)
         ]
         self.raise_errors(earlier)
         return units

@@ -1,0 +1,235 @@
+"""A picture of an optimal task tree, of a given one, of some functional units, or of a whole network."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from foon_asp.asp import Status
+from foon_asp.asp import solve as find
+from foon_asp.dataset.paths import File
+from foon_asp.errors import UserError
+from foon_asp.foon import Foon
+from foon_asp.network import FunctionalUnit, TaskTree, unit_at_level
+from foon_asp.problem import ContainerRule, Problem, container_rule
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES
+from foon_asp.questions.posing import Command
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.tree import read_listed
+from foon_asp.report.answer import counted, headline
+from foon_asp.report.dot import dot_text
+from foon_asp.report.drawing import Drawing, draw_network
+from foon_asp.report.mermaid import mermaid_markdown, mermaid_text
+from foon_asp.report.notebook import picture_bundle
+from foon_asp.report.picture import png_picture, svg_picture
+from foon_asp.report.tree_drawing import given_tree, solved_tree
+from foon_asp.report.whole_file import utf_8, write_whole
+from foon_asp.text import Data
+
+_MERMAID_PAGE = ".md"
+
+
+@dataclass(frozen=True, repr=False)
+class Drawn(Result):
+    """A picture: ``picture`` is what it shows, ``None`` where there is no tree.
+
+    ``outcome`` is the answer whose tree it shows, ``None`` where nothing was solved. The formats raise
+    :class:`NothingToDrawError` where there is no tree; SVG and PNG raise :class:`UserError` for what is too
+    large for a picture, and without the packages of ``foon-asp[pictures]``.
+    """
+
+    picture: Drawing | None
+    outcome: Answer | None = None
+
+    @property
+    def ending(self) -> Ending:
+        """Done when there is a picture; for the tree of a goal as that was solved."""
+        return Ending.DONE if self.outcome is None else self.outcome.ending
+
+    @property
+    def remark(self) -> str:
+        """What is known of a tree that is not proved to be the best, or why there is none."""
+        solved = self.outcome
+        return "" if solved is None or solved.status is Status.OPTIMAL else headline(solved)
+
+    def text(self) -> str:
+        """Give the picture in DOT, or why there is none."""
+        return f"{self.remark}\n" if self.picture is None else self.dot()
+
+    def json_dict(self) -> object:
+        """Raise :class:`UserError`: a picture is written in its own formats."""
+        raise UserError("there is no JSON of a picture; that of the answer has its tree")
+
+    def dot(self) -> str:
+        """Give the picture in DOT, Graphviz' language."""
+        return dot_text(self._shown())
+
+    def svg(self) -> str:
+        """Give the picture as SVG, a document by itself."""
+        return svg_picture(self._shown()).decode()
+
+    def png(self) -> bytes:
+        """Give the picture as PNG."""
+        return png_picture(self._shown())
+
+    def mermaid(self) -> str:
+        """Give the picture as a Mermaid flowchart."""
+        return mermaid_text(self._shown())
+
+    def write(self, file: File, format_: str | None = None) -> None:
+        """Write the picture into a file, in the format that its name says if none is given.
+
+        A file with the suffix ``.md`` is a page with the flowchart.
+        """
+        file = Path(file)
+        form = format_ or draw.format_of(file)
+        if form not in draw.formats:
+            raise UserError(f"found the format {form!r}, expected one of {', '.join(draw.formats)}")
+        page = form == "mermaid" and file.suffix.lower() == _MERMAID_PAGE
+        content: str | bytes = mermaid_markdown(self._shown()) if page else getattr(self, form)()
+        write_whole(file, utf_8(content) if isinstance(content, str) else content)
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture shows."""
+        return self.picture
+
+    def _shown(self) -> Drawing:
+        if self.picture is None:
+            raise NothingToDrawError("there is no tree to draw")
+        return self.picture
+
+    def __repr__(self) -> str:
+        return f"<Drawn: {self.remark if self.picture is None else self.picture.caption[0]}>"
+
+    def _repr_mimebundle_(
+        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
+    ) -> dict[str, str]:
+        """Give what a notebook shows: the picture."""
+        return super()._repr_mimebundle_() if self.picture is None else picture_bundle(self, self.picture)
+
+
+def _posed(
+    command: Command, goals_named: Sequence[str], containers: str, tree: File | None, units: Sequence[int]
+) -> Problem | Foon:
+    """Pose the goals that are named; without any it is about the data."""
+    if command.given("objectives") and (not goals_named or tree is not None or units):
+        raise UserError("--objective chooses among the task trees for a --goal: here is nothing to choose")
+    dataset = command.dataset
+    if not goals_named:
+        return Foon(dataset, "the data")
+    with command.reading():
+        return dataset.problem(dataset.goals(goals_named), containers)
+
+
+@question(
+    GOALS,
+    Option("tree", "A task tree to draw.", Kind.FILE, Part.PROBLEM | Part.QUESTION, metavar="TREE.txt"),
+    Option(
+        "units",
+        "A unit to draw; repeatable.",
+        Kind.WHOLE,
+        Part.PROBLEM | Part.QUESTION,
+        flags=("--unit",),
+        many=True,
+        metavar="ID",
+    ),
+    OBJECTIVES,
+    CONTAINERS._replace(part=Part.PROBLEM | Part.QUESTION),
+    *LIMITS,
+    help_="""
+    \b
+    foon-asp draw --goal macaroni -o tree.svg                the optimal task tree for a goal
+    foon-asp draw --tree tree.txt --goal macaroni -o t.png   a task tree read from FOON text
+    foon-asp draw --unit 12 -o unit.svg                      one functional unit, by id
+    foon-asp draw --network FILE -o whole.dot                a whole network
+
+    With --tree and --unit, --goal says which nodes are shown as goals, and nothing is solved. Exits with 0
+    when there is a picture; for the tree of a goal as `solve` does.
+    """,
+    formats=("dot", "svg", "png", "mermaid"),
+    suffixes={".dot": "dot", ".svg": "svg", ".png": "png", ".mmd": "mermaid", _MERMAID_PAGE: "mermaid"},
+    pose=_posed,
+)
+def draw(
+    about: Problem | Foon,
+    objectives: Objectives = "units",
+    *,
+    tree: str | PathLike[str] | Iterable[FunctionalUnit] | None = None,
+    units: Iterable[int] = (),
+    containers: str = "strict",
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Drawn:
+    """Draw the optimal task tree of a problem, or the network of data that were loaded.
+
+    With ``tree`` that tree is drawn and nothing is solved: the path of a file, FOON text or an answer in
+    JSON, or functional units. With ``units`` those are drawn, by id. The goals of a problem are then shown as
+    goals. ``containers`` is the rule for a tree without goals; a problem has its own. ``objectives`` and the
+    limits are for what is solved, as for :func:`foon_asp.solve`.
+    """
+    wanted = tuple(dict.fromkeys(units))
+    if tree is not None and wanted:
+        raise UserError("a tree and units are two different drawings: give one of them")
+    if isinstance(about, Problem) and tree is None and not wanted:
+        how = settings(time_limit=time_limit, memory_limit=memory_limit)
+        outcome = Answer._make(find(about, chosen_objectives(about, objectives), how, caller().reporter))
+        return Drawn(None if outcome.units is None else solved_tree(outcome, outcome.units), outcome)
+    foon, goals, rule = _data(about, containers)
+    if tree is not None:
+        return Drawn(_given_tree(foon, goals, rule, tree))
+    if wanted:
+        return Drawn(_subgraph(*foon.dataset.part(goals, wanted), wanted))
+    return Drawn(_subgraph(foon.dataset.data, (), ()))
+
+
+def _data(about: Problem | Foon, containers: str) -> tuple[Foon, Sequence[int], ContainerRule]:
+    """Give the data, the goals by id in the whole network, and the container rule."""
+    if isinstance(about, Foon):
+        return about, (), container_rule(containers)
+    goals = [about.network.object_number(goal) for goal in about.goals]
+    return Foon.of(about), goals, about.containers
+
+
+def _given_tree(
+    foon: Foon,
+    goal_ids: Sequence[int],
+    rule: ContainerRule,
+    given: str | PathLike[str] | Iterable[FunctionalUnit],
+) -> Drawing:
+    """Draw a tree with the data that it is about."""
+    name = ""
+    if isinstance(given, str | PathLike):
+        name = Path(given).name
+        listed = [unit for unit, _ in read_listed(Path(given))[0]]
+    else:
+        listed = list(given)
+    tree = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in listed)))
+    if not tree.units:
+        raise UserError(f"{given}: no functional unit to draw" if name else "no functional unit to draw")
+    data, goal_ids = foon.dataset.part(goal_ids, tree=tree)
+    objects = data.network.objects
+    kitchen = {objects[o] for o in data.kitchen}
+    goals = [objects[o] for o in goal_ids]
+    return given_tree(name, tree, kitchen, goals, rule, data.utensils, data.network)
+
+
+def _subgraph(data: Data, goal_ids: Iterable[int], unit_ids: tuple[int, ...]) -> Drawing:
+    """Draw the units that are named, or else all."""
+    network = data.network
+    shown = tuple(range(len(network)))
+    if unit_ids:
+        shown = tuple(unit for unit in map(network.unit_of_number, unit_ids) if unit is not None)
+    if not unit_ids:
+        caption = [f"A network of {counted(len(shown), 'unit')}"]
+    elif len(shown) == 1:
+        file, line, *_ = network.sources[shown[0]][0]
+        caption = [f"Functional unit {unit_ids[0]} ({Path(file).name}, line {line})"]
+    else:
+        caption = [f"Functional units {', '.join(map(str, unit_ids))}"]
+    units = [(network.unit_number(unit), network.unit(unit)) for unit in shown]
+    objects = network.objects
+    return draw_network(units, {objects[o] for o in data.kitchen}, {objects[o] for o in goal_ids}, caption)
