@@ -135,6 +135,12 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
     ),
     "menu": (["menu"], ["ice", "tea"], "strict", foon_asp.menu),
     "assist": (["assist"], ["macaroni"], "implied", foon_asp.assist),
+    "assist with so many": (
+        ["assist", "--assist", "1"],
+        ["ice"],
+        "strict",
+        lambda p: foon_asp.assist(p, 1),
+    ),
     "assist, and a success to reach": (
         ["assist", "--reach", "0.95", "--constraint", "forbid_motion", *CONSTANT],
         ["ice"],
