@@ -4,6 +4,8 @@ import math
 import re
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
+from typing import Any
 
 import clingo
 import pytest
@@ -13,6 +15,7 @@ from foon_asp.asp.exact_success import problem_scale
 from foon_asp.asp.facts import write_facts, write_objectives
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.scales import Scales
+from foon_asp.asp.session import Session
 from foon_asp.certificate import certify
 from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import BugError, UserError
@@ -34,6 +37,7 @@ from foon_asp.resources import encodings_folder
 from tests import oracle
 from tests.random_problems import random_problem
 from tests.test_exact_success import two_ways
+from tests.ways_problem import ways
 
 RULES = list(ContainerRule)
 
@@ -172,6 +176,47 @@ def test_two_objectives_that_have_to_be_rounded_are_refused(monkeypatch: pytest.
         solve(problem, (objective, Objective.SUCCESS), Settings(reductions=NONE))
 
 
+@pytest.mark.parametrize("other", [(), (Objective.KITCHEN,)])
+@pytest.mark.parametrize("reversed_", [False, True])
+def test_equal_totals_of_different_costs_are_equal(
+    reversed_: bool, other: tuple[Objective, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rounded costs of two units weigh less than what they cost together, which is the cost of one unit."""
+    objective = NEW["rounded"]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+    one, two, too_fine = 1 + Fraction(1, 1019), 1 + Fraction(1, 1013), 3 + Fraction(1, 1_000_003)
+    chains = [[one, two], [one + two], [1 + Fraction(1, 1021), one + two - 1 - Fraction(1, 1021)], [too_fine]]
+    if reversed_:
+        chains = chains[::-1]
+    problem = ways(*([str(1 / cost) for cost in chain] for chain in chains))
+    best = (2,) if not reversed_ else (3,)
+    for settings in (Settings(), Settings(reductions=NONE)):
+        outcome = solve(problem, (*other, objective), settings)
+        assert (outcome.status, outcome.units) == (Status.OPTIMAL, best)
+    first, second, third, _ = Ranked(problem, (*other, objective), Settings())
+    assert first[0] == best
+    assert {len(second[0]), len(third[0])} == {2}
+
+
+def test_programs_are_kept_for_objectives_that_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[object] = []
+    program = Session.program
+
+    def counted(session: Session, *given: Any) -> Any:
+        asked.append(given)
+        return program(session, *given)
+
+    monkeypatch.setattr(Session, "program", counted)
+    rule = Settings(constraints=(Path("at_most_units"),), constants=("max_units=9",), session=Session())
+    problem = two_ways(["0.5", "0.5"], ["0.2"])
+    for new, objective in NEW.items():
+        asked.clear()
+        monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+        outcome = solve(problem, (objective,), rule)
+        assert outcome.status is Status.OPTIMAL
+        assert bool(asked) == (new == "whole")
+
+
 @pytest.mark.parametrize("reductions", [ALL, *(frozenset({one}) for one in Reduction), NONE])
 def test_rooms_that_measure_different_things_give_no_answer(
     reductions: frozenset[Reduction], monkeypatch: pytest.MonkeyPatch
@@ -182,9 +227,9 @@ def test_rooms_that_measure_different_things_give_no_answer(
     monkeypatch.setattr(
         Costs, "measure", lambda costs, by: 2 * costs.units if by is inputs else measure(costs, by)
     )
-    for ways in ((["0.5", "0.5"], ["0.2"]), (["0.2"], ["0.5", "0.5"])):
+    for chains in ((["0.5", "0.5"], ["0.2"]), (["0.2"], ["0.5", "0.5"])):
         with pytest.raises(BugError, match=r"the reductions make it|weigh .* but cost"):
-            solve(two_ways(*ways), (inputs,), Settings(reductions=reductions))
+            solve(two_ways(*chains), (inputs,), Settings(reductions=reductions))
 
 
 def test_a_certificate_by_an_unknown_objective_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,6 +74,13 @@ def test_what_weighs_less_may_come_later() -> None:
         assert units_of(list(Ranked(problem, objectives, Settings()))) == [(3,), (0, 1, 2)]
 
 
+def test_nothing_is_given_before_what_may_still_be_better() -> None:
+    """Three times 0.7 weighs 107002482, and one more what is better and what is worse."""
+    problem = ways(["0.7"] * 3, ["0.3429999985"], ["0.3430000001", "1"])
+    found = units_of(list(Ranked(problem, [SUCCESS], Settings())))
+    assert found == [(4, 5), (0, 1, 2), (3,)]
+
+
 def test_what_weighs_the_same_comes_in_the_order_of_its_units() -> None:
     problem = ways(["0.5"], ["0.5"], ["0.5"], ["0.5"])
     assert units_of(list(Ranked(problem, [SUCCESS], Settings()))) == [(0,), (1,), (2,), (3,)]

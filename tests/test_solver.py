@@ -13,6 +13,7 @@ import pytest
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import at_most
+from foon_asp.asp.scales import Scales
 from foon_asp.asp.session import Session
 from foon_asp.asp.solver import program_facts
 from foon_asp.deadline import Deadline
@@ -23,6 +24,7 @@ from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.reduce import NONE, Reduced, Reduction, reduce
 from foon_asp.resources import encodings_folder
+from tests.test_objectives import NEW
 from tests.ways_problem import GOAL, ways
 
 UNITS, INPUTS, SUCCESS, KITCHEN = Objective.UNITS, Objective.INPUTS, Objective.SUCCESS, Objective.KITCHEN
@@ -628,6 +630,23 @@ def test_costs_of_a_tree_in_hand_are_worked_out_once(monkeypatch: pytest.MonkeyP
     assert asked == {frozenset({0}): 2}
 
 
+@pytest.mark.parametrize("settings", [SEARCHED, RULED, RULED._replace(session=Session())])
+def test_how_units_are_weighed_is_worked_out_once(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """For the question, and for the program that is kept of it; and what it weighs is one figure."""
+    made: list[Scales] = []
+    scale = Scales.__init__
+
+    def counted(scales: Scales, *given: Any) -> None:
+        made.append(scales)
+        scale(scales, *given)
+
+    monkeypatch.setattr(Scales, "__init__", counted)
+    assert optimum(ways(["0.7"] * 3, ["0.3430000001"]), (SUCCESS,), settings) == (3,)
+    assert len(made) == 1
+
+
 # --- Success, settled exactly.
 
 
@@ -724,6 +743,28 @@ def test_every_product_within_the_band_is_compared(monkeypatch: pytest.MonkeyPat
     assert searches.modes == ["opt", *["opt,6"] * 5, "opt,1"]
 
 
+def test_totals_that_are_equal_have_equal_rights(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All ways cost 6, and weigh the less the more they lose by rounding; three units of 2 lose nothing."""
+    objective = NEW["rounded"]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+    thirds = [Fraction(number, 3) for number in range(11)]
+    chains = [[Fraction(2)] * 3, thirds[4:6] * 2, [thirds[8], thirds[10]], [7 + Fraction(1, 10**9 + 7)]]
+    problem = ways(*([str(1 / cost) for cost in chain] for chain in chains))
+    leave(monkeypatch, problem, (objective,), (0, 1, 2))
+    weights = 599_999_998, 600_000_000  # of the second way, and of the first
+    searches = Searches(monkeypatch, Answer(Run(numbers(problem, 3, 4, 5, 6), (weights[0], 4), True)))
+    assert optimum(problem, (objective,), Settings()) == (7, 8)
+    band = f"opt,{weights[1]}"
+    assert searches.modes[:4] == ["opt", band, band, band]
+    assert searches.modes[4] == "opt,3"
+    assert searches.modes[-1] in {"opt,2", "opt,3"}
+    assert len(searches.modes) == 7
+    # at a limit in the last of these, what is in hand is the answer
+    Searches(monkeypatch, *[None] * 6, Answer(Run()))
+    outcome = solve(problem, (objective,), Settings())
+    assert (outcome.status, outcome.units) == (Status.FEASIBLE, (7, 8))
+
+
 def test_a_product_that_is_lost_is_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     Searches(monkeypatch, None, None, Answer(Run(exhausted=True)))
     with pytest.raises(BugError, match="the best success was lost"):
@@ -800,6 +841,21 @@ def test_units_that_the_network_has_not_are_refused(monkeypatch: pytest.MonkeyPa
     with pytest.raises(UserError) as refused:
         solve(problem, (UNITS,), SEARCHED)
     assert str(refused.value) == "the encodings made use(77), but the network has no unit of that number"
+
+
+def test_answers_are_about_the_numbers_of_the_whole_network(tmp_path: Path) -> None:
+    """Of a network a part is read, whose units keep their numbers in facts and answers."""
+    whole = ways(["0.2", "0.2"], ["0.5"] * 3, ["0.7"] * 3, ["0.3430000001"])
+    part = dataclasses.replace(whole, network=whole.network.without((0, 1, 3)))
+    heard = Heard()
+    for settings in (SEARCHED, Settings(), RULED, RULED._replace(session=Session())):
+        outcome = solve(part, (SUCCESS,), settings, heard)
+        assert outcome.units == (5,)
+        assert heard.trees[-1] == part.costs((5,))
+    assert 'unit(8). motion(8,"go 3 0")' in program_facts(part, (UNITS,), Settings())
+    rule = tmp_path / "rule.lp"
+    rule.write_text(":- use(8).\n")
+    assert optimum(part, (UNITS,), Settings(constraints=(rule,))) == (2, 3, 4)
 
 
 # --- Rules and encodings of the user's.

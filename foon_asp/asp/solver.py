@@ -342,7 +342,6 @@ class _Solver:
             raise
         if not ended.exhausted:  # what a search that was stopped leaves behind can make the next one endless
             session.forget(self._open)
-            self._open = None
         return ended
 
     def _ids(self, numbers: Units) -> Units:
@@ -369,15 +368,15 @@ class _Solver:
         before, by, after = self.levels[:place], self.levels[: place + 1], self.levels[place + 1 :]
         totals: list[dict[int, int]] = []
         fixed = [scales.weight(objective, best) for objective in before]
-        chosen, rival, wanted = best, best, 0
+        chosen, rival, wanted = best, best, [0]  # the totals that are as good as that of the tree chosen
         while True:
-            # A better total has a weight of at most W + n - 1, where n units of the tree weigh less
-            # than they cost.
+            # A total that is better or as good has a weight of at most W + n - 1, where n units of the tree
+            # weigh less than they cost, and of at most W where none does.
             totals.append(scales.vector(rival))
             doubt = scales.doubt(chosen)
-            if not doubt:
-                break  # nothing was hidden: what weighs no less is no better
-            band = scales.weight(scales.rounded, chosen) + doubt - 1
+            if not doubt and multiplies(scales.rounded):
+                break  # nothing succeeds more often than always, and equal products have equal vectors
+            band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
             mode = ",".join(["opt", *map(str, fixed), str(band)])
             ended = self._run(by, totals, opt_mode=mode)
             if not ended.exhausted:
@@ -386,20 +385,27 @@ class _Solver:
                 break
             rival = ended.units
             self._require_measures(self._measures_agree(rival, ended.cost, by))
-            if self._costs(rival).key(by) < self._costs(chosen).key(by):
-                chosen, wanted = rival, len(totals)
+            ours, theirs = (self._costs(tree).key(by) for tree in (chosen, rival))
+            if theirs < ours:
+                chosen, wanted = rival, []
+            if theirs <= ours:
+                wanted.append(len(totals))
         if not after:
             return chosen, True
-        limits = (scales.weight(objective, chosen) for objective in after)
-        mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
-        ended = self._run((*before, *after), totals, wanted, mode)
-        if ended.units is None:
-            self._require_measures(not (ended.exhausted and self.program.replaced))
-            self.holds.require(not ended.exhausted, lambda: f"the best {scales.rounded} was lost")
-            return chosen, False
-        self._require_measures(self._measures_agree(ended.units, ended.cost, (*before, *after)))
-        self.holds.settled(ended.units, chosen, by)
-        return ended.units, ended.exhausted
+        for number in wanted:
+            limits = (scales.weight(objective, chosen) for objective in after)
+            mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
+            ended = self._run((*before, *after), totals, number, mode)
+            if ended.units is not None:
+                self._require_measures(self._measures_agree(ended.units, ended.cost, (*before, *after)))
+                self.holds.settled(ended.units, chosen, by)
+                chosen = ended.units
+            if not ended.exhausted:
+                return chosen, False
+            found = ended.units is not None or number != wanted[0]  # of the first, one is in hand
+            self._require_measures(found or not self.program.replaced)
+            self.holds.require(found, lambda: f"the best {scales.rounded} was lost")
+        return chosen, True
 
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
         """Hold clingo's cost vector (modulo 2^32) against what the units weigh, and that against their costs.
@@ -455,11 +461,11 @@ class _Solver:
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
-            if self.scales is None:  # nothing was asked yet
-                bounds[objective] = int(multiplies(objective))
-                break
-            bounds[objective] = self.scales.bound(objective, max(0, value))
-            if objective is self.scales.rounded:
+            scales = self.scales  # None where nothing was asked yet
+            bounds[objective] = (
+                scales.bound(objective, max(0, value)) if scales else int(multiplies(objective))
+            )
+            if scales and objective is scales.rounded:
                 break
         reduced = self.reduced
         if reduced is None or reduced.costs is None:
