@@ -31,7 +31,8 @@ from pathlib import Path
 from foon_asp.asp import solve
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
 from foon_asp.text import FoonReader, find_data, find_goal, read_labels, read_object_list, read_rates
-import foon_asp.cli.solve
+from foon_asp.cli.verbs import verb_command
+verb_command("solve")
 mark("import")
 files = find_data(Path(sys.argv[1]))
 network = FoonReader().read_network(files.network)

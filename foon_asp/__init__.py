@@ -16,24 +16,8 @@ from typing import TYPE_CHECKING
 from foon_asp.questions.index import INDEX, module_name
 
 if TYPE_CHECKING:
-    from foon_asp.api.certified import (
-        Certified as Certified,
-    )
-    from foon_asp.api.certified import (
-        VerifiedCertificate as VerifiedCertificate,
-    )
-    from foon_asp.api.certified import (
-        certify as certify,
-    )
-    from foon_asp.api.certified import (
-        verify as verify,
-    )
-    from foon_asp.api.cross_check import CrossChecked as CrossChecked
-    from foon_asp.api.cross_check import cross_check as cross_check
     from foon_asp.api.difference import Difference as Difference
     from foon_asp.api.difference import diff as diff
-    from foon_asp.api.solve import solve as solve
-    from foon_asp.api.solve import solve_soft as solve_soft
     from foon_asp.asp import Outcome as Outcome
     from foon_asp.asp import Reporter as Reporter
     from foon_asp.asp import Status as Status
@@ -79,15 +63,18 @@ if TYPE_CHECKING:
     from foon_asp.questions.alternatives import Alternatives as Alternatives
     from foon_asp.questions.alternatives import alternatives as alternatives
     from foon_asp.questions.answer import Answer as Answer
-    from foon_asp.questions.answer import SoftAnswer as SoftAnswer
     from foon_asp.questions.assist import Assistance as Assistance
     from foon_asp.questions.assist import assist as assist
+    from foon_asp.questions.certify import Certified as Certified
+    from foon_asp.questions.certify import certify as certify
     from foon_asp.questions.check import Checked as Checked
     from foon_asp.questions.check import check as check
     from foon_asp.questions.clash import Clash as Clash
     from foon_asp.questions.clash import clash as clash
     from foon_asp.questions.compare import Compared as Compared
     from foon_asp.questions.compare import compare_searches as compare_searches
+    from foon_asp.questions.cross_check import CrossChecked as CrossChecked
+    from foon_asp.questions.cross_check import cross_check as cross_check
     from foon_asp.questions.draw import Drawn as Drawn
     from foon_asp.questions.draw import draw as draw
     from foon_asp.questions.menu import Menu as Menu
@@ -102,7 +89,12 @@ if TYPE_CHECKING:
     from foon_asp.questions.search import retrieve as retrieve
     from foon_asp.questions.shopping_list import Shopping as Shopping
     from foon_asp.questions.shopping_list import shopping_list as shopping_list
+    from foon_asp.questions.solve import solve as solve
+    from foon_asp.questions.solve_soft import SoftAnswer as SoftAnswer
+    from foon_asp.questions.solve_soft import solve_soft as solve_soft
     from foon_asp.questions.tree import Tree as Tree
+    from foon_asp.questions.verify import VerifiedCertificate as VerifiedCertificate
+    from foon_asp.questions.verify import verify as verify
     from foon_asp.questions.why_not import Explanation as Explanation
     from foon_asp.questions.why_not import why_not as why_not
     from foon_asp.text import FoonReader as FoonReader
@@ -113,10 +105,9 @@ __version__ = "0.1.0"
 
 # Where each public name lives beside the questions; a room is imported when a name of it is first asked for.
 _ROOMS = {
-    "api.solve": ("solve", "solve_soft"),
-    "questions.answer": ("Answer", "SoftAnswer"),
-    "api.certified": ("Certified", "VerifiedCertificate", "certify", "verify"),
-    "api.cross_check": ("CrossChecked", "cross_check"),
+    "questions.answer": ("Answer",),
+    "questions.solve_soft": ("SoftAnswer", "solve_soft"),
+    "questions.cross_check": ("CrossChecked", "cross_check"),
     "api.difference": ("Difference", "diff"),
     "foon": ("Foon", "build", "load"),
     "questions.tree": ("Tree",),

@@ -27,15 +27,17 @@ BESIDE = {
     "arguments",
     "caller",
     "contract",
+    "cross_check",
     "index",
     "options",
     "posing",
     "result",
     "searching",
+    "solve_soft",
     "tree",
 }
 # parameters that the command line has no option for: it has them from elsewhere
-PYTHON_ONLY = {"problem", "about", "reporter"}
+PYTHON_ONLY = {"problem", "about", "data", "reporter"}
 
 
 def question_of(verb: str) -> Question[..., Result]:
@@ -45,7 +47,7 @@ def question_of(verb: str) -> Question[..., Result]:
 
 
 def parameters(verb: str) -> dict[str, inspect.Parameter]:
-    return dict(inspect.signature(question_of(verb)).parameters)
+    return dict(inspect.signature(question_of(verb).command).parameters)
 
 
 def asked_for(verb: str) -> dict[str, Option]:
@@ -83,12 +85,19 @@ def test_defaults_are_the_same(verb: str) -> None:
 
     for name, option in asked_for(verb).items():
         default = parameters(verb)[name].default
-        if option.positional:
+        if option.positional and not option.many:
             assert default is inspect.Parameter.empty, name
         elif option.many:
             assert plain(option.default) == plain(default), name
         else:
             assert (option.default or None) == (default or None), name
+
+
+@pytest.mark.parametrize("verb", INDEX)
+def test_a_command_has_what_python_has(verb: str) -> None:
+    theirs = inspect.signature(question_of(verb)).parameters
+    for name in theirs.keys() - PYTHON_ONLY:
+        assert parameters(verb)[name].default == theirs[name].default, name
 
 
 @pytest.mark.parametrize("verb", INDEX)
@@ -139,3 +148,18 @@ def test_help_of_all_imports_no_question() -> None:
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert ran.stdout.splitlines()[-1] == "['foon_asp.questions.index']"
+
+
+def test_solve_imports_what_a_plain_answer_needs() -> None:
+    code = (
+        "import sys; from foon_asp.cli.main import main\n"
+        "try: main(['solve', '--goal', 'ice'])\n"
+        "except SystemExit: print(sorted(sys.modules))"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(ast.literal_eval(ran.stdout.splitlines()[-1]))
+    assert "foon_asp.questions.solve" in loaded
+    rooms = {".".join(name.split(".")[:2]) for name in loaded}
+    assert not rooms & {"foon_asp.certificate", "foon_asp.engines", "foon_asp.store", "foon_asp.explain"}
+    assert not loaded & {"clingo", "highspy", "numpy", "rich", "asyncio"}
+    assert not loaded & {"foon_asp.asp.soft", "foon_asp.report.drawing", "foon_asp.questions.tree"}

@@ -388,7 +388,7 @@ def test_the_answer_stands_when_the_search_for_a_certificate_is_interrupted(
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("foon_asp.cli.certify.certify_outcome", interrupt)
+    monkeypatch.setattr("foon_asp.questions.certify.certify_outcome", interrupt)
     file = tmp_path / "proof.json"
     ran = cli("solve", "--goal", "ice", "--certificate", file, "--format", "json")
     assert ran.code == 0
@@ -584,7 +584,7 @@ def test_a_tree_called_optimal_that_is_not_ends_with_70(cli: Cli, monkeypatch: p
         assert outcome.units is not None
         return outcome._replace(units=(*outcome.units, 0), costs=problem.costs((*outcome.units, 0)))
 
-    monkeypatch.setattr("foon_asp.cli.certify.solve", worse)
+    monkeypatch.setattr("foon_asp.questions.solve.find", worse)
     ran = cli("certify", "--goal", "ice")
     assert ran.code == 70
     assert "but there is a better tree, the units [" in ran.err

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.cli import cross_check as command
 from foon_asp.engines import (
     ENGINES,
     Asked,
@@ -221,7 +220,7 @@ def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     def with_liar(asked: Asked) -> list[Check]:
         return cross_check(asked, 60.0, (Engine("Liar", lambda: True, liar),))
 
-    monkeypatch.setattr(command, "cross_check", with_liar)
+    monkeypatch.setattr("foon_asp.questions.cross_check.ask_engines", with_liar)
     monkeypatch.chdir(tmp_path)
     words = ("--goal", "ice", "--constraint", "forbid_motion", "-c", "forbidden_motion=crush")
     ran = cli("solve", *words, "--cross-check")

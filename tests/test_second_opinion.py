@@ -19,8 +19,6 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.exact_success import rate_scale
 from foon_asp.asp.soft import solve_soft
-from foon_asp.cli import cross_check as checking
-from foon_asp.cli import solve as command
 from foon_asp.engines import Asked, Check, DisagreementError, NotCheckedError, bare_clingo, cross_check
 from foon_asp.engines.bare_clingo import check_with_bare_clingo, greatest_weight
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -405,7 +403,7 @@ def test_a_worse_tree_is_our_bug_with_all_that_is_needed(
     Path("at_least.lp").write_text(":- #count { U : use(U) } < 4.\n")
     Path("part.lp").write_text("touched(L) :- use(U), input(U,O), label(O,L).\n")
     Path("mine.lp").write_text('#include "part.lp".\n#const name = "".\n:- touched(name).\n')
-    monkeypatch.setattr(command, "solve", worse)
+    monkeypatch.setattr("foon_asp.questions.solve.find", worse)
     words = (
         "--goal",
         "ice",
@@ -446,7 +444,7 @@ def test_a_tree_that_is_denied_is_our_bug(cli: Cli, tmp_path: Path, monkeypatch:
         found = right(*args)  # type: ignore[arg-type]
         return soft.SoftOutcome(without_tree(found.outcome), None, ())
 
-    monkeypatch.setattr(soft, "solve_soft", denied)
+    monkeypatch.setattr("foon_asp.questions.solve_soft.find", denied)
     monkeypatch.chdir(tmp_path)
     words = ("--goal", "ice", "--soft", "forbid_motion=3", "-c", "forbidden_motion=crush", "--cross-check")
     ran = cli("solve", *words)
@@ -468,8 +466,8 @@ def test_what_is_found_is_said_where_no_file_can_be_written(
         check_with_bare_clingo(asked._replace(outcome=without_tree(asked.outcome)), PATIENCE)
         return []
 
-    monkeypatch.setattr(checking, "cross_check", wrong)
-    monkeypatch.setattr(checking, "disagreement_name", lambda outcome: "file/folder")
+    monkeypatch.setattr("foon_asp.questions.cross_check.ask_engines", wrong)
+    monkeypatch.setattr("foon_asp.report.disagreement.disagreement_name", lambda outcome: "file/folder")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").write_text("")
     ran = cli("solve", "--goal", "ice", "--cross-check")

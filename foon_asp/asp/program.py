@@ -21,6 +21,8 @@ CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
 ENCODING_FILES = ("task_tree.lp", "objectives.lp", "show.lp")
 
+GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
+
 # Options that would change what an answer means, or whether it is a proof; the solver sets them itself.
 _RESERVED = (
     "--const",

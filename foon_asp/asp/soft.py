@@ -23,8 +23,6 @@ from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective, Problem, levels, reach
 
-GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
-
 
 class Broken(NamedTuple):
     """A soft constraint, its weight, and in how many ways the tree breaks it."""

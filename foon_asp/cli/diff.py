@@ -11,6 +11,7 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode, of_status
 from foon_asp.cli.options import read_dataset
 from foon_asp.cli.progress import Progress
+from foon_asp.cli.verbs import verb_command
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.explain.difference import Listed, Side, difference, side
@@ -95,8 +96,7 @@ def _listed(
 
 def _solved(question_text: str) -> tuple[Side | None, ExitCode]:
     """Answer a question that is put as the words of a command; ``None`` where it has no tree."""
-    from foon_asp.cli.solve import command as solve_command
-
+    solve_command = verb_command("solve")
     words, name = shlex.split(question_text)[1:], f"diff '{question_text}'"
     context = click.get_current_context()
     beside = {option: value for option, value in context.params.items() if _is_given(context, option)}

@@ -37,8 +37,6 @@ def read_files() -> Iterator[Path]:
     for name, value in parameters.items():
         if name not in _WRITTEN:
             yield from _paths(value)
-    for setting in parameters.get("soft", ()):
-        yield Path(setting.rpartition("=")[0])
     data = {name: parameters.get(name) or None for name in _DATA}
     if "network" in parameters and any(data.values()):
         files = dataset_files(**(data | {"network": data["network"] or ()}))

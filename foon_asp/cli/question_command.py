@@ -26,7 +26,6 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Kind, Option, Part, Question
 from foon_asp.questions.index import INDEX, module_name, question_name
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
-from foon_asp.report.chart_file import check_suffix
 
 _CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _STANDING = {
@@ -59,14 +58,20 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
     parts = {option.name: option.part for option in question.options}
 
     def ask(
-        format_: str | None, output: Path | None = None, deadline: Deadline | None = None, **given: Any
+        format_: str | None = None,
+        output: Path | None = None,
+        deadline: Deadline | None = None,
+        **given: Any,
     ) -> ExitCode:
         def those(wanted: Part) -> dict[str, Any]:
             return {name: given[name] for name, part in parts.items() if name in given and part & wanted}
 
         charts = [file for files in those(Part.CHART).values() for file in files]
-        for chart in charts:
-            check_suffix(chart)
+        if charts:
+            from foon_asp.report.chart_file import check_suffix
+
+            for chart in charts:
+                check_suffix(chart)
         form = _form(question, format_, output)
         check_outputs()
         data = {name: value for name, value in given.items() if name not in parts}
@@ -76,7 +81,7 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
             with asked_by(who):
                 about = question.pose(command, **those(Part.PROBLEM))
             with asked_by(who._replace(read_seconds=command.dataset.read_seconds)):
-                found = question(about, **those(Part.QUESTION | Part.COMMAND))
+                found = question.command(about, **those(Part.QUESTION | Part.COMMAND))
         for chart in charts:
             try:
                 found.write_chart(chart)
@@ -94,6 +99,8 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
 
 def _format_options(question: "Question[..., Result]") -> list[Callable[[options.Command], options.Command]]:
     """Make ``--format``, and ``--output`` for a question whose result can be written into a file."""
+    if len(question.formats) == 1:
+        return []
     if not question.suffixes:
         return [options.format_option(*question.formats)]
     first = question.formats[0].upper()
@@ -157,14 +164,15 @@ def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
     else:
         with contextlib.suppress(NothingToDrawError):  # the remark says why
             write_data(getattr(found, format_)())
-    if found.remark and format_ != "text":
-        click.echo(found.remark, err=True)
+    remark = found.remark(format_)
+    if remark and format_ != "text":
+        click.echo(remark, err=True)
 
 
 def _write(found: Result, format_: str, output: Path) -> None:
     """Write what was found into a file, and say so."""
-    if found.remark:
-        click.echo(found.remark, err=True)
+    if remark := found.remark(format_):
+        click.echo(remark, err=True)
     with contextlib.suppress(NothingToDrawError):
         found.write(output, format_)
         click.echo(f"wrote {output}", err=True)
@@ -177,6 +185,15 @@ def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...
     return weighted_files(value, parameter.opts[0])
 
 
+def _options_alone(
+    context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Refuse words that stand where only options of another program can."""
+    if value and not value[0].startswith("-"):
+        raise UserError(f"found {value[0]!r}, expected an option; a goal is named by --goal NAME")
+    return value
+
+
 def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[..., ExitCode]]:
     """Make a parameter of click of an option."""
     kinds: dict[Kind, Any] = {
@@ -186,9 +203,16 @@ def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[.
         Kind.SECONDS: seconds,
         Kind.SIZE: memory_size,
         Kind.WEIGHTS: None,
+        Kind.OPTIONS: click.UNPROCESSED,
     }
     if option.positional:
-        return click.argument(option.name, type=kinds[option.kind], metavar=option.metavar)
+        return click.argument(
+            option.name,
+            type=kinds[option.kind],
+            nargs=-1 if option.many else 1,
+            metavar=option.metavar,
+            callback=_options_alone if option.kind is Kind.OPTIONS else None,
+        )
     words = option.flags or ("--" + option.name.replace("_", "-"),)
     if option.kind is Kind.FLAG:
         return click.option(*words, option.name, is_flag=True, help=option.help)

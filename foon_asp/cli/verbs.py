@@ -10,11 +10,8 @@ from foon_asp.questions.index import INDEX, Entry
 
 # Verbs that ask nothing, and those whose question is not in the catalog.
 _OTHERS: Final[Mapping[str, Entry]] = {
-    "solve": Entry("Find", "Find the best task tree for a goal, and prove that none is better."),
     "batch": Entry("Find", "Answer every question of a file, thousands in one run."),
     "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
-    "certify": Entry("Check", "Write a certificate: a proof that verify checks without a solver."),
-    "verify": Entry("Check", "Check a certificate against the data it speaks about."),
     "diff": Entry("Show", "Show what two task trees have in common, and where they part."),
     "stats": Entry("Show", "Count what is in a network."),
     "facts": Entry("Show", "Print the facts that clingo is given for a goal."),

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from foon_asp.asp.program import find_constraint
-from foon_asp.asp.soft import GREATEST_WEIGHT
+from foon_asp.asp.program import GREATEST_WEIGHT, find_constraint
 from foon_asp.errors import UserError
 
 

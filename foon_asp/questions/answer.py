@@ -1,16 +1,15 @@
 """The best tree for a problem, and what is proved of it."""
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Status
-from foon_asp.asp.soft import SoftOutcome
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import headline, outcome_dict, outcome_text
-from foon_asp.report.drawing import Drawing
-from foon_asp.report.notebook import picture_bundle
-from foon_asp.report.soft import soft_json, soft_text
-from foon_asp.report.tree_drawing import solved_tree
+from foon_asp.report.answer import headline, outcome_dict, outcome_foon, outcome_text
+
+if TYPE_CHECKING:  # what a command that prints an answer can do without
+    from foon_asp.questions.tree import Tree
+    from foon_asp.report.drawing import Drawing
 
 
 def of_status(status: Status) -> Ending:
@@ -33,8 +32,10 @@ class Answer(Result, Outcome):
     __slots__ = ()
 
     @property
-    def tree(self) -> Tree | None:
+    def tree(self) -> "Tree | None":
         """The tree, in an order that executes; ``None`` where there is none."""
+        from foon_asp.questions.tree import Tree  # noqa: PLC0415
+
         return None if self.units is None else Tree.of(self.problem, self.units, headline(self))
 
     @property
@@ -46,43 +47,29 @@ class Answer(Result, Outcome):
         """Give the answer as ``foon-asp solve`` does."""
         return outcome_text(self)
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> dict[str, object]:
         """Give the answer as ``foon-asp solve --format json`` does; docs/json.md describes it."""
         return outcome_dict(self)
 
-    def drawing(self) -> Drawing | None:
+    def foon(self) -> str:
+        """Give the tree as FOON text with a comment that says what it is; empty where there is none."""
+        return outcome_foon(self)
+
+    def remark(self, format_: str) -> str:
+        """Say what is claimed, where that is not the best tree."""
+        return "" if self.status is Status.OPTIMAL else headline(self)
+
+    def drawing(self) -> "Drawing | None":
         """Give what the picture shows."""
+        from foon_asp.report.tree_drawing import solved_tree  # noqa: PLC0415
+
         return None if self.units is None else solved_tree(self, self.units)
 
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
         """Give what a notebook shows: the picture, whose caption says what is proved, or the text."""
+        from foon_asp.report.notebook import picture_bundle  # noqa: PLC0415
+
         drawing = self.drawing()
         return super()._repr_mimebundle_() if drawing is None else picture_bundle(self, drawing)
-
-
-class SoftAnswer(Result, SoftOutcome):
-    """The answer under constraints that may be broken at a price.
-
-    ``penalty`` is what the tree of ``outcome`` pays, ``constraints`` says for each how often it is broken.
-    """
-
-    __slots__ = ()
-
-    @property
-    def outcome(self) -> Answer:
-        """The best tree among those with the least penalty."""
-        return Answer._make(super().outcome)
-
-    def text(self) -> str:
-        """Give the answer as ``foon-asp solve --soft`` does."""
-        return soft_text(self)
-
-    def json_text(self) -> str:
-        """Give the answer as ``foon-asp solve --soft --format json`` does."""
-        return soft_json(self)
-
-    def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
-        return self.outcome.drawing()

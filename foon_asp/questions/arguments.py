@@ -1,11 +1,11 @@
 """What callers write, turned into what the rooms take; faults are said in the words of Python."""
 
 from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 from foon_asp.asp import Settings
-from foon_asp.asp.program import find_constraint
-from foon_asp.asp.soft import GREATEST_WEIGHT
+from foon_asp.asp.program import GREATEST_WEIGHT, find_constraint
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import memory_size, seconds
 from foon_asp.errors import UserError
@@ -56,11 +56,14 @@ def asked_with(problem: Problem, how: Settings) -> Problem:
 
 def whole(problem: Problem) -> Problem:
     """Give a problem over the whole network; a command stops reading it at its limits."""
+    with reading():
+        return problem.whole
+
+
+def reading() -> AbstractContextManager[object]:
+    """Stop what is read in a ``with`` block at the limits of the command that asks, if it has any."""
     deadline = caller().deadline
-    if deadline is None:
-        return problem.whole
-    with deadline.watched("reading", late=True):
-        return problem.whole
+    return nullcontext() if deadline is None else deadline.watched("reading", late=True)
 
 
 def file_weights(given: Mapping[File, int]) -> dict[Path, int]:

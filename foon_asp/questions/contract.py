@@ -24,6 +24,7 @@ class Kind(StrEnum):
     SIZE = "size"
     WEIGHTS = "weights of files"
     FLAG = "flag"
+    OPTIONS = "options of another program"
 
 
 class Part(Flag):
@@ -45,9 +46,9 @@ class Option(NamedTuple):
     """One thing that can be chosen, as plain data.
 
     ``name`` is the parameter; ``flags`` are those of the command line, by default ``--name``, where dashes
-    stand for underscores; a ``positional`` one has none and has to be given. ``many`` says that it is given
-    again and again, ``choices`` that it is one of them, ``least`` how small a number may be, ``metavar`` what
-    stands for the value in help.
+    stand for underscores; a ``positional`` one has none and has to be given, unless it is ``many``. ``many``
+    says that it is given again and again, ``choices`` that it is one of them, ``least`` how small a number
+    may be, ``metavar`` what stands for the value in help.
     """
 
     name: str
@@ -69,7 +70,8 @@ class Question(Generic[P, R]):
     ``help`` is what follows after the line of the index, with examples and what it exits with. ``formats``
     are those that the result has, the first by default. ``suffixes`` say by the name of a file in which of
     them it is written, for a result that has a ``write``. ``pose`` makes for a command line what the function
-    is asked about, of the options of the problem.
+    is asked about, of the options of the problem. ``command`` is what a command asks, with all options: the
+    function itself, or another one where a command can choose more, or what Python raises is an answer there.
     """
 
     def __init__(
@@ -80,10 +82,12 @@ class Question(Generic[P, R]):
         formats: tuple[str, ...],
         suffixes: Mapping[str, str],
         pose: Pose,
+        command: Callable[..., Result] | None,
     ) -> None:
         functools.update_wrapper(self, ask)
         self.ask, self.options, self.help, self.formats, self.pose = ask, options, help_, formats, pose
         self.suffixes = suffixes
+        self.command = command or ask
 
     def __call__(self, *args: P.args, **named: P.kwargs) -> R:
         """Ask, as Python does."""
@@ -107,10 +111,11 @@ def question(
     formats: tuple[str, ...] = ("text", "json"),
     suffixes: Mapping[str, str] | None = None,
     pose: Pose = one_problem,
+    command: Callable[..., Result] | None = None,
 ) -> Callable[[Callable[P, R]], Question[P, R]]:
     """Make a question of a function."""
 
     def decorate(ask: Callable[P, R]) -> Question[P, R]:
-        return Question(ask, options, help_, formats, suffixes or {}, pose)
+        return Question(ask, options, help_, formats, suffixes or {}, pose, command)
 
     return decorate

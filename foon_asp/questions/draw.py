@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from foon_asp.asp import Status
 from foon_asp.asp import solve as find
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
@@ -20,7 +19,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import read_listed
-from foon_asp.report.answer import counted, headline
+from foon_asp.report.answer import counted
 from foon_asp.report.dot import dot_text
 from foon_asp.report.drawing import Drawing, draw_network
 from foon_asp.report.mermaid import mermaid_markdown, mermaid_text
@@ -50,15 +49,13 @@ class Drawn(Result):
         """Done when there is a picture; for the tree of a goal as that was solved."""
         return Ending.DONE if self.outcome is None else self.outcome.ending
 
-    @property
-    def remark(self) -> str:
-        """What is known of a tree that is not proved to be the best, or why there is none."""
-        solved = self.outcome
-        return "" if solved is None or solved.status is Status.OPTIMAL else headline(solved)
+    def remark(self, format_: str) -> str:
+        """Say what is known of a tree that is not proved to be the best, or why there is none."""
+        return "" if self.outcome is None else self.outcome.remark(format_)
 
     def text(self) -> str:
         """Give the picture in DOT, or why there is none."""
-        return f"{self.remark}\n" if self.picture is None else self.dot()
+        return self.remark("text") + "\n" if self.picture is None else self.dot()
 
     def json_dict(self) -> object:
         """Raise :class:`UserError`: a picture is written in its own formats."""
@@ -103,7 +100,7 @@ class Drawn(Result):
         return self.picture
 
     def __repr__(self) -> str:
-        return f"<Drawn: {self.remark if self.picture is None else self.picture.caption[0]}>"
+        return f"<Drawn: {self.remark('text') if self.picture is None else self.picture.caption[0]}>"
 
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None

@@ -16,6 +16,7 @@ class Entry(NamedTuple):
 
 
 INDEX: Final[Mapping[str, Entry]] = {
+    "solve": Entry("Find", "Find the best task tree for a goal, and prove that none is better.", ("solve",)),
     "optima": Entry(
         "Find",
         "Solve every goal of the goals file under several objectives.",
@@ -35,6 +36,16 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Check",
         "Simulate a task tree: does it execute, and in which order?",
         ("check", "Checked"),
+    ),
+    "certify": Entry(
+        "Check",
+        "Write a certificate: a proof that `foon-asp verify` checks without a solver.",
+        ("certify", "Certified"),
+    ),
+    "verify": Entry(
+        "Check",
+        "Check a certificate against the data it speaks about, and say what it proves.",
+        ("verify", "VerifiedCertificate"),
     ),
     "why-not": Entry(
         "Explain",

@@ -53,6 +53,13 @@ RULES = (
         metavar="NAME=VALUE",
     ),
 )
+SOFT = Option(
+    "soft",
+    "Constraints that may be broken, each way at that price; the least sum comes first.",
+    Kind.WEIGHTS,
+    many=True,
+    metavar="FILE.lp=WEIGHT",
+)
 LIMITS = (
     Option(
         "time_limit",

@@ -6,6 +6,7 @@ from typing import Protocol
 
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
+from foon_asp.foon import Foon
 from foon_asp.problem import Problem
 
 
@@ -32,6 +33,11 @@ def one_problem(command: Command, goals_named: Sequence[str], containers: str) -
     dataset = command.dataset
     with command.reading():
         return dataset.problem(dataset.goals(goals_named), containers)
+
+
+def the_data(command: Command) -> Foon:
+    """Ask about the data as a whole."""
+    return Foon(command.dataset, "the data")
 
 
 def each_goal(command: Command, goals_named: Sequence[str], containers: str) -> Problem:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
-from foon_asp.report.notebook import page_bundle, svg_text
 
 if TYPE_CHECKING:
     from foon_asp.report.drawing import Drawing
@@ -66,9 +65,8 @@ class Result:
         """
         return None
 
-    @property
-    def remark(self) -> str:
-        """What is said beside a format that does not say it; empty where nothing is."""
+    def remark(self, format_: str) -> str:
+        """Give what is said beside a format, not text, that does not say it; empty where nothing is."""
         return ""
 
     def write(self, file: File, format_: str | None = None) -> None:
@@ -97,6 +95,8 @@ class Result:
         Raises :class:`UserError` where there is none: without a tree, without the packages of
         ``foon-asp[pictures]``, and for a tree too large for a picture.
         """
+        from foon_asp.report.notebook import svg_text  # noqa: PLC0415
+
         drawing = self.drawing()
         if drawing is None:
             raise UserError("there is no tree to draw")
@@ -113,5 +113,7 @@ class Result:
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
         """Give what a notebook shows: the text, and below it the picture where there is one."""
+        from foon_asp.report.notebook import page_bundle  # noqa: PLC0415
+
         pictures = [] if (drawing := self.drawing()) is None else [drawing]
         return page_bundle(self, pictures)

@@ -1,13 +1,12 @@
 """An outcome for people, for programs and as FOON text."""
 
-import json
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
 from foon_asp.network import Network
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
 from foon_asp.text import write_units
 
 _DIGITS = 4  # of a success, where so many tell several apart
@@ -88,11 +87,6 @@ def unit_json(network: Network, unit: int) -> dict[str, object]:
     return given
 
 
-def outcome_json(outcome: Outcome, more: Mapping[str, object] | None = None) -> str:
-    """Give an outcome as JSON, with more keys after those of :func:`outcome_dict`."""
-    return json.dumps(outcome_dict(outcome) | dict(more or {}), indent=2, ensure_ascii=False) + "\n"
-
-
 def outcome_dict(outcome: Outcome) -> dict[str, object]:
     """Give the keys and values of an outcome in JSON; docs/json.md describes them."""
     problem = outcome.problem
@@ -132,7 +126,10 @@ def outcome_foon(outcome: Outcome) -> str:
 
 
 def outcome_text(outcome: Outcome, remarks: Iterable[str] = ()) -> str:
-    """Give an outcome for people: what was proved, remarks, the steps with where each input comes from."""
+    """Give an outcome for people: what was proved, remarks, the steps with where each input comes from.
+
+    Where there is no tree it is said why.
+    """
     problem = outcome.problem
     lines = [*goal_lines(problem), headline(outcome), *remarks]
     if outcome.status is Status.FEASIBLE:
@@ -143,6 +140,8 @@ def outcome_text(outcome: Outcome, remarks: Iterable[str] = ()) -> str:
             lines += steps(problem, outcome.units)
         else:
             lines.append("the kitchen already holds it: nothing to do")
+    if outcome.status is Status.INFEASIBLE:
+        lines += _why_infeasible(problem)
     return "\n".join(lines) + "\n"
 
 
@@ -302,12 +301,12 @@ def unit_lines(network: Network, units: Iterable[int], sign: str = " ") -> Itera
         yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{network.sources[unit][0]}]"
 
 
-def why_infeasible(problem: Problem, available: bytearray, shown: int = 5) -> Iterator[str]:
+def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
     """Say for each goal that cannot be made which units would make it and what the first of them lack.
 
-    ``available`` has a 1 for every object node at hand or made, by id. Where every goal can be made, it is
-    the constraints that leave no tree.
+    Where every goal can be made, it is the constraints that leave no tree.
     """
+    available = reach(problem).available
     network = problem.network
     if all(available[goal] for goal in problem.goals):
         yield "without the constraints there is one: together they rule out every tree"

@@ -13,12 +13,26 @@ from foon_asp.asp.program import ENCODING_FILES, find_constraint
 from foon_asp.certificate import coverage
 from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import printed_command
+from foon_asp.errors import UserError
 from foon_asp.proof.verify import digests
 from foon_asp.report.answer import costs_json, outcome_dict
+from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import encodings_folder
 from foon_asp.text import write_units
 
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
+
+
+def write_disagreement(asked: Asked, found: DisagreementError) -> str:
+    """Write all that is needed to look into a disagreement to a new folder; say what was found, and where."""
+    folder = Path(disagreement_name(asked.outcome))
+    try:
+        for name, content in disagreement_files(asked, found).items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            write_whole(folder / name, content.encode("utf-8", "surrogatepass"))
+    except (OSError, UserError) as error:  # what was found counts more than where it is written
+        return f"{found}; the data could not be written to {folder}/: {error}"
+    return f"{found}; data, question and answers are in {folder}/ (see report.json)"
 
 
 def disagreement_name(outcome: Outcome) -> str:

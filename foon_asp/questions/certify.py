@@ -1,0 +1,260 @@
+"""Answers, and trees that some program wrote, with proofs that are checked without a solver."""
+
+import contextlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Self
+
+from foon_asp.asp import Settings, Status
+from foon_asp.asp.program import assemble
+from foon_asp.certificate import Certificate, Coverage, NotBestError, certify_outcome, coverage
+from foon_asp.certificate import certify as prove_best
+from foon_asp.dataset.paths import File, Files
+from foon_asp.network import unit_at_level
+from foon_asp.problem import Objective, Problem, levels
+from foon_asp.proof import Verdict, simulate_for
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import (
+    Constants,
+    Objectives,
+    chosen_objectives,
+    reading,
+    settings,
+    whole,
+)
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.solve import answered
+from foon_asp.report.answer import costs_text, headline
+from foon_asp.report.certified import bound_text, certificate_lines
+from foon_asp.report.drawing import Drawing
+from foon_asp.report.whole_file import write_whole
+from foon_asp.text import FoonReader, summarize
+
+
+@dataclass(frozen=True, repr=False)
+class Certified(Result):
+    """An ``answer`` and the ``certificate`` that proves it, ``None`` where none was found.
+
+    ``certificate.text()`` is what to write into a file; ``certificate.claim`` says what it proves:
+    ``optimal``, ``infeasible``, or only a ``bound``. ``place`` says where it is.
+    """
+
+    answer: Answer
+    certificate: Certificate | None
+    place: str = "in memory"
+
+    @property
+    def ending(self) -> Ending:
+        """Done when the tree is proved to be the best, whatever proves it."""
+        return self.answer.ending
+
+    def text(self) -> str:
+        """Give the answer, and what it rests on."""
+        return self.answer.text() + "".join(f"{line}\n" for line in self._lines())
+
+    def _lines(self) -> list[str]:
+        return certificate_lines(self.answer, self.certificate, self.place)
+
+    def json_dict(self) -> dict[str, object]:
+        """Give the answer as ``foon-asp solve --certificate FILE --format json`` does."""
+        return self.answer.json_dict()
+
+    def foon(self) -> str:
+        """Give the tree as FOON text; empty where there is none."""
+        return self.answer.foon()
+
+    def remark(self, format_: str) -> str:
+        """Say what is said of the answer, and what it rests on."""
+        said = self.answer.remark(format_)
+        return "\n".join([*([said] if said else []), *self._lines()])
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture shows."""
+        return self.answer.drawing()
+
+    def written(self, file: File) -> Self:
+        """Write the certificate into a file, if there is one; give the same, which says so."""
+        _write(self.certificate, Path(file))
+        return replace(self, place=str(file))
+
+
+@dataclass(frozen=True, repr=False)
+class Proof(Result):
+    """What ``foon-asp certify`` gives: a ``certificate``, and in words what it proves or why there is none.
+
+    ``shown`` says that it was not written into a file; ``ended`` is how the question ended.
+    """
+
+    certificate: Certificate | None
+    words: str
+    ended: Ending
+    shown: bool = True
+
+    @property
+    def ending(self) -> Ending:
+        """Done when a tree is proved to be the best by every objective."""
+        return self.ended
+
+    def text(self) -> str:
+        """Say what is proved, or why nothing is."""
+        return f"{self.words}\n"
+
+    def json_dict(self) -> object:
+        """Give the certificate as plain values; ``None`` where there is none."""
+        return None if self.certificate is None else self.certificate.content
+
+    def json_text(self) -> str:
+        """Give the certificate as it is written; empty where there is none or it was written into a file."""
+        return self.certificate.text() if self.certificate is not None and self.shown else ""
+
+    def remark(self, format_: str) -> str:
+        """Say what is proved, or why nothing is."""
+        return self.words
+
+
+def certified(problem: Problem, objectives: Sequence[Objective], how: Settings) -> Certified:
+    """Solve a problem, and look for a certificate; at a limit and at ctrl-C the answer stands without."""
+    how = how.limited()
+    answer = answered(whole(problem), objectives, how)
+    certificate = None
+    with contextlib.suppress(KeyboardInterrupt), how.begun.watched("looking for a certificate"):
+        outcome, certificate = certify_outcome(answer, how, lambda: how.begun.passed)
+        answer = Answer._make(outcome)
+    return Certified(answer, certificate)
+
+
+def certify_and_write(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    tree: File | None = None,
+    file: File | None = None,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Proof:
+    """Certify as ``foon-asp certify`` does: the optimum or a given ``tree``, into a file or to be shown."""
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    if tree is not None:
+        found = certify_tree(problem, chosen, Path(tree), how)
+    else:
+        found = _proof(certified(problem, chosen, how), "standard output" if file is None else str(file))
+    if file is None:
+        return found
+    _write(found.certificate, Path(file))
+    return replace(found, shown=False)
+
+
+def _proof(found: Certified, place: str) -> Proof:
+    answer, certificate = found.answer, found.certificate
+    words = "\n".join([headline(answer), *certificate_lines(answer, certificate, place)])
+    ended = Ending.LIMIT
+    if certificate is not None:
+        if answer.status is Status.INFEASIBLE:
+            ended = Ending.NEGATIVE
+        elif certificate.claim == "optimal" and certificate.certified == levels(answer.objectives):
+            ended = Ending.DONE
+    return Proof(certificate, words, ended)
+
+
+def certify_tree(problem: Problem, objectives: tuple[Objective, ...], file: Path, how: Settings) -> Proof:
+    """Prove a given tree best, with no solver but the linear relaxation."""
+    problem, deadline = whole(problem), how.begun
+    # no solver looks at the rules and constants here, so a fault in them would go by without a word
+    assemble(how, caller().reporter.warning)
+    covered = coverage(how)
+    with reading():
+        ordered = _executable(problem, file, covered)
+    if isinstance(ordered, str):
+        return Proof(None, f"no certificate: {ordered}", Ending.NEGATIVE)
+    wanted = levels(objectives)
+    by = ", then ".join(wanted)
+    try:
+        with deadline.watched("looking for a certificate"):
+            certificate = prove_best(problem, wanted, ordered, covered, lambda: deadline.passed)
+    except NotBestError as better:
+        words = (
+            f"no certificate: the tree is not the best by {by}: it has {costs_text(problem.costs(ordered))}, "
+            f"and there is one with {costs_text(better.costs)}"
+        )
+        return Proof(None, words, Ending.NEGATIVE)
+    if certificate is None:
+        return Proof(None, "no certificate was found", Ending.LIMIT)
+    if certificate.claim == "bound":
+        words = f"a bound only: {bound_text(certificate.content)}"
+        return Proof(certificate, words, Ending.LIMIT)
+    words = f"proved best by {', then '.join(certificate.certified)}"
+    ended = Ending.DONE if certificate.certified == wanted else Ending.LIMIT
+    return Proof(certificate, words, ended)
+
+
+def _executable(problem: Problem, file: Path, covered: Coverage) -> list[int] | str:
+    """Read a tree and put it into an order that executes; say why there is none."""
+    who = caller()
+    reader = FoonReader(who.lenient)
+    tree = [unit_at_level(unit, problem.network.level) for unit, _ in reader.read_tree(file)]
+    for text in summarize(reader.diagnostics):
+        who.reporter.warning(text)
+    units = [problem.network.unit_id(unit) for unit in tree]
+    known = [unit for unit in units if unit is not None]
+    simulation = simulate_for(problem, problem.tree(known))
+    if len(known) < len(tree) or len(set(known)) < len(known):
+        return "a unit of the tree is not one of the network, or stands twice"
+    if simulation.verdict is Verdict.NEVER:
+        return "the tree does not execute; `foon-asp check` says why"
+    if covered.forbids(problem.network) & {*known}:
+        return "a unit of the tree is forbidden by the constraints"
+    return [known[position] for position in simulation.order]
+
+
+def _write(certificate: Certificate | None, file: Path) -> None:
+    if certificate is not None:
+        write_whole(file, certificate.text().encode())
+
+
+@question(
+    GOALS,
+    Option("tree", "A task tree to prove best.", Kind.FILE, metavar="TREE.txt"),
+    Option(
+        "file", "Where to write it; stdout by default.", Kind.FILE, flags=("-o", "--output"), metavar="FILE"
+    ),
+    OBJECTIVES,
+    CONTAINERS,
+    *RULES,
+    *LIMITS,
+    formats=("json",),
+    command=certify_and_write,
+    help_="""
+    \b
+    foon-asp certify --goal 'greek salad' -o proof.json           the optimum is found and proved
+    foon-asp certify --goal macaroni --tree tree.txt -o t.json    a tree in FOON text is proved best
+
+    Exits with 0 when the certificate proves a tree optimal by every objective; with 1 when it proves that
+    there is no tree, or when the tree given does not execute or is not the best; with 3 when it proves less
+    (a bound, or the first objectives alone) or when none was found.
+    """,
+)
+def certify(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> Certified:
+    """Solve a problem, and find a certificate of the answer: a proof that :func:`verify` checks.
+
+    A certificate speaks about the whole network, which of a store is read for it. Otherwise as
+    :func:`foon_asp.solve`.
+    """
+    chosen = chosen_objectives(problem, objectives)
+    return certified(problem, chosen, settings(constraints, constants, encodings, time_limit, memory_limit))

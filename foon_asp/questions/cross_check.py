@@ -1,0 +1,146 @@
+"""Answers that other engines were asked about, too: ``foon-asp solve --cross-check``."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from foon_asp.asp import Settings, Status
+from foon_asp.dataset.paths import File, Files
+from foon_asp.engines import Asked, Check, DisagreementError
+from foon_asp.engines import cross_check as ask_engines
+from foon_asp.errors import BugError
+from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import (
+    Constants,
+    Objectives,
+    chosen_objectives,
+    file_weights,
+    settings,
+    whole,
+)
+from foon_asp.questions.certify import Certified
+from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.solve import answered
+from foon_asp.questions.solve_soft import SoftAnswer, softly_answered
+from foon_asp.report.disagreement import write_disagreement
+from foon_asp.report.drawing import Drawing
+
+
+@dataclass(frozen=True, repr=False)
+class CrossChecked(Result):
+    """An ``answer`` and what other engines say of it.
+
+    Each of the ``checks`` has the name of its ``engine``, the ``objectives`` by which it finds the tree best,
+    too, and the ``reason`` why it has not checked the answer, ``None`` where it has. On the command line the
+    answer may come with a certificate.
+    """
+
+    answer: Answer | SoftAnswer | Certified
+    checks: tuple[Check, ...]
+
+    @property
+    def ending(self) -> Ending:
+        """Done when the tree is proved to be the best, whoever checked it."""
+        return self.answer.ending
+
+    def text(self) -> str:
+        """Give the answer, and a line for each engine."""
+        return self.answer.text() + "".join(f"{line}\n" for line in self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        """Say for each engine by what it agrees, or why it has not checked the answer."""
+        for check in self.checks:
+            if check.reason is not None:
+                yield f"cross-check: {check.engine}: not checked: {check.reason}"
+                continue
+            soft = isinstance(self.answer, SoftAnswer)
+            by = ", ".join((*(("penalty",) if soft else ()), *check.objectives))
+            none = _outcome(self.answer).status is Status.INFEASIBLE
+            that = "that no tree exists" if none else f"by {by}"
+            yield f"cross-check: {check.engine} agrees {that} ({check.seconds:.2f} s)"
+
+    def json_dict(self) -> dict[str, object]:
+        """Give the answer with what each engine says of it.
+
+        ``agrees_by`` is empty where it agrees that no tree exists.
+        """
+        rows = [
+            {
+                "engine": check.engine,
+                "checked": check.reason is None,
+                "agrees_by": list(map(str, check.objectives)),
+                "reason": check.reason,
+                "seconds": round(check.seconds, 6),
+            }
+            for check in self.checks
+        ]
+        return {**self.answer.json_dict(), "cross_check": rows}
+
+    def foon(self) -> str:
+        """Give the tree as FOON text; empty where there is none."""
+        return self.answer.foon()
+
+    def remark(self, format_: str) -> str:
+        """Say what is said of the answer, and for each engine."""
+        said = self.answer.remark(format_)
+        return "\n".join([*([said] if said else []), *self._lines()])
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture shows."""
+        return self.answer.drawing()
+
+
+def cross_check(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    soft: Mapping[File, int] | None = None,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+) -> CrossChecked:
+    """Solve a problem, and ask other engines the same question.
+
+    ``soft`` gives constraint files that may be broken, as for :func:`foon_asp.solve_soft`. Every engine has
+    ``time_limit`` seconds of its own, or a minute. Raises :class:`BugError` where one says otherwise; the
+    command ``foon-asp solve --cross-check`` then writes down all that is needed to look into it. Otherwise as
+    :func:`foon_asp.solve`.
+    """
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
+    weights = file_weights(soft or {})
+    problem = whole(problem)
+    answer = softly_answered(problem, chosen, how, weights) if weights else answered(problem, chosen, how)
+    try:
+        return CrossChecked(answer, tuple(ask_engines(_asked(answer, how, weights))))
+    except DisagreementError as found:
+        raise BugError(str(found)) from None
+
+
+def checked_or_reported(
+    answer: Answer | SoftAnswer | Certified, how: Settings, weights: Mapping[Path, int]
+) -> CrossChecked:
+    """Ask other engines about an answer, as the command does.
+
+    Where one disagrees, writes all that is needed to look into it to a new folder and raises
+    :class:`BugError`.
+    """
+    asked = _asked(answer, how, weights)
+    try:
+        return CrossChecked(answer, tuple(ask_engines(asked)))
+    except DisagreementError as found:
+        raise BugError(write_disagreement(asked, found)) from None
+
+
+def _asked(answer: Answer | SoftAnswer | Certified, how: Settings, weights: Mapping[Path, int]) -> Asked:
+    penalty = answer.penalty if isinstance(answer, SoftAnswer) else None
+    return Asked(_outcome(answer), how, weights, penalty)
+
+
+def _outcome(answer: Answer | SoftAnswer | Certified) -> Answer:
+    if isinstance(answer, SoftAnswer):
+        return answer.outcome
+    return answer.answer if isinstance(answer, Certified) else answer

@@ -1,0 +1,165 @@
+"""The best tree for a problem, and the proof that none is better."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from foon_asp.asp import Reporter, Settings
+from foon_asp.asp.solver import solve as find
+from foon_asp.dataset.paths import File, Files
+from foon_asp.errors import UserError
+from foon_asp.problem import Objective, Problem
+from foon_asp.questions.answer import Answer
+from foon_asp.questions.arguments import (
+    Constants,
+    Objectives,
+    asked_with,
+    chosen_objectives,
+    file_weights,
+    settings,
+    whole,
+)
+from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES, SOFT
+from foon_asp.questions.result import Result
+from foon_asp.reduce import Reduction, parse_reductions
+
+if TYPE_CHECKING:
+    from foon_asp.questions.certify import Certified
+    from foon_asp.questions.solve_soft import SoftAnswer
+
+
+def answered(
+    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+) -> Answer:
+    """Solve a problem, and note how long reading took where who asks knows."""
+    who = caller()
+    answer = Answer._make(find(problem, objectives, how, reporter or who.reporter))
+    if who.read_seconds is not None:
+        answer.seconds["read"] = who.read_seconds
+    return answer
+
+
+def solve_and_more(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    soft: Mapping[File, int] | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+    reductions: str = "all",
+    certificate_file: File | None = None,
+    cross_check: bool = False,
+    clingo_options: Sequence[str] = (),
+) -> Result:
+    """Solve as ``foon-asp solve`` does: also under soft constraints, with a certificate, or checked.
+
+    What only some answers need is imported for these.
+    """
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
+        reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
+    )
+    if soft and certificate_file is not None:
+        raise UserError("soft constraints have no certificates; leave one of them out")
+    if cross_check:
+        problem = whole(problem)
+    found: Answer | SoftAnswer | Certified
+    if soft:
+        from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
+
+        found = softly_answered(problem, chosen, how, file_weights(soft))
+    elif certificate_file is not None:
+        from foon_asp.questions.certify import certified  # noqa: PLC0415
+
+        found = certified(problem, chosen, how).written(certificate_file)
+    else:
+        found = answered(asked_with(problem, how), chosen, how)
+    if not cross_check:
+        return found
+    from foon_asp.questions.cross_check import checked_or_reported  # noqa: PLC0415
+
+    return checked_or_reported(found, how, file_weights(soft or {}))
+
+
+@question(
+    GOALS,
+    OBJECTIVES,
+    CONTAINERS,
+    *RULES,
+    SOFT,
+    *LIMITS,
+    Option(
+        "reductions",
+        f"What comes before the search; safe keeps every optimal tree. LIST of: {', '.join(Reduction)}.",
+        default="all",
+        flags=("--reduce",),
+        metavar="all|safe|none|LIST",
+    ),
+    Option(
+        "certificate_file",
+        "Also write a proof of the answer that `foon-asp verify` checks without a solver.",
+        Kind.FILE,
+        flags=("--certificate",),
+        metavar="FILE",
+    ),
+    Option(
+        "cross_check",
+        "Also ask other engines: bare clingo, HiGHS, and Fast Downward where it is installed.",
+        Kind.FLAG,
+    ),
+    Option(
+        "clingo_options",
+        "Options that go to clingo as they are.",
+        Kind.OPTIONS,
+        many=True,
+        metavar="[-- CLINGO OPTIONS]",
+        positional=True,
+    ),
+    formats=("text", "json", "foon"),
+    command=solve_and_more,
+    help_="""
+    \b
+    foon-asp solve --goal 'greek salad'
+    foon-asp solve --goal macaroni --objective success --containers implied
+    foon-asp solve --goal ice --constraint forbid_motion -c forbidden_motion=crush
+    foon-asp solve --goal ice --soft forbid_motion.lp=3 -c forbidden_motion=crush
+
+    The rules without a head of a --soft file may be broken: each way, by other values of the variables, costs
+    the weight. The least sum of weights comes before all objectives.
+
+    Exits with 0 when the tree is proved optimal, 1 when no tree exists, 2 for bad input, 3 when stopped
+    at a limit.
+    """,
+)
+def solve(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
+    time_limit: float | None = None,
+    memory_limit: int | str | None = None,
+    reductions: str = "all",
+    clingo_options: Sequence[str] = (),
+    reporter: Reporter | None = None,
+) -> Answer:
+    """Find the best task tree, and prove that none is better.
+
+    ``objectives`` are names (``units``, ``inputs``, ``inputs+ingredients``, ``success``, ``kitchen``) of
+    which the first counts most; ``units`` always decides last. ``constraints`` are files, or names of ours,
+    whose ``#const`` are set by ``constants``; ``encodings`` is a folder of encodings to use instead of ours.
+    ``time_limit`` is in seconds; at the limit, or when interrupted, the answer is the best tree so far with
+    the proved bound. ``reductions`` (``all``, ``safe``, ``none`` or a list by commas) come before the search;
+    ``clingo_options`` go to clingo. ``reporter`` hears of trees, bounds and warnings; without it, faults of
+    constraints that stop nothing are warned of (:class:`FoonWarning`). Raises :class:`UserError`.
+    """
+    chosen = chosen_objectives(problem, objectives)
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
+        reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
+    )
+    return answered(asked_with(problem, how), chosen, how, reporter)
