@@ -160,7 +160,9 @@ def test_success_is_compared_as_far_as_engines_can_tell() -> None:
     assert outcome.costs.success is not None
 
     def with_success(factor: str) -> Outcome:
-        costs: Costs = outcome.costs._replace(success=outcome.costs.success * Fraction(factor))  # type: ignore[union-attr, operator]
+        assert outcome.costs is not None
+        success = outcome.costs.measure(Objective.SUCCESS) * Fraction(factor)
+        costs = Costs({**outcome.costs.measures, Objective.SUCCESS: success})
         return outcome._replace(costs=costs)
 
     assert agree(outcome, answer(outcome, outcome.units)) == (Objective.SUCCESS, Objective.UNITS)
