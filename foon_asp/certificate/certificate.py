@@ -63,15 +63,15 @@ def certify(
 ) -> Certificate | None:
     """Prove a tree optimal by a lexicographic list of objectives, or by as many from the first as can be.
 
-    ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that
-    is not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
+    ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that is
+    not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
     trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
     each, that are tried first: :attr:`foon_asp.asp.Outcome.cuts`. ``None`` where nothing is found before
-    ``expired`` says so, for ``success`` with rates of 0 or with rates that are not those of the motions, and
-    where nothing is found within the limits of ``verify``, as where products of rates are too close to be
-    compared, or too long to be written.
+    ``expired`` says so, for objectives that need rates with rates of 0 or with rates that are not those of
+    the motions, and where nothing is found within the limits of ``verify``, as where products of rates are
+    too close to be compared, or too long to be written.
     """
-    if Objective.SUCCESS in objectives and (
+    if any(objective.row.needs_rates for objective in objectives) and (
         problem.own_rates or not all(map(problem.rate, range(len(problem.network))))
     ):
         return None

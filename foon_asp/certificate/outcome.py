@@ -12,7 +12,7 @@ from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage, coverage
 from foon_asp.errors import BugError
-from foon_asp.problem import Objective, Problem, levels
+from foon_asp.problem import Problem, levels, multiplies
 
 _WRITTEN = 13_000  # bits of a number that is printed; Python writes at most 4,300 digits
 
@@ -96,7 +96,7 @@ def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
     """Read a bound as certificates state it back into a cost."""
     vector: list[Fraction] = []
     for objective, part in zip(arrays.objectives, stated, strict=True):
-        if objective is Objective.SUCCESS:
+        if multiplies(objective):
             vector += [Fraction(part.get(str(rate), 0)) for rate in arrays.rates]
         else:
             vector.append(Fraction(part))
