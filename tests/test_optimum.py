@@ -52,6 +52,8 @@ def test_lexicographic_lists(rule: ContainerRule) -> None:
         problem = random_problem(seed, rule)
         found = list(oracle.trees(problem))
         objectives = random.Random(seed).sample(sorted(Objective), 3)
+        if sum(not objective.row.whole for objective in objectives) > 1:
+            continue  # only one that is rounded can be settled
         assert_agrees(problem, [str(objective) for objective in objectives], found)
 
 

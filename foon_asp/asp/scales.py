@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from decimal import Decimal
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -21,25 +20,19 @@ class CostScale(NamedTuple):
     numbers the costs: how often a tree has each of them tells what it costs.
     """
 
-    scale: int
+    scale: Fraction
     exact: bool
     weights: Mapping[Fraction, int]
     places: Mapping[Fraction, int]
 
 
 def cost_scale(costs: Iterable[Fraction]) -> CostScale:
-    """Scale costs of at least 0 so that none is rounded; where that does not fit clingo, as finely as of use.
-
-    Raises :class:`UserError` for costs that do not fit at all.
-    """
+    """Scale costs so that none is rounded, or where that does not fit clingo, as finely as is of use."""
     different = sorted(set(costs))
     most = max(different, default=Fraction(0))
     common = math.lcm(*(cost.denominator for cost in different))
     exact = common * most <= _LARGEST
-    scale = common if exact else min(_FINE, 10 ** max(0, len(str(math.floor(_LARGEST / most))) - 1))
-    if scale * most > _LARGEST:
-        shown = Decimal(most.numerator) / Decimal(most.denominator)
-        raise UserError(f"a unit costs {shown:.4g}, which is too large for clingo's numbers of 32 bits")
+    scale = Fraction(common) if exact else min(Fraction(_FINE), _LARGEST / most)
     weights = {cost: math.floor(scale * cost) for cost in different}
     return CostScale(scale, exact, weights, {cost: place for place, cost in enumerate(different)})
 
@@ -55,8 +48,7 @@ class Scales:
     def __init__(self, problem: Problem, units: Iterable[int], objectives: Iterable[Objective] = ()) -> None:
         """Scale what some units of a problem cost.
 
-        Raises :class:`UserError` where two of the objectives have to be rounded, or what units cost does not
-        fit clingo.
+        Raises :class:`UserError` where two of the objectives have to be rounded.
         """
         units, objectives = list(units), list(objectives)
         self._problem, self._units = problem, units
@@ -76,7 +68,7 @@ class Scales:
         self.rounded: Objective | None = rounded[0] if rounded else None
 
     @property
-    def likeness(self) -> list[int | None]:
+    def likeness(self) -> list[int | Fraction | None]:
         """What is the same for questions whose units weigh the same."""
         return [self.rates and self.rates.scale, *(each.scale for each in self.costs.values())]
 
@@ -146,7 +138,7 @@ class Scales:
         """Turn a lower bound on weights into one on an objective (on success: from above)."""
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
-        return Fraction(weight, self.costs[objective].scale) if objective in self.costs else weight
+        return weight / self.costs[objective].scale if objective in self.costs else weight
 
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
         """Whether units of a weight can cost so much by an objective: just that, where nothing is rounded."""

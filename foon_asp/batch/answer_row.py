@@ -56,7 +56,7 @@ def _answered(asked: Asked, outcome: Outcome) -> Row:
         "status": str(outcome.status),
         "error": None if outcome.units or not outcome.stopped else f"stopped at {outcome.stopped}",
         "proof": None if outcome.proof is None else str(outcome.proof),
-        "costs": costs_json(outcome.costs),
+        "costs": costs_json(outcome.costs, outcome.objectives),
         "lower_bound": bounds_json(outcome),
         "units": None if outcome.units is None else list(map(network.unit_number, outcome.units)),
     }

@@ -115,7 +115,10 @@ class Alternatives(Result):
             "in_every_optimal": sorted(map(network.unit_number, self.in_every)),
             "in_some_optimal": sorted(map(network.unit_number, self.in_some)),
             "trees": [
-                {"costs": costs_json(tree.costs), "units": [unit_json(network, unit) for unit in tree.units]}
+                {
+                    "costs": costs_json(tree.costs, self.objectives),
+                    "units": [unit_json(network, unit) for unit in tree.units],
+                }
                 for tree in self.trees
             ],
         }

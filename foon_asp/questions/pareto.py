@@ -113,7 +113,7 @@ class Front(Result):
                         str(objective): fraction_json(measure) if isinstance(measure, Fraction) else measure
                         for objective, measure in zip(self.objectives, self.measures(point), strict=True)
                     },
-                    "costs": costs_json(point.costs),
+                    "costs": costs_json(point.costs, self.objectives),
                     "units": [unit_json(network, unit) for unit in point.units],
                     "gone": [network.unit_number(unit) for unit in gone],
                     "new": [network.unit_number(unit) for unit in new],

@@ -189,7 +189,7 @@ def _lines(best: Answer, regret: Regret) -> Iterator[str]:
         name = str(network.objects[regret.id])
     yield f"  {_loss(best, regret)}    {name}"
     if regret.costs is not None and best.costs is not None and regret.costs != best.costs:
-        yield f"       the best is then {costs_text(regret.costs)}"
+        yield f"       the best is then {costs_text(regret.costs, best.objectives)}"
 
 
 def _loss(best: Answer, regret: Regret) -> str:
@@ -223,6 +223,6 @@ def _json(best: Answer, regret: Regret) -> dict[str, object]:
         else network.object_number(regret.id),
         "name": network.motions[regret.id] if regret.part is Part.UNIT else str(network.objects[regret.id]),
         "status": str(regret.status),
-        "costs": costs_json(regret.costs),
+        "costs": costs_json(regret.costs, best.objectives),
         "loss": losses or None,
     }

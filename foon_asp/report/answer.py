@@ -25,20 +25,20 @@ def fraction_json(value: Fraction | None) -> dict[str, object] | None:
     return {"exact": "/".join(parts) if value.denominator != 1 else parts[0], "approx": _float(value)}
 
 
-def costs_json(costs: Costs | None) -> dict[str, object] | None:
-    """Give all measures of a tree."""
+def costs_json(costs: Costs | None, objectives: Iterable[Objective] = ()) -> dict[str, object] | None:
+    """Give the usual measures of a tree, and those by some objectives."""
     if costs is None:
         return None
-    known = costs.measures
-    said = {Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS, Objective.KITCHEN}
-    others = (objective for objective in Objective if objective not in said)
-    return {
+    usual = {
         "units": costs.units,
         "inputs": costs.inputs,
         "ingredients": costs.ingredients,
         "kitchen": costs.kitchen,
-        **{str(each): figure_json(each, known[each]) if each in known else None for each in others},
+        "success": fraction_json(costs.success),
     }
+    said = {*usual, Objective.INPUTS_AND_INGREDIENTS}
+    others = (objective for objective in objectives if objective not in said)
+    return usual | {str(each): figure_json(each, costs.measure(each)) for each in others}
 
 
 def figure_json(objective: Objective, figure: int | Fraction) -> object:
@@ -107,7 +107,7 @@ def outcome_dict(outcome: Outcome) -> dict[str, object]:
             for objective in levels(outcome.objectives)
             if outcome.status is Status.OPTIMAL
         },
-        "costs": costs_json(outcome.costs),
+        "costs": costs_json(outcome.costs, outcome.objectives),
         "lower_bound": bounds_json(outcome),
         "units": None
         if outcome.units is None
