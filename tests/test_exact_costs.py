@@ -11,8 +11,10 @@ import pytest
 from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.problem.objective import Row
 from foon_asp.reduce import exact_costs
 from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
+from tests.test_objectives import made_up
 
 UNITS, INPUTS, INGREDIENTS = Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS
 SUCCESS, KITCHEN = Objective.SUCCESS, Objective.KITCHEN
@@ -284,6 +286,33 @@ def test_coarse_costs_are_whole_and_below_what_they_guide_to() -> None:
     assert [CoarseCosts(problem, INGREDIENTS)(a) for a in (0, 3, 4)] == [3, 12, 0]
     assert [CoarseCosts(problem, KITCHEN)(a) for a in (0, 3, 4)] == [0, 0, 1]
     assert [CoarseCosts(replace(problem, rates=None, own_rates={}), UNITS)(a) for a in (0, 3, 4)] == [1, 1, 0]
+
+
+TRIES = made_up(Row("tries", "attempts", lambda unit: 1 / unit.rate, needs_rates=True, whole=False))
+
+
+def test_fractions_are_counted_in_steps_that_are_whole() -> None:
+    problem = posed("1/2", "2/3", "1", inputs=(1, 2, 3))
+    costs = ExactCosts(problem, (TRIES, UNITS), range(6))
+    assert [dict(costs.figures(a))[TRIES] for a in range(6)] == [4, 3, 2, 0, 0, 0]  # halves
+    assert list(map(costs, range(6))) == [7 * 4 + 1, 7 * 3 + 1, 7 * 2 + 1, 0, 0, 0]
+    assert costs.doubt == 0
+    assert [costs.total(TRIES, figure) for figure in (0, 1, 7)] == [0, Fraction(1, 2), Fraction(7, 2)]
+    assert [costs.first(total) for total in (6, 7, 13, 49)] == [
+        0,
+        Fraction(1, 2),
+        Fraction(1, 2),
+        Fraction(7, 2),
+    ]
+    assert type(costs.total(UNITS, 3)) is int
+    # before another one, it weighs as many steps as there are; only what is asked about counts
+    assert ExactCosts(problem, (INPUTS, TRIES, UNITS), range(3))(1) == 2 * 4 * 10 + 4 * 3 + 1
+    assert ExactCosts(problem, (TRIES, UNITS), [0, 2, 3, 4])(0) == 5 * 2 + 1
+
+
+def test_coarse_costs_of_fractions_are_rounded_down() -> None:
+    problem = posed("1/2", "2/3", "3/4", "1", inputs=(1, 2, 3, 1))
+    assert [CoarseCosts(problem, TRIES)(a) for a in range(5)] == [2000, 1500, 1333, 1000, 0]
 
 
 def test_where_no_unit_is_there_only_items_count() -> None:
