@@ -252,6 +252,13 @@ def test_annotations_are_commands_and_nothing_in_them_is(cli: Cli, tmp_path: Pat
         assert re.fullmatch(r"::(error|warning|notice) file=[^:,]*,line=\d+,col=\d+,title=[\w-]+::.*", line)
 
 
+def test_a_line_that_keeps_changing_goes_back_to_its_beginning() -> None:
+    changing = "\r\x1b[2K\x1b[1A\x1b[2Kbest tree"
+    assert escaped_lines(changing, styled=True) == changing
+    assert escaped_lines("forged\rtree", styled=True) == "forged\\u000dtree"
+    assert escaped_lines(changing) == "\\u000d\\u001b[2K\\u001b[1A\\u001b[2Kbest tree"
+
+
 def test_colours_are_kept_on_a_terminal_and_those_of_names_are_not(evil: Path) -> None:
     ours, theirs = pty.openpty()
     command = [sys.executable, "-m", "foon_asp", "optima", "--data", str(evil)]
