@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING
 from foon_asp.questions.index import INDEX, module_name
 
 if TYPE_CHECKING:
-    from foon_asp.api.difference import Difference as Difference
-    from foon_asp.api.difference import diff as diff
     from foon_asp.asp import Outcome as Outcome
     from foon_asp.asp import Reporter as Reporter
     from foon_asp.asp import Status as Status
@@ -75,6 +73,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.compare import compare_searches as compare_searches
     from foon_asp.questions.cross_check import CrossChecked as CrossChecked
     from foon_asp.questions.cross_check import cross_check as cross_check
+    from foon_asp.questions.diff import Difference as Difference
+    from foon_asp.questions.diff import diff as diff
     from foon_asp.questions.draw import Drawn as Drawn
     from foon_asp.questions.draw import draw as draw
     from foon_asp.questions.menu import Menu as Menu
@@ -108,7 +108,6 @@ _ROOMS = {
     "questions.answer": ("Answer",),
     "questions.solve_soft": ("SoftAnswer", "solve_soft"),
     "questions.cross_check": ("CrossChecked", "cross_check"),
-    "api.difference": ("Difference", "diff"),
     "foon": ("Foon", "build", "load"),
     "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),

@@ -14,9 +14,7 @@ _UNSAFE = (
 UNSAFE = re.compile(f"[{_UNSAFE}]")  # within a text of several lines
 _IN_A_LINE = re.compile(f"[{_UNSAFE}\n\t]")
 # What moves over a line that keeps changing goes back to its beginning first.
-_UNSAFE_BUT_ESCAPE = re.compile(
-    f"[{_UNSAFE}]|\r(?!\x1b)".replace("\x0b-\x1f", "\x0b\x0c\x0e-\x1a\x1c-\x1f")
-)
+_UNSAFE_BUT_ESCAPE = re.compile(f"[{_UNSAFE}]|\r(?!\x1b)".replace("\x0b-\x1f", "\x0b\x0c\x0e-\x1a\x1c-\x1f"))
 # Commands of GitHub's and Azure's logs: ``::error::`` at the beginning of a line, ``##[error]`` anywhere.
 _COMMAND = re.compile(r"^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))", re.MULTILINE)
 

@@ -37,7 +37,7 @@ BESIDE = {
     "tree",
 }
 # parameters that the command line has no option for: it has them from elsewhere
-PYTHON_ONLY = {"problem", "about", "data", "reporter"}
+PYTHON_ONLY = {"problem", "about", "data", "left", "right", "reporter"}
 
 
 def question_of(verb: str) -> Question[..., Result]:

@@ -19,7 +19,6 @@ from foon_asp.asp import Settings, Status, program_facts, solve
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify, certify_infeasible
 from foon_asp.engines.highs import solve_with_highs
-from foon_asp.explain.difference import side
 from foon_asp.network import (
     LEVELS,
     Network,
@@ -34,6 +33,7 @@ from foon_asp.network import (
 from foon_asp.problem import ContainerRule, Objective, Problem, executable_order, first_tree, reach, relevant
 from foon_asp.proof import Verdict, simulate, simulate_for
 from foon_asp.proof.verify import RefusedError, seal, verify
+from foon_asp.questions.diff import side
 from foon_asp.questions.menu import menu
 from foon_asp.reduce import ALL, NONE
 from foon_asp.search import SEARCHES, Ending, SearchSettings

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.explain.difference import Side, difference, side
 from foon_asp.network import FunctionalUnit, Source
 from foon_asp.problem import ContainerRule
+from foon_asp.questions.diff import Side, diff, side
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import parse_node
 from tests.conftest import Cli
@@ -28,14 +28,14 @@ def tree(goal: str, kitchen: str, *units: str) -> Side:
 def parted(left: Side, right: Side) -> list[tuple[str, str | None, str | None]]:
     return [
         (str(p.object), p.left.motion if p.left else None, p.right.motion if p.right else None)
-        for p in difference(left, right).partings
+        for p in diff(left, right).partings
     ]
 
 
 def test_trees_part_where_both_want_a_node_and_have_it_from_elsewhere() -> None:
     left = tree("d", "a", "a>b", "b>c", "c>d")
     right = tree("d", "a", "a>x", "x>c", "c>d")
-    found = difference(left, right)
+    found = diff(left, right)
     assert [unit.motion for unit in found.only_left] == ["a>b", "b>c"]
     assert [unit.motion for unit in found.only_right] == ["a>x", "x>c"]
     assert [unit.motion for unit in found.both] == ["c>d"]
@@ -59,10 +59,10 @@ def test_without_goals_it_is_from_what_is_made_and_not_needed() -> None:
 
 def test_a_tree_and_itself_in_another_order() -> None:
     left, right = tree("c", "a", "a>b", "a>x", "b+x>c"), tree("c", "a", "a>x", "a>b", "b+x>c")
-    found = difference(left, right)
+    found = diff(left, right)
     assert (found.only_left, found.only_right, found.partings) == ((), (), ())
     assert not found.same_order
-    assert difference(left, left).same_order
+    assert diff(left, left).same_order
 
 
 @pytest.fixture

@@ -216,8 +216,7 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
     @functools.wraps(command)
     def limited(time_limit: float | None, memory_limit: int | None, **given: object) -> ExitCode:
-        deadline = Deadline(time_limit, memory_limit)
-        click.get_current_context().meta[_DEADLINE] = deadline
+        deadline = begin(time_limit, memory_limit)
         try:
             code = command(deadline=deadline, **given)
         except KeyboardInterrupt as stop:
@@ -229,6 +228,13 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
         return code
 
     return each_limit_options(limited)
+
+
+def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
+    """Let the limits of the command at hand begin."""
+    deadline = Deadline(time_limit, memory_limit)
+    click.get_current_context().meta[_DEADLINE] = deadline
+    return deadline
 
 
 def reading() -> Watch:

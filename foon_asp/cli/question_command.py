@@ -1,31 +1,25 @@
 """A command for each question of the catalog, made from what the question says of itself."""
 
 import contextlib
-import importlib
 import sys
 import textwrap
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import click
-from click.core import ParameterSource
 
 from foon_asp.cli import options
+from foon_asp.cli.asking import ask, find_question, parameters
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import console, write_data
 from foon_asp.cli.output_file import check_outputs
-from foon_asp.cli.progress import Progress
-from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
-from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Kind, Option, Part, Question
-from foon_asp.questions.index import INDEX, module_name, question_name
-from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.index import INDEX
+from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 
 _CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _STANDING = {
@@ -39,9 +33,8 @@ _SHOWN = frozenset({"text", "json", "csv", "markdown"})  # what is data alone is
 
 def question_command(verb: str) -> click.Command:
     """Give the command of a question; its module is imported only then."""
-    module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
-    question: Question[..., Result] = getattr(module, question_name(verb))
-    command: Callable[..., ExitCode] = _asking(question)
+    question = find_question(verb)
+    command: Callable[..., ExitCode] = _answering(question)
     command = options.data_options(command)
     for option in _format_options(question):
         command = option(command)
@@ -54,19 +47,14 @@ def question_command(verb: str) -> click.Command:
     return click.command(verb, help=help_)(command)
 
 
-def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
-    parts = {option.name: option.part for option in question.options}
-
-    def ask(
+def _answering(question: "Question[..., Result]") -> Callable[..., ExitCode]:
+    def answer(
         format_: str | None = None,
         output: Path | None = None,
         deadline: Deadline | None = None,
         **given: Any,
     ) -> ExitCode:
-        def those(wanted: Part) -> dict[str, Any]:
-            return {name: given[name] for name, part in parts.items() if name in given and part & wanted}
-
-        charts = [file for files in those(Part.CHART).values() for file in files]
+        charts = [file for files in parameters(question, given, Part.CHART).values() for file in files]
         if charts:
             from foon_asp.report.chart_file import check_suffix
 
@@ -74,14 +62,11 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
                 check_suffix(chart)
         form = _form(question, format_, output)
         check_outputs()
-        data = {name: value for name, value in given.items() if name not in parts}
-        command = _Command(data)
-        with Progress() as progress:
-            who = Caller(progress, options.session_here(), deadline, lenient=data["lenient"])
-            with asked_by(who):
-                about = question.pose(command, **those(Part.PROBLEM))
-            with asked_by(who._replace(read_seconds=command.dataset.read_seconds)):
-                found = question.command(about, **those(Part.QUESTION | Part.COMMAND))
+        try:
+            found = ask(question, given, deadline)
+        except NoTreeError as nothing:
+            click.echo(str(nothing), err=True)
+            return _CODES[nothing.ending]
         for chart in charts:
             try:
                 found.write_chart(chart)
@@ -89,12 +74,12 @@ def _asking(question: "Question[..., Result]") -> Callable[..., ExitCode]:
             except NothingToDrawError as nothing:
                 click.echo(f"{chart} is not written: {nothing}", err=True)
         if output is None:
-            _show(found, form, those(Part.TEXT))
+            _show(found, form, parameters(question, given, Part.TEXT))
         else:
             _write(found, form, output)
         return _CODES[found.ending]
 
-    return ask
+    return answer
 
 
 def _format_options(question: "Question[..., Result]") -> list[Callable[[options.Command], options.Command]]:
@@ -127,27 +112,6 @@ def _form(question: "Question[..., Result]", named: str | None, output: Path | N
     if form == "png" and output is None and sys.stdout.isatty():
         raise UserError("a terminal cannot show PNG: name a file with -o")
     return form
-
-
-class _Command:
-    """What poses a question is given: the data, and the limits of reading."""
-
-    def __init__(self, data: dict[str, Any]) -> None:
-        self._data = data
-
-    @cached_property
-    def dataset(self) -> Dataset:
-        """The data that is named; read when it is first looked at."""
-        return options.read_dataset(**self._data)
-
-    def given(self, option: str) -> bool:
-        """Whether an option, by name, stands in its own words, and not in the session or by default."""
-        source = click.get_current_context().get_parameter_source(option)
-        return source not in {None, ParameterSource.DEFAULT, ParameterSource.DEFAULT_MAP}
-
-    def reading(self) -> AbstractContextManager[object]:
-        """Stop what is read in a ``with`` block at the limits of the command."""
-        return options.reading()
 
 
 def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:

@@ -12,7 +12,6 @@ from foon_asp.questions.index import INDEX, Entry
 _OTHERS: Final[Mapping[str, Entry]] = {
     "batch": Entry("Find", "Answer every question of a file, thousands in one run."),
     "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
-    "diff": Entry("Show", "Show what two task trees have in common, and where they part."),
     "stats": Entry("Show", "Count what is in a network."),
     "facts": Entry("Show", "Print the facts that clingo is given for a goal."),
     "constraints": Entry("Show", "List the ready-made constraints."),

@@ -118,7 +118,7 @@ def _posed(
     all_makeable: bool,
     published: bool,
     charts: Sequence[Path],
-) -> Problem:
+) -> tuple[Problem]:
     """Pose the goals, and refuse what cannot be laid beside them before anything is solved."""
     if published:
         table = read_published(published_table())
@@ -133,10 +133,10 @@ def _posed(
     if all_makeable:
         problem = _everything_makeable(command.dataset.problem((0,), containers, everything=True))
     else:
-        problem = each_goal(command, goals_named, containers)
+        (problem,) = each_goal(command, goals_named, containers)
     if charts:
         _hold_readable(problem)
-    return problem
+    return (problem,)
 
 
 def _everything_makeable(problem: Problem) -> Problem:

@@ -16,7 +16,7 @@ from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES
-from foon_asp.questions.posing import Command
+from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import read_listed
 from foon_asp.report.answer import counted
@@ -111,15 +111,11 @@ class Drawn(Result):
 
 def _posed(
     command: Command, goals_named: Sequence[str], containers: str, tree: File | None, units: Sequence[int]
-) -> Problem | Foon:
+) -> tuple[Problem | Foon]:
     """Pose the goals that are named; without any it is about the data."""
     if command.given("objectives") and (not goals_named or tree is not None or units):
         raise UserError("--objective chooses among the task trees for a --goal: here is nothing to choose")
-    dataset = command.dataset
-    if not goals_named:
-        return Foon(dataset, "the data")
-    with command.reading():
-        return dataset.problem(dataset.goals(goals_named), containers)
+    return one_problem(command, goals_named, containers) if goals_named else the_data(command)
 
 
 @question(

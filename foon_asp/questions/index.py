@@ -92,6 +92,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Draw a task tree, functional units, or a network.",
         ("draw", "Drawn"),
     ),
+    "diff": Entry(
+        "Show",
+        "Show what two task trees have in common, and where they part.",
+        ("diff", "Difference"),
+    ),
 }
 
 

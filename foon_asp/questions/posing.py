@@ -8,6 +8,7 @@ from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import Problem
+from foon_asp.questions.result import Result
 
 
 class Command(Protocol):
@@ -17,6 +18,13 @@ class Command(Protocol):
     def dataset(self) -> Dataset:
         """The data that it names; read when it is first looked at."""
 
+    def ask(self, words: str, without: Sequence[str]) -> Result:
+        """Ask a question that is put as the words of a command, without some options, by name.
+
+        What stands beside it counts where it does not say it itself; a question that names data of its own
+        takes none from there.
+        """
+
     def given(self, option: str) -> bool:
         """Whether an option, by name, stands in its own words."""
 
@@ -24,27 +32,28 @@ class Command(Protocol):
         """Stop what is read in a ``with`` block at the limits of the command."""
 
 
-Pose = Callable[..., object]
-"""Makes what a function is asked about: of a :class:`Command`, and the options of the problem by name."""
+Pose = Callable[..., tuple[object, ...]]
+"""Makes what a function is asked about, its first arguments: of a :class:`Command`, and the options of the
+problem by name."""
 
 
-def one_problem(command: Command, goals_named: Sequence[str], containers: str) -> Problem:
+def one_problem(command: Command, goals_named: Sequence[str], containers: str) -> tuple[Problem]:
     """Pose one problem, whose tree makes all goals that are named."""
     dataset = command.dataset
     with command.reading():
-        return dataset.problem(dataset.goals(goals_named), containers)
+        return (dataset.problem(dataset.goals(goals_named), containers),)
 
 
-def the_data(command: Command) -> Foon:
+def the_data(command: Command) -> tuple[Foon]:
     """Ask about the data as a whole."""
-    return Foon(command.dataset, "the data")
+    return (Foon(command.dataset, "the data"),)
 
 
-def each_goal(command: Command, goals_named: Sequence[str], containers: str) -> Problem:
+def each_goal(command: Command, goals_named: Sequence[str], containers: str) -> tuple[Problem]:
     """Pose goals that are a question of their own each: those that are named, or all of the goals file."""
     dataset = command.dataset
     with command.reading():
         goals = dataset.each_goal(goals_named)
         if not goals:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        return dataset.problem(tuple(dict.fromkeys(goals)), containers)
+        return (dataset.problem(tuple(dict.fromkeys(goals)), containers),)

@@ -28,6 +28,14 @@ class NothingToDrawError(UserError):
     """There is nothing to draw."""
 
 
+class NoTreeError(UserError):
+    """There is no tree to go on with; ``ending`` says how it ended where one was looked for."""
+
+    def __init__(self, message: str, ending: Ending = Ending.NEGATIVE) -> None:
+        super().__init__(message)
+        self.ending = ending
+
+
 class Result:
     """What a question gives. ``print`` shows what the command line prints, a notebook that and a picture."""
 

@@ -6,10 +6,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Self
 
-from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, Source, TaskTree, unit_at_level
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.questions.caller import caller
+from foon_asp.questions.result import NoTreeError
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.notebook import picture_bundle, svg_text
 from foon_asp.report.tree_drawing import given_tree
@@ -106,5 +106,5 @@ def read_listed(file: Path) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Se
     for remark in summarize(reader.diagnostics):
         who.reporter.warning(remark)
     if listed.units is None:
-        raise UserError(f"{file}: the answer has no tree ({listed.status})")
+        raise NoTreeError(f"{file}: the answer has no tree ({listed.status})")
     return listed.units, listed.goals

@@ -1,0 +1,103 @@
+"""How a command asks a question: it reads data, poses what is asked about, and asks."""
+
+import importlib
+import shlex
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
+from functools import cached_property
+from typing import Any
+
+import click
+from click.core import ParameterSource
+
+from foon_asp.cli import options
+from foon_asp.cli.progress import Progress
+from foon_asp.cli.verbs import verb_command
+from foon_asp.dataset import Dataset
+from foon_asp.deadline import Deadline
+from foon_asp.errors import UserError
+from foon_asp.questions.caller import Caller, asked_by
+from foon_asp.questions.contract import Part, Question
+from foon_asp.questions.index import module_name, question_name
+from foon_asp.questions.result import Result
+
+_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals")
+
+
+def find_question(verb: str) -> Question[..., Result]:
+    """Give a question; its module is imported only then."""
+    module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
+    question: Question[..., Result] = getattr(module, question_name(verb))
+    return question
+
+
+def parameters(question: Question[..., Result], given: Mapping[str, Any], parts: Part) -> dict[str, Any]:
+    """Give the values of the options that belong to some parts."""
+    own = (option.name for option in question.options if option.part & parts)
+    return {name: given[name] for name in own if name in given}
+
+
+def ask(question: Question[..., Result], given: Mapping[str, Any], deadline: Deadline | None) -> Result:
+    """Pose a question by the parameters of a command, and ask it; ``deadline`` is that of the command."""
+    own = {option.name for option in question.options}
+    command = _Command({name: value for name, value in given.items() if name not in own})
+    with Progress() as progress:
+        who = Caller(progress, options.session_here(), deadline, lenient=bool(given["lenient"]))
+        with asked_by(who):
+            about = question.pose(command, **parameters(question, given, Part.PROBLEM))
+        with asked_by(who._replace(read_seconds=command.read_seconds)):
+            return question.command(*about, **parameters(question, given, Part.QUESTION | Part.COMMAND))
+
+
+class _Command:
+    """What poses a question is given: the data, other questions, and the limits of reading."""
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self._data = data
+        self._context = click.get_current_context()
+
+    @cached_property
+    def dataset(self) -> Dataset:
+        """The data that is named; read when it is first looked at."""
+        return options.read_dataset(**self._data)
+
+    @property
+    def read_seconds(self) -> float | None:
+        """How long reading took, ``None`` where nothing was read."""
+        return self.dataset.read_seconds if "dataset" in self.__dict__ else None
+
+    def given(self, option: str) -> bool:
+        """Whether an option, by name, stands in its own words, and not in the session or by default."""
+        return _is_given(self._context, option)
+
+    def reading(self) -> AbstractContextManager[object]:
+        """Stop what is read in a ``with`` block at the limits of the command."""
+        return options.reading()
+
+    def ask(self, words: str, without: Sequence[str]) -> Result:
+        """Ask a question that is put as the words of a command, without some options, by name."""
+        here = self._context
+        try:
+            verb, *rest = shlex.split(words)
+        except ValueError as error:
+            raise UserError(f"found {words!r}, expected the words of a command: {error}") from None
+        question, command = find_question(verb), verb_command(verb)
+        name = f"{here.info_name} '{words}'"
+        own = command.make_context(name, list(rest), obj=here.obj)
+        if any(_is_given(own, option) for option in without):
+            flags = [flag for option in question.options if option.name in without for flag in option.flags]
+            raise UserError(f"found {words!r}, expected a question without {', '.join(flags)}")
+        beside = {option: value for option, value in here.params.items() if _is_given(here, option)}
+        if any(_is_given(own, option) for option in _DATA):
+            beside = {option: value for option, value in beside.items() if option not in _DATA}
+        defaults = {**(here.default_map or {}), **beside}  # a session has something to say, too
+        asked = command.make_context(name, rest, default_map=defaults, obj=here.obj)
+        here.call_on_close(asked.close)
+        given = {name: value for name, value in asked.params.items() if name not in {"format_", "output"}}
+        with asked.scope(cleanup=False):
+            deadline = options.begin(given.pop("time_limit", None), given.pop("memory_limit", None))
+            return ask(question, given, deadline)
+
+
+def _is_given(context: click.Context, option: str) -> bool:
+    return context.get_parameter_source(option) is ParameterSource.COMMANDLINE
