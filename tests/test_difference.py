@@ -131,7 +131,12 @@ def test_what_is_no_answer(cli: Cli, tmp_path: Path, content: object, message: s
 
 def test_faults_of_a_question(cli: Cli) -> None:
     assert cli("diff", "solve --gaol x", "solve --goal ice").code == 2
-    assert cli("diff", "solve --goal ice --soft a.lp=1", "solve --goal ice").code == 2
+    soft = cli("diff", "solve --goal ice --soft forbid_motion=3", "solve --goal ice")
+    assert soft.code == 2
+    assert "expected a question without --certificate, --cross-check, --soft" in soft.err
+    torn = cli("diff", "solve --goal 'ice", "solve --goal ice")
+    assert torn.code == 2
+    assert "expected the words of a command: No closing quotation" in torn.err
     assert cli("diff", "nothing.txt", "solve --goal ice").code == 2
 
 

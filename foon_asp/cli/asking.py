@@ -85,7 +85,7 @@ class _Command:
         name = f"{here.info_name} '{words}'"
         own = command.make_context(name, list(rest), obj=here.obj)
         if any(_is_given(own, option) for option in without):
-            flags = [flag for option in question.options if option.name in without for flag in option.flags]
+            flags = sorted(each.opts[0] for each in command.params if each.name in without)
             raise UserError(f"found {words!r}, expected a question without {', '.join(flags)}")
         beside = {option: value for option, value in here.params.items() if _is_given(here, option)}
         if any(_is_given(own, option) for option in _DATA):

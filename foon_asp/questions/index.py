@@ -19,7 +19,7 @@ INDEX: Final[Mapping[str, Entry]] = {
     "solve": Entry("Find", "Find the best task tree for a goal, and prove that none is better.", ("solve",)),
     "optima": Entry(
         "Find",
-        "Solve every goal of the goals file under several objectives.",
+        "Solve every goal of the goals file under several objectives and compare the optimal trees.",
         ("optima", "Optima"),
     ),
     "search": Entry(
@@ -89,12 +89,12 @@ INDEX: Final[Mapping[str, Entry]] = {
     ),
     "draw": Entry(
         "Show",
-        "Draw a task tree, functional units, or a network.",
+        "Draw an optimal task tree, a given one, some functional units, or a whole network.",
         ("draw", "Drawn"),
     ),
     "diff": Entry(
         "Show",
-        "Show what two task trees have in common, and where they part.",
+        "Show what two task trees have in common, what only one has, what each costs, and where they part.",
         ("diff", "Difference"),
     ),
 }
