@@ -19,6 +19,8 @@ _MARGIN = 1e-9  # of a sum of logarithms, beyond which its float cannot have the
 _TINY = 1e-290  # below this, floats lose their last digits
 _DIGITS = 60  # of a logarithm, at first
 
+_GREATEST = 10**12  # of what a guess is made with: HiGHS gives up far above
+
 
 class Lexicographic:
     """An order on vectors; ``levels`` names for each level its rates, or ``None`` where it counts.
@@ -61,8 +63,10 @@ class Lexicographic:
         return self.sign(minus(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
-        """Give each level as a float, for methods that guess what is then checked."""
-        return [sum(self._terms(level, part)) for level, part in self._parts(vector)]
+        """Give each level as a float, for methods that guess what is then checked; none is above 10^12."""
+        return [
+            sum(self._terms(level, [min(e, _GREATEST) for e in part])) for level, part in self._parts(vector)
+        ]
 
     def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
         """Give the coordinates of each level."""

@@ -87,7 +87,10 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
     if multiplies(objective):
         rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
-    return float(problem.figure(objective, unit))
+    try:
+        return float(problem.figure(objective, unit))
+    except OverflowError:
+        raise NotCheckedError("a unit costs more than its floats hold") from None
 
 
 def taken(problem: Problem, units: Iterable[int]) -> list[int]:
