@@ -71,8 +71,10 @@ def measure(problem: Problem, tree: tuple[FunctionalUnit, ...], objective: str) 
         at_hand = {objects[o] for o in problem.kitchen}
         used = {n for unit in tree for n in needed(unit, problem.containers, problem.utensils)}
         return Fraction(len(used & at_hand))
-    assert objective == "success"
     assert problem.rates is not None
+    if objective == "attempts":
+        return sum((1 / problem.rates[unit.motion] for unit in tree), start=Fraction(0))
+    assert objective == "success"
     product = Fraction(1)
     for unit in tree:
         product *= problem.rates[unit.motion]

@@ -47,7 +47,8 @@ class Objective(StrEnum):
     ``units``: fewest functional units. ``inputs``: fewest input object nodes, summed over the units.
     ``inputs+ingredients``: the same plus the ingredients of those nodes (the published heuristic's
     measure). ``success``: greatest product of success rates. ``kitchen``: fewest distinct kitchen items
-    among the inputs that the units need.
+    among the inputs that the units need. ``attempts``: least expected number of executions of units, when one
+    that fails is tried again until it succeeds.
     """
 
     row: Row
@@ -76,6 +77,17 @@ class Objective(StrEnum):
         ),
     )
     KITCHEN = "kitchen", Row("kitchen", "kitchen items", lambda _: 0, item=1)
+    ATTEMPTS = (
+        "attempts",
+        Row(
+            "attempts",
+            "expected executions of units",
+            lambda unit: 1 / unit.rate,
+            needs_rates=True,
+            is_fact=True,
+            whole=False,
+        ),
+    )
 
 
 def multiplies(objective: Objective) -> bool:

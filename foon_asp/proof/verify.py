@@ -29,7 +29,7 @@ from foon_asp.network import Network, node_at_level
 
 FORMAT = "foon-asp certificate"
 VERSION = 2
-OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen")
+OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts")
 
 _KEYS = {
     *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "forbidden"),
@@ -200,7 +200,8 @@ class _Check:
         self.objectives = tuple(_list(certificate["objective"]))
         _require(all(objective in OBJECTIVES for objective in self.objectives), "an objective is unknown")
         _require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
-        self.costly = self._costly(rates) if "success" in self.objectives else frozenset()
+        by_rates = {"success", "attempts"} & set(self.objectives)
+        self.costly = self._costly(rates) if by_rates else frozenset()
         self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
         _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         forbidden = _object(certificate["forbidden"], ("motions", "objects"))
@@ -216,11 +217,12 @@ class _Check:
 
     def _costly(self, given: Mapping[str, Fraction] | None) -> frozenset[Fraction]:
         """Give the rates that cost something."""
-        _require(given is not None, "success is claimed, but no rates are given")
+        _require(given is not None, "a claim needs success rates, but no rates are given")
         motions = set(self.network.motions)
         _require(motions <= self.rates.keys(), "a motion has no success rate")
         found = frozenset(self.rates[motion] for motion in motions)
         _require(all(0 <= rate <= 1 for rate in found), "a rate is not between 0 and 1")
+        _require("attempts" not in self.objectives or 0 not in found, "a unit that never succeeds has no end")
         return found - {0, 1}
 
     def claim(self) -> Verified:
@@ -288,7 +290,10 @@ class _Check:
                     raise LimitError("the success rate of the tree is too long a number to be written")
                 costs.append(math.prod(rates, start=Fraction(1)))
             else:
-                costs.append(int(total.get((level, None), Fraction(0))))
+                figure = total.get((level, None), Fraction(0))
+                if figure.denominator.bit_length() > _WRITTEN:
+                    raise LimitError("what the tree costs is too long a number to be written")
+                costs.append(figure if objective == "attempts" else int(figure))
         return total, costs
 
     def _prove(self, proof: Any, least: Amount) -> None:
@@ -424,6 +429,8 @@ class _Check:
                 cost[level, None] = Fraction(1)
             elif objective == "success":
                 cost[level, self.rates[network.motions[member]]] = Fraction(1)
+            elif objective == "attempts":
+                cost[level, None] = 1 / self.rates[network.motions[member]]
             else:
                 _require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
                 inputs = network.inputs[member]
