@@ -96,6 +96,16 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
     ),
     "why not": (["why-not"], ["apple pie"], "strict", foon_asp.why_not),
     "why not, with a tree": (["why-not"], ["ice"], "implied", foon_asp.why_not),
+    "why not, where rules are the reason": (
+        ["why-not", *FORBID_AND_REQUIRE[1:], *CONSTANT, "-c", "required_motion=crush"],
+        ["ice"],
+        "strict",
+        lambda p: foon_asp.why_not(
+            p,
+            constraints=["forbid_motion", "require_motion"],
+            constants={"forbidden_motion": "crush", "required_motion": "crush"},
+        ),
+    ),
     "shopping list": (["shopping-list"], ["hot cocoa"], "strict", foon_asp.shopping_list),
     "one shopping list": (
         ["shopping-list", "--lists", "1", "--objective", "success"],
@@ -351,6 +361,24 @@ def test_other_engines(source: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("foon_asp.engines.bare_clingo.check_with_bare_clingo", disagrees)
     with pytest.raises(foon_asp.BugError, match="no"):
         foon_asp.cross_check(foon.problem("tea"))
+
+
+@pytest.mark.parametrize("goal", ["ice", "apple pie"])
+def test_an_answer_is_foon_text_as_on_the_command_line(goal: str, foon: Foon, cli: Cli) -> None:
+    ran = cli("solve", "--goal", goal, "--format", "foon")
+    answer = foon_asp.solve(foon.problem(goal))
+    assert answer.foon() == ran.out
+    assert answer.remark("foon") == ran.err.rstrip("\n")
+    assert bool(ran.out) == (ran.err == "") == (goal == "ice")
+
+
+def test_a_certified_answer_is_said_as_on_the_command_line(foon: Foon, cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "proof.json"
+    said = cli("solve", "--goal", "apple pie", "--certificate", file).out
+    certified = foon_asp.certify(foon.problem("apple pie"))
+    assert certified.text() == said.replace(str(file), "in memory")
+    assert certified.certificate is not None
+    assert certified.certificate.text() == file.read_text()
 
 
 def test_certificates(source: Path, cli: Cli, tmp_path: Path) -> None:
