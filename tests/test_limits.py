@@ -112,7 +112,8 @@ def test_progress_is_shown_on_a_terminal_only(hard_folder: Path) -> None:
     assert b"best tree" not in piped.stderr
 
     master, slave = pty.openpty()
-    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=slave) as process:
+    wide = {**os.environ, "COLUMNS": "200"}  # so that no words are on two lines
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=slave, env=wide) as process:
         os.close(slave)
         seen = b""
         while True:
