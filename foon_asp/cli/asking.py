@@ -11,6 +11,7 @@ import click
 from click.core import ParameterSource
 
 from foon_asp.cli import options
+from foon_asp.cli.held import session_here
 from foon_asp.cli.progress import Progress
 from foon_asp.cli.verbs import verb_command
 from foon_asp.dataset import Dataset
@@ -42,7 +43,7 @@ def ask(question: Question[..., Result], given: Mapping[str, Any], deadline: Dea
     own = {option.name for option in question.options}
     command = _Command({name: value for name, value in given.items() if name not in own})
     with Progress() as progress:
-        who = Caller(progress, options.session_here(), deadline, lenient=bool(given["lenient"]))
+        who = Caller(progress, session_here(), deadline, lenient=bool(given["lenient"]))
         with asked_by(who):
             about = question.pose(command, **parameters(question, given, Part.PROBLEM))
         with asked_by(who._replace(read_seconds=command.read_seconds)):

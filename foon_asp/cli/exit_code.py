@@ -1,10 +1,6 @@
 """The exit codes, and what each promises."""
 
 from enum import IntEnum
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:  # the solver's room takes clingo along, which `verify` has to do without
-    from foon_asp.asp import Status
 
 
 class ExitCode(IntEnum):
@@ -20,13 +16,3 @@ class ExitCode(IntEnum):
     """Stopped at a limit without a proof; the best tree and its bound were printed."""
     BUG = 70
     """A bug of ours."""
-
-
-def of_status(status: "Status") -> ExitCode:
-    """Give the code for the status of an answer."""
-    return {
-        "optimal": ExitCode.DONE,
-        "infeasible": ExitCode.NEGATIVE,
-        "feasible": ExitCode.LIMIT,
-        "unknown": ExitCode.LIMIT,
-    }[status.value]

@@ -7,18 +7,15 @@ import click
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.cli import options
+from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
-from foon_asp.cli.weighted_files import weighted_files
 from foon_asp.problem import parse_objectives
+from foon_asp.questions.options import CONSTRAINTS, CONTAINERS, ENCODINGS, GOALS, OBJECTIVES, SOFT
 
 
 @click.command("facts")
-@options.goal_option
-@options.objective_option
-@options.containers_option
-@options.constraint_options
-@options.soft_option
+@click_options(GOALS, OBJECTIVES, CONTAINERS, CONSTRAINTS, ENCODINGS, SOFT)
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
@@ -26,7 +23,7 @@ def command(
     containers: str,
     constraints: tuple[Path, ...],
     encodings: Path | None,
-    soft: tuple[str, ...],
+    soft: dict[Path, int],
     **data: object,
 ) -> ExitCode:
     """Print the facts that clingo is given for a goal; encodings/README.md says what they mean.
@@ -48,6 +45,6 @@ def command(
     problem = dataset.problem(
         dataset.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
     )
-    program = bare_program(problem, chosen, Settings(constraints, encodings), weighted_files(soft, "--soft"))
+    program = bare_program(problem, chosen, Settings(constraints, encodings), soft)
     write_data(program.facts)
     return ExitCode.DONE

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from foon_asp.cli.options import held
+from foon_asp.cli.held import held
 from foon_asp.dataset import dataset_files
 from foon_asp.errors import UserError
 

@@ -11,22 +11,18 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.asking import ask, find_question, parameters
+from foon_asp.cli.click_option import Command, click_option
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import console, write_data
 from foon_asp.cli.output_file import check_outputs
-from foon_asp.deadline import Deadline, memory_size, seconds
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
-from foon_asp.questions.contract import Kind, Option, Part, Question
+from foon_asp.questions.contract import Part, Question
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 
 _CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
-_STANDING = {
-    "constraints": options.with_rules_that_stand,
-    "constants": options.with_constants_that_stand,
-    "encodings": options.encodings_that_stand,
-}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
 _SHOWN = frozenset({"text", "json", "csv", "markdown"})  # what is data alone is written to the byte
 
@@ -42,7 +38,7 @@ def question_command(verb: str) -> click.Command:
     if len(own) < len(question.options):
         command = options.limit_options(command)
     for each in reversed(own):
-        command = _parameter(each)(command)
+        command = click_option(each)(command)
     help_ = f"{INDEX[verb].line}\n\n{textwrap.dedent(question.help).strip()}"
     return click.command(verb, help=help_)(command)
 
@@ -82,7 +78,7 @@ def _answering(question: "Question[..., Result]") -> Callable[..., ExitCode]:
     return answer
 
 
-def _format_options(question: "Question[..., Result]") -> list[Callable[[options.Command], options.Command]]:
+def _format_options(question: "Question[..., Result]") -> list[Callable[[Command], Command]]:
     """Make ``--format``, and ``--output`` for a question whose result can be written into a file."""
     if len(question.formats) == 1:
         return []
@@ -140,54 +136,3 @@ def _write(found: Result, format_: str, output: Path) -> None:
     with contextlib.suppress(NothingToDrawError):
         found.write(output, format_)
         click.echo(f"wrote {output}", err=True)
-
-
-def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Path, int]:
-    """Read files with their weights."""
-    from foon_asp.cli.weighted_files import weighted_files
-
-    return weighted_files(value, parameter.opts[0])
-
-
-def _options_alone(
-    context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
-) -> tuple[str, ...]:
-    """Refuse words that stand where only options of another program can."""
-    if value and not value[0].startswith("-"):
-        raise UserError(f"found {value[0]!r}, expected an option; a goal is named by --goal NAME")
-    return value
-
-
-def _parameter(option: Option) -> Callable[[Callable[..., ExitCode]], Callable[..., ExitCode]]:
-    """Make a parameter of click of an option."""
-    kinds: dict[Kind, Any] = {
-        Kind.TEXT: click.Choice(option.choices) if option.choices else None,
-        Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
-        Kind.FILE: click.Path(path_type=NamedPath),
-        Kind.SECONDS: seconds,
-        Kind.SIZE: memory_size,
-        Kind.WEIGHTS: None,
-        Kind.OPTIONS: click.UNPROCESSED,
-    }
-    if option.positional:
-        return click.argument(
-            option.name,
-            type=kinds[option.kind],
-            nargs=-1 if option.many else 1,
-            metavar=option.metavar,
-            callback=_options_alone if option.kind is Kind.OPTIONS else None,
-        )
-    words = option.flags or ("--" + option.name.replace("_", "-"),)
-    if option.kind is Kind.FLAG:
-        return click.option(*words, option.name, is_flag=True, help=option.help)
-    return click.option(
-        *words,
-        option.name,
-        type=kinds[option.kind],
-        multiple=option.many,
-        default=option.default,
-        show_default=option.default is not None,
-        metavar=option.metavar,
-        callback=_weights if option.kind is Kind.WEIGHTS else _STANDING.get(option.name),
-        help=option.help,
-    )

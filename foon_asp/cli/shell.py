@@ -7,22 +7,19 @@ from pathlib import Path
 import click
 
 from foon_asp.cli import options
+from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import read_files
 from foon_asp.cli.shell_session import Leave, ShellSession
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule
+from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 
 
 @click.command("shell")
 @click.argument("script", required=False, type=click.Path(path_type=NamedPath), metavar="[SCRIPT]")
-@options.goal_option
-@options.objective_option
-@options.containers_option
-@options.constraint_options
-@options.constant_option
-@options.each_limit_options
+@click_options(GOALS, OBJECTIVES, CONTAINERS, *RULES, *LIMITS)
 @options.data_options
 def command(
     script: Path | None,

@@ -14,8 +14,8 @@ from foon_asp.asp.encoding import read_encoding
 from foon_asp.asp.program import assemble, find_constraint
 from foon_asp.asp.session import Session
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.held import Held
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.options import Held
 from foon_asp.cli.shell_kitchen import ShellKitchen, find_nodes
 from foon_asp.cli.shell_line import quoted, take_apart
 from foon_asp.cli.verbs import verb_command

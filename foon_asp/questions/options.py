@@ -27,32 +27,31 @@ OBJECTIVES = Option(
     many=True,
     metavar="LIST",
 )
-RULES = (
-    Option(
-        "constraints",
-        "Add an encoding of yours, or one of ours by name; repeatable.",
-        Kind.FILE,
-        Part.COMMAND,
-        flags=("--constraint",),
-        many=True,
-        metavar="FILE.lp",
-    ),
-    Option(
-        "encodings",
-        "Use the encodings of a folder instead of ours.",
-        Kind.FILE,
-        Part.COMMAND,
-        metavar="DIR",
-    ),
-    Option(
-        "constants",
-        "Set a #const of an encoding; repeatable.",
-        part=Part.COMMAND,
-        flags=("-c",),
-        many=True,
-        metavar="NAME=VALUE",
-    ),
+CONSTRAINTS = Option(
+    "constraints",
+    "Add an encoding of yours, or one of ours by name; repeatable.",
+    Kind.FILE,
+    Part.COMMAND,
+    flags=("--constraint",),
+    many=True,
+    metavar="FILE.lp",
 )
+ENCODINGS = Option(
+    "encodings",
+    "Use the encodings of a folder instead of ours.",
+    Kind.FILE,
+    Part.COMMAND,
+    metavar="DIR",
+)
+CONSTANTS = Option(
+    "constants",
+    "Set a #const of an encoding; repeatable.",
+    part=Part.COMMAND,
+    flags=("-c",),
+    many=True,
+    metavar="NAME=VALUE",
+)
+RULES = (CONSTRAINTS, ENCODINGS, CONSTANTS)
 SOFT = Option(
     "soft",
     "Constraints that may be broken, each way at that price; the least sum comes first.",

@@ -1,0 +1,82 @@
+"""Options of questions, which are plain data, as parameters of click."""
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from foon_asp.cli import held
+from foon_asp.cli.named_path import NamedPath
+from foon_asp.deadline import memory_size, seconds
+from foon_asp.errors import UserError
+from foon_asp.questions.contract import Kind, Option
+
+Command = TypeVar("Command", bound=Callable[..., object])
+
+_STANDING = {
+    "constraints": held.with_rules_that_stand,
+    "constants": held.with_constants_that_stand,
+    "encodings": held.encodings_that_stand,
+}
+
+
+def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Path, int]:
+    """Read files with their weights."""
+    from foon_asp.cli.weighted_files import weighted_files
+
+    return weighted_files(value, parameter.opts[0])
+
+
+def _options_alone(
+    context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Refuse words that stand where only options of another program can."""
+    if value and not value[0].startswith("-"):
+        raise UserError(f"found {value[0]!r}, expected an option; a goal is named by --goal NAME")
+    return value
+
+
+def click_options(*options: Option) -> Callable[[Command], Command]:
+    """Make parameters of click of several options, in that order."""
+
+    def decorate(command: Command) -> Command:
+        return functools.reduce(lambda f, option: click_option(option)(f), reversed(options), command)
+
+    return decorate
+
+
+def click_option(option: Option) -> Callable[[Command], Command]:
+    """Make a parameter of click of an option."""
+    kinds: dict[Kind, Any] = {
+        Kind.TEXT: click.Choice(option.choices) if option.choices else None,
+        Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
+        Kind.FILE: click.Path(path_type=NamedPath),
+        Kind.SECONDS: seconds,
+        Kind.SIZE: memory_size,
+        Kind.WEIGHTS: None,
+        Kind.OPTIONS: click.UNPROCESSED,
+    }
+    if option.positional:
+        return click.argument(
+            option.name,
+            type=kinds[option.kind],
+            nargs=-1 if option.many else 1,
+            metavar=option.metavar,
+            callback=_options_alone if option.kind is Kind.OPTIONS else None,
+        )
+    words = option.flags or ("--" + option.name.replace("_", "-"),)
+    if option.kind is Kind.FLAG:
+        return click.option(*words, option.name, is_flag=True, help=option.help)
+    return click.option(
+        *words,
+        option.name,
+        type=kinds[option.kind],
+        multiple=option.many,
+        default=option.default,
+        show_default=option.default is not None,
+        metavar=option.metavar,
+        callback=_weights if option.kind is Kind.WEIGHTS else _STANDING.get(option.name),
+        help=option.help,
+    )

@@ -1,0 +1,79 @@
+"""What a session holds for the verbs that are asked within it: data, and rules that stand."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import click
+
+from foon_asp.dataset import Dataset
+from foon_asp.errors import UserError
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    from foon_asp.asp.session import Session
+
+
+class Held(NamedTuple):
+    """What a session has read, for the verbs that are asked within it, and how it was read.
+
+    ``session`` keeps what was grounded; ``files`` are those that were read. ``constraints``, ``constants``
+    and ``encodings`` are the rules that stand: a line of the session adds to them, and takes none away.
+    """
+
+    dataset: Dataset
+    lenient: bool
+    level: int
+    session: "Session"
+    files: tuple[Path, ...]
+    constraints: tuple[Path, ...]
+    constants: tuple[str, ...]
+    encodings: Path | None
+
+
+def with_rules_that_stand(
+    context: click.Context, _: click.Parameter, value: tuple[Path, ...]
+) -> tuple[Path, ...]:
+    """Add constraints to those that stand in the session, if a verb is asked in one."""
+    here = context.find_object(Held)
+    standing = () if here is None else here.constraints
+    return tuple(dict.fromkeys((*standing, *value)))
+
+
+def with_constants_that_stand(
+    context: click.Context, _: click.Parameter, value: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Add constants to those that stand; another value for one of these would change a rule that stands."""
+    here = context.find_object(Held)
+    standing = () if here is None else here.constants
+    values = dict(setting.split("=", 1) for setting in standing)
+    for setting in value:
+        name = setting.partition("=")[0]
+        if name in values and setting not in standing:
+            raise UserError(
+                f"{name}={values[name]} stands, and {setting!r} on this line would change that rule: "
+                "constraint NAME CONSTANT=VALUE replaces it, and drop takes it away"
+            )
+    return (*standing, *(setting for setting in value if setting not in standing))
+
+
+def encodings_that_stand(context: click.Context, _: click.Parameter, value: Path | None) -> Path | None:
+    """Give the encodings that stand in the session; others would be of another question."""
+    here = context.find_object(Held)
+    if here is None or here.encodings is None:
+        return value
+    if value not in {None, here.encodings}:
+        raise UserError(
+            f"the encodings of {here.encodings} stand in this session; those of {value} need one of their own"
+        )
+    return here.encodings
+
+
+def held() -> Held | None:
+    """Give what the session has in which a verb is asked, if it is asked in one."""
+    context = click.get_current_context(silent=True)
+    return context.find_object(Held) if context else None
+
+
+def session_here() -> "Session | None":
+    """Give what keeps ground programs for the next question, if there may be one."""
+    here = held()
+    return here.session if here else None
