@@ -21,7 +21,7 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "merge": Entry("Files", "Merge FOONs into a universal FOON."),
     "import": Entry("Files", "Merge networks into a store, for networks too large to read."),
 }
-VERBS: Final[Mapping[str, Entry]] = {**_OTHERS, **INDEX}
+VERBS: Final[Mapping[str, Entry]] = {**INDEX, **_OTHERS}
 GROUPS = ("Find", "Check", "Explain", "Show", "Files")
 _MODULES = {"import": "import_files"}  # of verbs that cannot be the name of a module
 
