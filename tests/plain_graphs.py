@@ -36,6 +36,7 @@ def plain_problem(
     builder = NetworkBuilder()
     for number, (needs, gives) in enumerate(actions):
         missing = prices[number] - len(needs) if prices else not needs
+        assert missing >= 0
         inputs = [*map(_thing, needs), *(_thing(0, str(n)) for n in range(missing))]
         builder.add(f"motion {number}", inputs, list(map(_thing, gives)), Source("plain", number + 1))
     network = builder.build()

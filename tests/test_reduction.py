@@ -178,6 +178,22 @@ def test_what_is_better_than_the_tree_in_hand_stays_and_what_is_dearer_goes(
     assert not found.settled
 
 
+def test_no_bound_is_above_what_the_tree_in_hand_costs() -> None:
+    # with the first corner and the last it is 17 inputs, with others 18 and more, otherwise 19
+    edges: list[Action] = [([5], [8]), ([6], [8]), ([5], [9]), ([7], [9]), ([6], [10]), ([7], [10])]
+    corners: list[Action] = [([0], [5]), ([0], [6]), ([0], [7])]
+    actions = [*corners, *edges, ([8, 9, 10], [1]), ([0], [2]), ([2], [1])]
+    problem = plain_problem(actions, [1], [2, 5, 1, 3, 1, 4, 4, 4, 4, 3, 18, 1])
+    heard = Heard()
+    found = reduce(problem, INPUTS, listener=heard)
+    assert (tree_of(found), found.settled) == ({0, 2, 3, 6, 8, 9}, True)
+    # the cuts of what is left then come to more: nothing of that is better
+    assert found.cuts is not None
+    assert found.costs is not None
+    assert found.bound == sum(map(found.costs, {0, 2, 3, 6, 8, 9})) < found.cuts.bound
+    assert heard.bounds[-1] == 17
+
+
 def least_covers(problem: Problem, corners: int) -> set[int]:
     """Give the units that some tree of fewest units has, where edges are drawn from corners."""
     network = problem.network

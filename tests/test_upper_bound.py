@@ -173,6 +173,13 @@ def test_what_the_tree_has_already_comes_for_nothing() -> None:
     assert improved(graph, range(6), {0, 1, 2, 5}, price, rest, asked.__next__, thorough=True) == {0, 1, 2, 3}
 
 
+def test_a_tree_counts_without_its_spare_units() -> None:
+    # 0 is the cheapest that gives 1, and 1 the cheapest that gives 2, which gives 1 as well
+    graph = plain([([], [1]), ([], [1, 2]), ([], [1, 2])], [1, 2])
+    price = [1, 4, 5].__getitem__
+    assert improved(graph, range(3), {2}, price, price, never, thorough=False) == {1}
+
+
 def test_the_rest_of_a_tree_is_completed_by_costs_that_add_up() -> None:
     # the goal 2 comes at once for 6, of the goal 1 for 5, or of 3 and 4 for 1, which cost 3 each
     graph = plain([([], [1]), ([], [2]), ([1], [2]), ([3, 4], [2]), ([], [3]), ([], [4])], [1, 2])

@@ -235,8 +235,8 @@ class _Reducer:
         """Leave out what only trees have that are no better than the one in hand."""
         rest = _rests(costs, cuts)
         limit = self._total(costs) - cuts.bound + costs.doubt
-        if Reduction.BOUNDS in self.reductions and not costs.doubt:
-            limit -= 1
+        if Reduction.BOUNDS in self.reductions:
+            limit -= 1  # what is as good is not looked for
         left = near(self.graph, self.left, rest, limit)
         while not self.expired():
             made = derive(self.graph, left, rest, added=False)
