@@ -127,10 +127,8 @@ def test_progress_is_shown_on_a_terminal_only(hard_folder: Path) -> None:
         assert process.stdout is not None
         output = process.stdout.read()
     os.close(master)
-    seen = seen.replace(b"\r\n", b"")  # where the terminal's width folds it
     assert b"best tree" in seen
     assert b"units at least" in seen
-    assert b"u000d" not in seen
     assert json.loads(output)["status"] == "feasible"
 
 
