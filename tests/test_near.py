@@ -35,7 +35,7 @@ def by_definition(
 @pytest.mark.parametrize("least", [0, 1])
 def test_what_is_near_is_what_it_is_defined_to_be(least: int) -> None:
     some = 0
-    for seed in range(100):
+    for seed in range(40):
         rng = random.Random(seed)
         graph = random_graph(seed, actions=12)
         rest = {a: rng.randint(least, 5) for a in range(12)}
@@ -46,7 +46,7 @@ def test_what_is_near_is_what_it_is_defined_to_be(least: int) -> None:
                 found = near(graph, allowed, rest.__getitem__, limit, known)
                 assert found == by_definition(graph, allowed, rest, limit, known)
                 some += 0 < len(found) < 9
-    assert some > 100
+    assert some > 50
 
 
 # 0, 1 and 2 give the goal; 3 and 4 what 0 needs, 5 what 1 needs, 6 what 5 needs
