@@ -13,7 +13,7 @@ from foon_asp.asp.ranking import Ranked
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Objective
+from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.resources import encodings_folder
 from tests.ways_problem import ways
 
@@ -266,6 +266,17 @@ def test_every_cost_is_held_against_our_own(monkeypatch: pytest.MonkeyPatch) -> 
         monkeypatch.setattr(ranking, "run", says(Run(unit, costs, True)))
         with pytest.raises(BugError, match=r"the units \(0,\) cost \(69314718, 1\)"):
             list(Ranked(problem, [SUCCESS], Settings()))
+
+
+def test_costs_are_held_against_what_clingo_adds_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    costs = Problem.costs
+    monkeypatch.setattr(
+        Problem, "costs", lambda problem, units: Costs({**costs(problem, units).measures, INPUTS: 2})
+    )
+    problem = ways(["0.5"])
+    assert units_of(list(Ranked(problem, [SUCCESS], Settings()))) == [(0,)]
+    with pytest.raises(BugError, match=r"reports the costs \[1, 1\], the units \(0,\) cost \(2, 1\)"):
+        list(Ranked(problem, [INPUTS], Settings()))
 
 
 def test_sums_beyond_32_bits_are_in_order() -> None:

@@ -542,6 +542,7 @@ def test_trees_and_bounds_are_heard_as_they_get_better(monkeypatch: pytest.Monke
     problem = ways(["0.5"] * 3, ["0.5"] * 2, ["0.2"])
     outcome = solve(problem, (UNITS,), SEARCHED, heard)
     assert heard.trees[-1] == outcome.costs == problem.costs((5,))
+    assert heard.warnings == []
     assert [costs.units for costs in heard.trees] == sorted(
         {costs.units for costs in heard.trees}, reverse=True
     )

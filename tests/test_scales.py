@@ -1,0 +1,82 @@
+"""What units cost as whole numbers, by hand: exactly where that fits, to scale, or rounded down."""
+
+import dataclasses
+from fractions import Fraction
+
+import pytest
+
+from foon_asp.asp.scales import Scales, cost_scale
+from foon_asp.problem import Objective
+from tests.test_objectives import NEW
+from tests.ways_problem import ways
+
+UNITS, SUCCESS, KITCHEN, TRIES = Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN, NEW["rounded"]
+
+
+@pytest.mark.parametrize(
+    ("costs", "scale", "exact", "weights"),
+    [
+        ([], 1, True, []),
+        (["3", "0"], 1, True, [0, 3]),
+        (["0.05", "1.5"], 20, True, [1, 30]),
+        (["1/3", "3/4"], 12, True, [4, 9]),
+        (["2147483647"], 1, True, [2**31 - 1]),
+        (["1/3", "2147483647/3"], 3, True, [1, 2**31 - 1]),
+        (["1/3", "1/1000000007"], 3_000_000_021, True, [3, 1_000_000_007]),
+        (["4", "13/1000000007"], 10**8, False, [1, 400_000_000]),
+    ],
+)
+def test_costs_to_scale(costs: list[str], scale: int, exact: bool, weights: list[int]) -> None:
+    found = cost_scale(map(Fraction, costs))
+    assert found.scale == scale
+    assert found.exact is exact
+    assert list(found.weights.values()) == weights
+    assert list(found.places.values()) == list(range(len(costs)))
+    assert list(found.weights) == list(found.places) == sorted(map(Fraction, costs))
+
+
+@pytest.mark.parametrize("most", ["22.5", "2147483647.5", "10000000000"])
+def test_dear_costs_are_rounded_so_that_they_fit(most: str) -> None:
+    dear, fine = Fraction(most), Fraction(1, 10**9 + 7)
+    found = cost_scale([dear, fine])
+    assert not found.exact
+    assert 2**31 - 2 <= found.weights[dear] <= 2**31 - 1
+    assert found.weights[fine] == 0
+
+
+def test_figures_of_trees() -> None:
+    """Rates of 1/3 and 1/1000003 take 3 and 1000003 tries, which are whole; 0.7 takes 10/7."""
+    problem = ways(["1/3", "1"], ["0.7"])
+    scales = Scales(problem, range(3), [UNITS, TRIES, KITCHEN])
+    assert scales.rounded is None
+    assert [scales.weight(o, (0, 1)) for o in (UNITS, TRIES, KITCHEN)] == [2, 28, 1]  # (3 + 1) * 7
+    assert [scales.bound(o, 20) for o in (UNITS, TRIES, KITCHEN)] == [20, Fraction(20, 7), 20]
+    assert scales.allows(TRIES, 28, 4)
+    assert not scales.allows(TRIES, 28, 5)
+    assert not scales.allows(TRIES, 28, 3)
+    assert scales.likeness == [10**8, 7]
+    unrated = Scales(dataclasses.replace(problem, rates=None), range(3), [UNITS])
+    assert unrated.rates is None
+    assert unrated.likeness == [None]
+    assert unrated.bound(SUCCESS, 5) == 1
+
+
+def test_what_is_rounded_is_bounded_on_one_side() -> None:
+    problem = ways(["1/3", "1"], ["0.7"])
+    by_success = Scales(problem, range(3), [UNITS, SUCCESS])
+    assert by_success.rounded is SUCCESS
+    assert by_success.allows(SUCCESS, 109_861_228, Fraction(1, 3))  # ln 3 = 1.0986122886...
+    assert not by_success.allows(SUCCESS, 109_861_229, Fraction(1, 3))
+    assert by_success.allows(SUCCESS, 0, 1)
+    assert [by_success.doubt(units) for units in ((0, 1), (1,), (0, 2))] == [1, 0, 2]
+    fine = ways(["1000000007/1000000008", "0.5"], ["0.7"])
+    by_tries = Scales(fine, range(3), [TRIES, UNITS])
+    assert by_tries.rounded is TRIES
+    assert by_tries.weight(TRIES, (0, 1)) == 300_000_000  # 1.000000000999... + 2
+    assert by_tries.allows(TRIES, 300_000_000, 3)
+    assert by_tries.allows(TRIES, 300_000_000, 3 + Fraction(1, 10**9 + 7))
+    assert not by_tries.allows(TRIES, 300_000_001, 3)
+    assert [by_tries.doubt(units) for units in ((0, 1), (1,), (0, 2))] == [1, 0, 2]
+    assert by_tries.vector((0, 1, 1)) != by_tries.vector((0, 0, 1))
+    assert by_tries.vector((1, 1, 0)) == by_tries.vector((0, 1, 1))
+    assert sum(by_tries.vector((0, 1, 1)).values()) == 3
