@@ -6,6 +6,7 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.asp.scales import Scales, cost_scale
+from foon_asp.errors import UserError
 from foon_asp.problem import Objective
 from tests.test_objectives import NEW
 from tests.ways_problem import ways
@@ -80,3 +81,31 @@ def test_what_is_rounded_is_bounded_on_one_side() -> None:
     assert by_tries.vector((0, 1, 1)) != by_tries.vector((0, 0, 1))
     assert by_tries.vector((1, 1, 0)) == by_tries.vector((0, 1, 1))
     assert sum(by_tries.vector((0, 1, 1)).values()) == 3
+
+
+def test_bounds_are_put_on_what_is_exact() -> None:
+    scales = Scales(ways(["1/3", "1"], ["0.7"]), range(3), [UNITS, TRIES])
+    assert scales.cost_weight(UNITS, 4) == 4
+    assert scales.cost_weight(TRIES, Fraction(30, 7)) == 30
+    fine = Scales(ways(["1000000007/1000000008", "0.5"], ["0.7"]), range(3), [TRIES, UNITS])
+    assert fine.cost_weight(UNITS, 4) == 4
+    with pytest.raises(UserError) as refused:
+        fine.cost_weight(TRIES, 4)
+    assert str(refused.value) == (
+        "the objective tries has to be rounded for the solver, so no bound can be put on it: "
+        "leave it out, or the other objective that has to be rounded"
+    )
+
+
+def test_one_objective_is_rounded_and_no_other() -> None:
+    fine = ways(["1000000007/1000000008", "0.5"], ["0.7"])
+    for order in ([TRIES, SUCCESS], [SUCCESS, UNITS, TRIES]):
+        with pytest.raises(UserError) as refused:
+            Scales(fine, range(3), order)
+        names = [str(objective) for objective in order if objective is not UNITS]
+        assert str(refused.value) == (
+            f"the objectives {' and '.join(names)} have to be rounded for the solver, which can settle only "
+            "one such objective exactly: leave one of them out"
+        )
+    certain = ways(["1"], ["1", "1"])
+    assert Scales(certain, range(3), [SUCCESS, TRIES]).rounded is None
