@@ -42,7 +42,7 @@ from contest.trial import End, Trial, Work, attempt
 from generate import Family, generate
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.asp.program import CLINGO_OPTIONS
+from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.compare import makeable
 from foon_asp.engines import EngineAnswer, agree
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, executable_order, levels

@@ -518,6 +518,6 @@ def test_rules_of_a_user_give_what_they_give_here(tmp_path: Path, monkeypatch: p
         return [(each.status, each.costs, each.bounds) for each in found]
 
     there = answers()
-    monkeypatch.setattr("foon_asp.asp.program.is_own", lambda _: True)  # as if the rules were ours
+    monkeypatch.setattr("foon_asp.asp.assembly.is_own", lambda _: True)  # as if the rules were ours
     monkeypatch.setattr(worker_process, "WorkerProgram", None)
     assert answers() == there

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, exact_success, solve
-from foon_asp.asp.program import assemble
+from foon_asp.asp.assembly import assemble
 from foon_asp.asp.session import OpenProgram, Session
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from tests import oracle

@@ -14,7 +14,7 @@ from contest.max_sat import Setting, solve_max_sat
 from contest.max_sat import ready as max_sat_ready
 from contest.mixed_integer import ready as mixed_integer_ready
 from contest.mixed_integer import solve_mixed_integer
-from foon_asp.asp.program import CLINGO_OPTIONS
+from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.engines import fast_downward
 from foon_asp.problem import Objective, Problem
 

@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from foon_asp.asp.assembly import find_constraint
 from foon_asp.asp.facts import write_assisted
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.program import Bounded, find_constraint
+from foon_asp.asp.settings import Bounded
 
 _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 

@@ -5,8 +5,8 @@ from fractions import Fraction
 
 from foon_asp.asp.facts import write_at_most
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.program import Bounded
 from foon_asp.asp.scales import Scales
+from foon_asp.asp.settings import Bounded
 from foon_asp.problem import Costs, Objective
 
 

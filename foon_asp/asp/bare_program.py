@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.asp.assembly import assemble
 from foon_asp.asp.facts import write_least_penalty
-from foon_asp.asp.program import Settings, assemble
+from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import program_facts
 from foon_asp.problem import Objective, Problem, levels
 

@@ -8,10 +8,11 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 from clingo.symbol import SymbolType
 
+from foon_asp.asp.assembly import find_constraint
 from foon_asp.asp.encoding import located, read_encoding
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.program import Relaxed, find_constraint
 from foon_asp.asp.search import ground
+from foon_asp.asp.settings import Relaxed
 from foon_asp.deadline import Deadline
 from foon_asp.network import Source
 from foon_asp.text import Diagnostic, InputError

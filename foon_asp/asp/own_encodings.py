@@ -11,6 +11,7 @@ from pathlib import Path
 from foon_asp.errors import UserError
 from foon_asp.resources import encodings_folder
 
+ENCODING_FILES = ("task_tree.lp", "objectives.lp", "show.lp")
 _DIGESTS = "SHA256SUMS"
 
 

@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import partial
 
 from foon_asp.asp.outcome import Outcome, Proof, Status
-from foon_asp.asp.program import Settings
+from foon_asp.asp.settings import Settings
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, executable_order, multiplies
 from foon_asp.proof import Verdict, simulate_for

@@ -5,12 +5,13 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
+from foon_asp.asp.assembly import assemble
 from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.program import Settings, assemble
 from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
+from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import Reporter
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run

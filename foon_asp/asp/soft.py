@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.asp.assembly import assemble, find_constraint
 from foon_asp.asp.facts import (
     write_facts,
     write_greatest_penalty,
@@ -14,9 +15,9 @@ from foon_asp.asp.facts import (
 from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
 from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.program import Relaxed, Settings, assemble, find_constraint
 from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
+from foon_asp.asp.settings import Relaxed, Settings
 from foon_asp.asp.solver import Reporter, solve
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError

@@ -7,6 +7,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from foon_asp.asp.assembly import assemble
 from foon_asp.asp.facts import (
     write_exponents,
     write_facts,
@@ -17,8 +18,9 @@ from foon_asp.asp.facts import (
 )
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.program import Program, Settings, assemble
+from foon_asp.asp.program import Program
 from foon_asp.asp.scales import Scales
+from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, multiplies, reach, relevant

@@ -4,8 +4,8 @@ import hashlib
 from typing import NamedTuple
 
 from foon_asp.asp import Settings
+from foon_asp.asp.assembly import find_constraint
 from foon_asp.asp.own_encodings import is_own
-from foon_asp.asp.program import find_constraint
 from foon_asp.network import Network
 
 # Our constraints that rule out units one by one, and the constant that says which.

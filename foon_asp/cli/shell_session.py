@@ -9,9 +9,9 @@ from typing import NamedTuple
 import click
 
 from foon_asp.asp import Settings
+from foon_asp.asp.assembly import assemble, find_constraint
 from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.asp.encoding import read_encoding
-from foon_asp.asp.program import assemble, find_constraint
 from foon_asp.asp.session import Session
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.held import Held

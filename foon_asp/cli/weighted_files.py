@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from foon_asp.asp.program import GREATEST_WEIGHT, find_constraint
+from foon_asp.asp.assembly import GREATEST_WEIGHT, find_constraint
 from foon_asp.errors import UserError
 
 

@@ -1,20 +1,32 @@
 """Names that callers of Python write, looked up in data."""
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, node_at_level
 from foon_asp.problem import Names, Number, success_rate
-from foon_asp.text import GoalError, Wording, find_goal
-
-if TYPE_CHECKING:
-    from foon_asp.dataset.dataset import Dataset
+from foon_asp.text import GoalError, ListedObject, NodeNames, Wording, find_goal
 
 
-def node_id(dataset: "Dataset", name: str | ObjectNode, what: str) -> int:
+class Named(Protocol):
+    """Data that names are looked up in."""
+
+    @property
+    def names(self) -> Network | NodeNames:
+        """What object nodes are looked up in."""
+
+    @property
+    def listed(self) -> Sequence[ListedObject]:
+        """The entries of the goals file, which a goal may be called by."""
+
+    def at_hand(self, o: int) -> bool:
+        """Whether the kitchen has an object node, by id."""
+
+
+def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
     """Find an object node by name, by id in the whole network; ``what`` it is: ``goal``, ``kitchen item``.
 
     Raises :class:`UserError` with candidates for a name that means no object node, or several.
@@ -31,12 +43,12 @@ def node_id(dataset: "Dataset", name: str | ObjectNode, what: str) -> int:
         raise UserError(in_python(error)) from None
 
 
-def node_ids(dataset: "Dataset", names: Names, what: str) -> list[int]:
+def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
     """Find object nodes by name, as :func:`node_id` does each."""
     return [node_id(dataset, name, what) for name in listed(names)]
 
 
-def item_ids(dataset: "Dataset", name: str | ObjectNode) -> list[int]:
+def item_ids(dataset: Named, name: str | ObjectNode) -> list[int]:
     """Give the kitchen items that a name stands for: a label for all that have it."""
     names = dataset.names
     if isinstance(name, str) and ";" not in name:

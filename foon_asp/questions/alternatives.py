@@ -6,9 +6,9 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Settings
+from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.asp.facts import write_distances
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.program import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files

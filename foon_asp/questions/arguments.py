@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 from foon_asp.asp import Settings
-from foon_asp.asp.program import GREATEST_WEIGHT, find_constraint
+from foon_asp.asp.assembly import GREATEST_WEIGHT, find_constraint
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.deadline import memory_size, seconds
 from foon_asp.errors import UserError

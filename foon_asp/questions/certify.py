@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Self
 
 from foon_asp.asp import Settings, Status
-from foon_asp.asp.program import assemble
+from foon_asp.asp.assembly import assemble
 from foon_asp.certificate import Certificate, Coverage, NotBestError, certify_outcome, coverage
 from foon_asp.certificate import certify as prove_best
 from foon_asp.dataset.paths import File, Files

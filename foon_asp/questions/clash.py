@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.asp.assembly import CLINGO_OPTIONS, assemble, find_constraint
 from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
 from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.program import CLINGO_OPTIONS, assemble, find_constraint
 from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files

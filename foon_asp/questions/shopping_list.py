@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp import Status, solve
+from foon_asp.asp.assembly import assemble
 from foon_asp.asp.facts import write_facts, write_for_sale, write_list
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.program import Program, assemble
+from foon_asp.asp.program import Program
 from foon_asp.asp.scales import Scales
 from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files

@@ -8,8 +8,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from foon_asp.asp import Outcome
+from foon_asp.asp.assembly import find_constraint
 from foon_asp.asp.encoding import read_encoding
-from foon_asp.asp.program import ENCODING_FILES, find_constraint
+from foon_asp.asp.own_encodings import ENCODING_FILES
 from foon_asp.certificate import coverage
 from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import printed_command

@@ -1,0 +1,143 @@
+"""Putting a program together: our encodings or a replacement, and what the user adds."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from foon_asp.asp.own_encodings import ENCODING_FILES, exact_success, is_own
+from foon_asp.asp.program import Program
+from foon_asp.asp.settings import Settings
+from foon_asp.errors import UserError
+from foon_asp.resources import encodings_folder
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    pass
+
+# Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
+CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
+
+GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
+
+# Options that would change what an answer means, or whether it is a proof; the solver sets them itself.
+_RESERVED = (
+    "--const",
+    "--enum-mode",
+    "--help",
+    "--mode",
+    "--models",
+    "--number",
+    "--opt-mode",
+    "--opt-stop",
+    "--outf",
+    "--project",
+    "--supp-models",
+    "--text",
+    "--version",
+    "--warn",  # what clingo leaves out, it says so in a warning
+)
+
+# A predicate of a search and not of its question: programs that are kept have it otherwise.
+_OF_ONE_SEARCH = ("optimize", 2)
+
+
+def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
+    """Find and look over the encodings that the settings ask for.
+
+    Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
+    no encoding has and for clingo options that would change what an answer means.
+    """
+    ours = encodings_folder()
+    folder = _find_encodings(settings.encodings, ours)
+    base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
+    added = tuple(dict.fromkeys(find_constraint(path) for path in settings.constraints))
+    relaxed, bounded = settings.relaxed, settings.bounded
+    loaded = added
+    questions: tuple[Path, ...] = ()
+    rules = ""
+    if relaxed is not None:
+        loaded = tuple(file for file in added if file not in relaxed.files)
+        added = tuple(dict.fromkeys((*added, *relaxed.files)))
+        questions = (relaxed.encoding,)
+        rules = relaxed.rules
+    if bounded is not None:
+        questions += bounded.files
+        rules += bounded.rules
+    constants: list[str] = []
+    looked_at: frozenset[tuple[str, int]] = frozenset()
+    text, is_open = "", False
+    endless = not all(map(is_own, (*base, *added)))
+    if added or settings.replaced or settings.constants:
+        # parsing takes some milliseconds, so it is left out where every file is ours
+        from foon_asp.asp import encoding  # noqa: PLC0415
+
+        if endless:
+            from foon_asp.grounding.worker_process import prepare  # noqa: PLC0415
+
+            prepare()  # while files are parsed
+
+        parsed = [encoding.read_encoding(file) for file in base]
+        asked = [encoding.read_encoding(file) for file in questions]
+        extra = [encoding.read_encoding(file) for file in added]
+        for diagnostic in encoding.check_encodings(extra, parsed, asked):
+            warn(str(diagnostic))
+        for message in encoding.unset_constants(extra, settings.constants):
+            warn(message)
+        constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
+        looked_at = frozenset(signature for each in extra for signature in each.used)
+        text = "\n".join(each.text for each in (*parsed, *asked, *extra))
+        is_open = (
+            settings.replaced is None
+            and relaxed is None
+            and bounded is None
+            and _OF_ONE_SEARCH not in looked_at
+            and not any(each.assigns for each in extra)
+        )
+    return Program(
+        (*base, *loaded, *questions),
+        exact_success(),
+        (*constants, *_clingo_options(settings.clingo_options)),
+        replaced=not all(map(is_own, base)),
+        own=not added and settings.replaced is None,
+        rules=rules,
+        bounded=bounded is not None,
+        looked_at=looked_at,
+        text=text,
+        open=is_open,
+        endless=endless,
+        constants=tuple(constants),
+    )
+
+
+def _find_encodings(path: Path | None, ours: Path) -> Path:
+    """Give a folder of encodings: the path itself, or one of ours by name (``by_need``)."""
+    if path is None:
+        return ours
+    folder = ours / path.name if not path.is_dir() and path.name == str(path) else path
+    if any((folder / name).is_file() for name in ENCODING_FILES):
+        return folder
+    names = ", ".join(ENCODING_FILES)
+    raise UserError(f"{path}: expected a folder with encodings to use instead of ours: {names}")
+
+
+def find_constraint(path: Path) -> Path:
+    """Give a constraint file: the path itself, or one of ours by name (``forbid_motion``)."""
+    if path.is_file():
+        return path
+    library = encodings_folder() / "constraints"
+    if path.name == str(path):
+        bundled = library / path.with_suffix(".lp").name
+        if bundled.is_file():
+            return bundled
+    names = ", ".join(sorted(file.stem for file in library.glob("*.lp")))
+    raise UserError(f"{path}: no such file; expected an encoding (.lp) or one of ours: {names}")
+
+
+def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
+    """Look over the user's options; those of ours that they set differently give way."""
+    names = [option.partition("=")[0] for option in options]
+    for option, name in zip(options, names, strict=True):
+        if not (name.startswith("--") and len(name) > 2) and not name.startswith("-t"):
+            raise UserError(f"found {option!r} after --, expected options of clingo, --NAME=VALUE")
+        if any(reserved.startswith(name) for reserved in _RESERVED):
+            raise UserError(f"the option {option!r} would change what an answer means, so it cannot be set")
+    return (*(ours for ours in CLINGO_OPTIONS if ours.partition("=")[0] not in names), *options)

@@ -1,0 +1,87 @@
+"""How to solve, and under which constraints."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from foon_asp.asp.own_encodings import ENCODING_FILES, is_own
+from foon_asp.deadline import Deadline
+from foon_asp.network import Source
+from foon_asp.problem import Objective
+from foon_asp.reduce import ALL, Reduction
+from foon_asp.resources import encodings_folder
+
+if TYPE_CHECKING:  # clingo, which often is not needed
+    from foon_asp.asp.session import Session
+
+
+class Relaxed(NamedTuple):
+    """Constraint files that are loaded in other words.
+
+    ``files`` are looked over like other constraints, but ``rules`` stand in for what they say, together with
+    ``encoding``, one of ours (``encodings/questions``). ``places`` says where each rule comes from.
+    """
+
+    files: tuple[Path, ...]
+    rules: str
+    encoding: Path
+    places: Mapping[str, Source]
+
+
+class Bounded(NamedTuple):
+    """Requirements of ours that only bound what a tree costs from above.
+
+    ``files`` are encodings of ours (``encodings/questions``) and ``rules`` the facts that they read. A tree
+    that meets them has to meet them still when units are left out of it: then what the goals do not need
+    cannot matter, bounded or not. ``below`` are sets of costs, in each of which a tree has
+    to be below one: those of objectives that are fractions, written down when it is known to which scale.
+    """
+
+    rules: str
+    files: tuple[Path, ...]
+    below: tuple[Mapping[Objective, int | Fraction], ...] = ()
+
+
+class Settings(NamedTuple):
+    """How to solve, and under which constraints.
+
+    ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
+    ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
+    ``time_limit`` is in seconds, for everything from the cut to the last proof. ``reductions`` come before
+    the search, unless there are constraints, bounds or other encodings. ``relaxed`` are constraints in other
+    words. Trees keep to what is ``bounded``. ``session`` keeps ground programs for the next question.
+    ``memory_limit`` is in bytes, for this process together with the one that grounds. ``deadline`` is that of
+    a question of which this one is a part, and has begun.
+    """
+
+    constraints: tuple[Path, ...] = ()
+    encodings: Path | None = None
+    constants: tuple[str, ...] = ()
+    clingo_options: tuple[str, ...] = ()
+    time_limit: float | None = None
+    reductions: frozenset[Reduction] = ALL
+    relaxed: Relaxed | None = None
+    bounded: Bounded | None = None
+    session: "Session | None" = None
+    memory_limit: int | None = None
+    deadline: Deadline | None = None
+
+    def limited(self) -> "Settings":
+        """Give the same settings with a deadline that has begun: now, if it had not."""
+        return self._replace(deadline=self.begun, time_limit=None, memory_limit=None)
+
+    @property
+    def replaced(self) -> Path | None:
+        """The folder of encodings that replace ours: our own folder where a file was changed in place."""
+        if self.encodings is None:
+            ours = encodings_folder()
+            return None if all(is_own(ours / name) for name in ENCODING_FILES) else ours
+        return self.encodings
+
+    @property
+    def begun(self) -> Deadline:
+        """The deadline that has begun, and within it one that begins now where there are limits."""
+        if self.deadline is not None and self.time_limit is None and self.memory_limit is None:
+            return self.deadline
+        return Deadline(self.time_limit, self.memory_limit, within=self.deadline)
