@@ -31,7 +31,7 @@ from foon_asp.reduce import parse_reductions
 from tests import oracle
 from tests.gap_problem import gap_problem
 from tests.hostile_files import hostile_files
-from tests.random_problems import MOTIONS, random_problem
+from tests.random_problems import MOTIONS, random_objectives, random_problem
 
 Tree = tuple[FunctionalUnit, ...]
 PATIENCE = 20.0  # seconds for each engine
@@ -95,7 +95,7 @@ def question(seed: int, folder: Path) -> Question:
     if rng.random() < 0.7:
         rates = {motion: Fraction(rng.choice(RATES)) for motion in problem.rates or ()}
         problem = replace(problem, rates=rates)
-    objectives = tuple(rng.sample(list(Objective), rng.randint(1, 3)))
+    objectives = random_objectives(rng, rng.randint(1, 3))
     rules: tuple[Rule, ...] = ()
     for _ in range(_TRIES if rng.random() < 0.85 else 0):
         rules = tuple(_rules(problem, rng, folder))

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Problem
+from foon_asp.problem import ContainerRule, Objective, Problem
 
 UTENSILS = frozenset({"bowl", "cup"})
 MOTIONS = ("pour", "cut", "mix", "wash", "cook", "bake")
@@ -147,3 +147,10 @@ def random_steps(seed: int, rule: ContainerRule, units: int = 9) -> Problem:
     family = rng.choice((RATES, RATES, NEAR_1, NEAR_0, POWERS))
     rates = {motion: Fraction(rng.choice(family)) for motion in MOTIONS}
     return Problem(network, frozenset(start), tuple(goals), rates, UTENSILS, rule)
+
+
+def random_objectives(rng: random.Random, number: int) -> tuple[Objective, ...]:
+    """Draw a list of objectives; of those that may have to be rounded only the first stays."""
+    drawn = rng.sample(sorted(Objective), number)
+    rounded = [objective for objective in drawn if not objective.row.whole]
+    return tuple(objective for objective in drawn if objective not in rounded[1:])

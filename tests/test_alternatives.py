@@ -16,7 +16,7 @@ from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.menu import menu
 from foon_asp.questions.regret import Part, regret
 from tests import oracle
-from tests.random_problems import MOTIONS, RATES, UTENSILS, random_problem
+from tests.random_problems import MOTIONS, RATES, UTENSILS, random_objectives, random_problem
 
 RULES = list(ContainerRule)
 Units = frozenset[FunctionalUnit]
@@ -61,7 +61,7 @@ def sets_of(found: Alternatives) -> list[Units]:
 def drawn(seed: int) -> list[str]:
     if seed % 2:
         return ["units"]
-    return random.Random(seed).sample(sorted(map(str, Objective)), random.Random(seed).choice((1, 1, 2)))
+    return [*map(str, random_objectives(random.Random(seed), random.Random(seed).choice((1, 1, 2))))]
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -31,7 +31,7 @@ from foon_asp.text import find_data, find_goal, read_data, write_units
 from tests import oracle
 from tests.conftest import Cli
 from tests.gap_problem import gap_problem
-from tests.random_problems import MOTIONS, random_problem
+from tests.random_problems import MOTIONS, random_objectives, random_problem
 
 RULES = list(ContainerRule)
 
@@ -53,7 +53,7 @@ def test_every_optimum_of_random_networks(rule: ContainerRule) -> None:
     for seed in range(150):
         problem = random_problem(seed, rule)
         lists: list[tuple[Objective, ...]] = [(objective,) for objective in Objective]
-        lists.append(tuple(random.Random(seed).sample(list(Objective), 3)))
+        lists.append(random_objectives(random.Random(seed), 3))
         for objectives in lists:
             outcome, found = certify_outcome(solve(problem, objectives), Settings())
             assert found is not None
@@ -75,7 +75,7 @@ def test_branching_closes_gaps(corners: int) -> None:
     for seed in range(8):
         problem = gap_problem(seed, corners)
         lists: list[tuple[Objective, ...]] = [(objective,) for objective in Objective]
-        lists.append(tuple(random.Random(seed).sample(list(Objective), 2)))
+        lists.append(random_objectives(random.Random(seed), 2))
         for objectives in lists:
             outcome, found = certify_outcome(solve(problem, objectives), Settings())
             assert outcome.proof is Proof.CERTIFICATE

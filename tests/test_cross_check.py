@@ -32,7 +32,7 @@ from tests import oracle
 from tests.conftest import Cli
 from tests.gap_problem import gap_problem
 from tests.hard_problem import hard_problem
-from tests.random_problems import random_problem
+from tests.random_problems import random_objectives, random_problem
 
 RULES = list(ContainerRule)
 Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
@@ -95,7 +95,7 @@ def test_all_engines_give_one_answer(rule: ContainerRule) -> None:
 def test_lists_are_checked_level_by_level() -> None:
     for seed in range(40):
         problem = random_problem(seed, RULES[seed % 2])
-        objectives = tuple(random.Random(seed).sample(list(Objective), 3))
+        objectives = random_objectives(random.Random(seed), 3)
         outcome = solve(problem, objectives)
         wanted = levels(objectives) if outcome.units is not None else ()
         clingo, highs = cross_check(Asked(outcome), 60.0, ENGINES[:1])

@@ -25,7 +25,7 @@ from foon_asp.problem import ContainerRule, Objective, Problem
 from tests import oracle
 from tests.conftest import Cli
 from tests.gap_problem import gap_problem
-from tests.random_problems import MOTIONS, SERIES, random_problem
+from tests.random_problems import MOTIONS, SERIES, random_objectives, random_problem
 from tests.test_exact_success import two_ways
 from tests.wrong_costs import with_measures
 
@@ -139,7 +139,7 @@ def test_answers_under_rules_by_chance_agree(rule: ContainerRule, part: int, tmp
         problem = makeable(seed, rule)
         mine = tmp_path / f"mine{seed}.lp"
         mine.write_text(some_rules(rng, tmp_path))
-        objectives = rng.sample(list(Objective), rng.randint(1, 3))
+        objectives = random_objectives(rng, rng.randint(1, 3))
         settings = Settings((mine,)) if seed % 4 else Settings(encodings=Path("by_need"))
         outcome = solve(problem, objectives, settings)
         agrees(outcome, settings)
@@ -159,7 +159,7 @@ def test_answers_under_soft_rules_agree(part: int, tmp_path: Path) -> None:
         for file in files:
             # one file may not define a constant of the other
             file.write_text(some_rules(rng, tmp_path).replace("few", f"few_{file.stem}"))
-        objectives = rng.sample(list(Objective), 2)
+        objectives = random_objectives(rng, 2)
         found = solve_soft(problem, objectives, Settings(), files)
         check_with_bare_clingo(Asked(found.outcome, Settings(), files, found.penalty), PATIENCE)
         penalties += bool(found.penalty)

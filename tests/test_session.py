@@ -13,7 +13,7 @@ from foon_asp.asp.session import OpenProgram, Session
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from tests import oracle
 from tests.hard_problem import hard_problem
-from tests.random_problems import SERIES, random_problem
+from tests.random_problems import SERIES, random_objectives, random_problem
 from tests.test_optimum import constraint
 
 # Constraints that look at facts without use(U): what is not there must not be seen by them.
@@ -66,7 +66,7 @@ def test_random_sessions(seeds: range, tmp_path: Path) -> None:
         for _ in range(12):
             problem = change(problem, rng, list(ContainerRule))
             name, constants, allowed = constraint(seed, problem)  # the same, of these goals and this kitchen
-            objectives = tuple(rng.sample(sorted(Objective), rng.randint(1, 3)))
+            objectives = random_objectives(rng, rng.randint(1, 3))
             with_nosy = rng.random() < 0.5
             files = (nosy,) if with_nosy else (Path(name),)
             settings = Settings(constraints=files, constants=() if with_nosy else tuple(constants))

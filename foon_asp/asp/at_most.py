@@ -11,11 +11,14 @@ from foon_asp.problem import Costs, Objective
 
 
 def at_most(bounds: Mapping[Objective, int]) -> Bounded:
-    """Ask for trees that cost no more than so much by each of some objectives, of which ``success`` is none.
+    """Ask for trees that cost no more than so much by each of some objectives that count whole numbers.
 
-    For :class:`foon_asp.asp.Settings`. Raises ``ValueError`` for ``success``, and :class:`UserError` for
+    For :class:`foon_asp.asp.Settings`. Raises ``ValueError`` for other objectives, and :class:`UserError` for
     numbers that clingo does not have.
     """
+    fractions = [str(objective) for objective in bounds if not objective.row.whole]
+    if fractions:
+        raise ValueError(f"{' and '.join(fractions)} is no whole number that a bound could be put on")
     return _bounded({objective: bound} for objective, bound in bounds.items())
 
 

@@ -88,7 +88,7 @@ class Scales:
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
         """Give what clingo adds up for a cost; raises :class:`UserError` for an objective that is rounded."""
-        if objective not in self.costs:
+        if objective.row.whole:
             return int(cost)
         scale = self.costs[objective]
         if not scale.exact:
