@@ -88,3 +88,12 @@ def test_a_rate_of_one_is_one_attempt() -> None:
     found = solve(two_ways(["1", "1"], [str(Fraction(1, 4))]), BY)
     assert found.costs is not None
     assert found.costs.measure(Objective.ATTEMPTS) == 2
+
+
+def test_what_never_succeeds_has_no_number_of_attempts() -> None:
+    problem = two_ways(["0.5", "0.5"], ["0.2"])
+    never = replace(problem, rates=dict.fromkeys(problem.rates or {}, Fraction(0)))
+    with pytest.raises(UserError, match="a success rate is 0, by which the objective attempts has no number"):
+        solve(never, BY)
+    assert solve(never, (Objective.UNITS,)).units == (2,)
+    assert Objective.ATTEMPTS not in never.costs([2]).measures

@@ -9,7 +9,7 @@ from foon_asp.certificate.arrays import Arrays
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
 
-UNITS, INPUTS, INGREDIENTS, SUCCESS, KITCHEN = Objective
+UNITS, INPUTS, INGREDIENTS, SUCCESS, KITCHEN, *_ = Objective
 START, SALT, MIDDLE, END = range(4)
 HALF, THIRD = Fraction(1, 2), Fraction(1, 3)
 

@@ -80,6 +80,13 @@ PRODUCTS = data(
     both="1/202",
 )
 MANY = data([(f"go {number}", "start", "end") for number in range(2000)], "start")
+# Rates whose numerators share no factor, and are long.
+LONG = data(
+    [("threes", "start", "middle"), ("fives", "middle", "end")],
+    "start",
+    threes=str(Fraction(3**4600, 3**4600 + 1)),
+    fives=str(Fraction(5**3200, 5**3200 + 1)),
+)
 CHAIN = data([("go", f"n{n}", f"n{n + 1}") for n in range(8)], "n0", go="0." + "9" * 500)
 
 
@@ -208,7 +215,7 @@ FORGED: dict[str, Forged] = {
     "__init__: an objective stands twice": plain(
         objective=["units", "units"], costs=[1, 1], proof={"weights": [[0, ["1", "1"]]]}
     ),
-    "_costly: success is claimed, but no rates are given": plain(
+    "_costly: a claim needs success rates, but no rates are given": plain(
         **{**SUCCESS, **NOTHING}, at=PLAIN._replace(rates=None), stays=WORDS
     ),
     "_costly: a motion has no success rate": plain(
@@ -217,6 +224,9 @@ FORGED: dict[str, Forged] = {
     "_costly: a rate is not between 0 and 1": plain(
         **{**SUCCESS, **NOTHING, "claim": "optimal", "bound": None, "costs": ["2"]},
         at=PLAIN._replace(rates=dict.fromkeys(("pour", "mix", "bake", "dig"), Fraction(2))),
+    ),
+    "_costly: a unit that never succeeds has no end": plain(
+        objective=["attempts"], claim="bound", bound=["0"], tree=None, costs=None, at=NEVER, stays=KIND
     ),
     "__init__: a constraint has no printable name": plain(not_covered=["mine.lp\nverified: all of it"]),
     "__init__: expected goals, each of them once": plain(goals=[], tree=[], costs=[0], **NOTHING),
@@ -259,6 +269,15 @@ FORGED: dict[str, Forged] = {
         goals=goal(CHAIN, "n8"),
         tree=[*range(8)],
         at=CHAIN,
+    ),
+    "_tree: what the tree costs is too long a number to be written": plain(
+        objective=["attempts"],
+        goals=goal(LONG, "end"),
+        tree=[0, 1],
+        costs=["1"],
+        at=LONG,
+        stays=KIND,
+        **NOTHING,
     ),
     # --- the proof
     "_prove: the weights do not add up to enough": plain(tree=[1, 2], costs=[2]),

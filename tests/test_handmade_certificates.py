@@ -305,7 +305,7 @@ def test_without_rates_all_but_success_is_proved() -> None:
     plain = Problem(PLAIN.network, PLAIN.kitchen, (END_ID,), None, frozenset())
     assert accepted(plain, **POURED, cuts=[[END_ID]], proof=ONE).claim == "optimal"
     values: Content = {"claim": "bound", "objective": ["success"], "bound": [{}]}
-    assert refusal(plain, **values) == "success is claimed, but no rates are given"
+    assert refusal(plain, **values) == "a claim needs success rates, but no rates are given"
 
 
 def test_units_that_need_nothing_take_no_items() -> None:

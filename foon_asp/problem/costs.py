@@ -73,8 +73,12 @@ def tree_costs(units: Collection[Measured], items: int, rates_known: bool) -> Co
         row = objective.row
         if row.needs_rates and not rates_known:
             continue
+        try:
+            figures = list(map(row.unit, units))
+        except ZeroDivisionError:  # no number says how often what never succeeds is tried
+            continue
         if row.multiplies:
-            measures[objective] = math.prod(map(row.unit, units), start=Fraction(1))
+            measures[objective] = math.prod(figures, start=Fraction(1))
         else:
-            measures[objective] = sum(map(row.unit, units)) + items * row.item
+            measures[objective] = sum(figures) + items * row.item
     return Costs(measures)

@@ -1,6 +1,6 @@
 """One question: a network, a kitchen, goals, rates and the container rule."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -152,8 +152,16 @@ class Problem:
     def __repr__(self) -> str:
         return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"
 
-    def require_rates_for(self, objectives: Iterable[Objective]) -> None:
-        """Raise :class:`UserError` where one of the objectives needs success rates and none are known."""
+    def require_rates_for(self, objectives: Collection[Objective]) -> None:
+        """Raise :class:`UserError` where one of the objectives needs success rates and none are known.
+
+        So it does where one adds up what units cost by rates, and a rate is 0.
+        """
+        sums = [str(each) for each in objectives if each.row.needs_rates and not each.row.multiplies]
+        if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
+            raise UserError(
+                f"a success rate is 0, by which the objective {sums[0]} has no number: leave it out"
+            )
         if self.rates is None and any(objective.row.needs_rates for objective in objectives):
             raise UserError(
                 "the objective success needs the success rates of the motions: "
