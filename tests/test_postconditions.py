@@ -126,9 +126,10 @@ def test_other_objectives_in_our_own_encodings_are_a_bug(
 ) -> None:
     folder = tmp_path / "encodings"
     shutil.copytree(encodings_folder(), folder)
-    for module in ("program", "own_encodings"):
+    for module in ("assembly", "settings", "own_encodings"):
         monkeypatch.setattr(f"foon_asp.asp.{module}.encodings_folder", lambda: folder)
     monkeypatch.setattr("foon_asp.asp.assembly.is_own", lambda _: True)
+    monkeypatch.setattr("foon_asp.asp.settings.is_own", lambda _: True)
     monkeypatch.setattr("foon_asp.asp.own_encodings.is_own", lambda _: True)
     words = ["--goal", "ice", "--objective", objective]
     assert cli("solve", *words, "--reduce", "none").code == 0
