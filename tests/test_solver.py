@@ -1008,6 +1008,15 @@ def test_success_needs_rates() -> None:
         solve(problem, (UNITS, SUCCESS))
 
 
+def test_what_comes_after_keeps_what_was_settled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One unit succeeds less often than two, which were settled on, whoever wrote the encodings."""
+    problem = ways(["0.5", "0.5"], ["0.2"])
+    for settings, searches in ((SEARCHED, 2), (Settings(encodings=own_encodings(tmp_path)), 3)):
+        Searches(monkeypatch, *[None] * searches, Answer(Run(numbers(problem, 2), (1,), True)))
+        with pytest.raises(BugError, match=r"the tree \[2\] is to be as good as \[0, 1\] by success"):
+            solve(problem, (SUCCESS,), settings)
+
+
 @pytest.mark.parametrize(
     ("objectives", "wrong"),
     [
