@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
-from foon_asp.asp.at_most import at_most
+from foon_asp.asp.at_most import at_most, better_than
 from foon_asp.asp.scales import Scales
 from foon_asp.asp.session import Session
 from foon_asp.asp.solver import program_facts
@@ -310,6 +310,20 @@ def test_within_bounds_and_under_rules_some_tree_comes_first(monkeypatch: pytest
     ruled = Settings(constraints=(Path("at_most_units"),), constants=("max_units=1",))
     assert optimum(problem, (UNITS,), ruled) == (2,)
     assert searches.modes == ["ignore", "opt"] * 2
+
+
+def test_trees_are_within_bounds_that_are_fractions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every unit costs a cent: what is better than two cents has one unit, than one cent there is nothing."""
+    cents = NEW["to scale"]
+    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, cents))
+    problem = ways(["0.9", "0.9"], ["0.8", "0.9"], ["0.2"])
+    objectives = (SUCCESS, cents)
+    assert optimum(problem, objectives, Settings()) == (0, 1)
+    two, one = problem.costs((0, 1)), problem.costs((4,))
+    assert (two.measure(cents), one.measure(cents)) == (Fraction(1, 50), Fraction(1, 100))
+    assert optimum(problem, objectives, Settings(bounded=better_than([two], [cents]))) == (4,)
+    none = solve(problem, objectives, Settings(bounded=better_than([two, one], [cents])))
+    assert none.status is Status.INFEASIBLE
 
 
 @pytest.mark.parametrize(
