@@ -357,6 +357,7 @@ def scheduler(tmp_path: Path) -> Iterator[str]:
             process.wait(30)
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_rows(cli: Cli, questions: Path, tmp_path: Path, scheduler: str) -> None:
     assert scheduler.startswith("tcp://")
     assert cli("batch", questions, "--results", tmp_path / "a.jsonl").code == 0

@@ -18,6 +18,8 @@ from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import bundled_kitchen
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 UNIT = "O\ta\nM\tmix\nO\tb\n//\n"
 QUESTION = '{"goal": "ice"}'
 FOREIGN = {
@@ -121,6 +123,7 @@ def test_rows_of_another_make_no_file_of_ours(
 WRONG: list[Any] = [-1.5, True, [], [[]], {}, {"x": 1}, float("nan"), 7]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("verb", "keys"),
     [

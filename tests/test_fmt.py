@@ -122,6 +122,7 @@ def test_without_changes_it_is_the_same_text(text: str) -> None:
     assert bool(result.changes) == (result.text != text)
 
 
+@pytest.mark.slow
 @settings(steady, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_mutated_corpus_files(universal: Path, data: st.DataObject) -> None:

@@ -18,6 +18,8 @@ from foon_asp.proof import Verdict, simulate
 from foon_asp.text import Data, FoonReader, find_data, find_goal, read_data
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 # A script and not a part of the package: it is found beside the tests, not through them.
 generator: Any = importlib.import_module("benchmarks.generate")
 

@@ -177,6 +177,7 @@ def test_a_file_without_end_is_not_read_to_its_end(cli: Cli) -> None:
         assert cli("verify", "/dev/zero").out == "refused: it has more than 16,000,000 letters\n"
 
 
+@pytest.mark.slow
 def test_changes_at_random_are_refused_and_never_crash() -> None:
     """Values of every kind at every place, sealed anew, as somebody who knows the format would send them."""
     data = read_data(find_data(bundled_kitchen()))

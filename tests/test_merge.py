@@ -206,6 +206,7 @@ def test_what_is_written_is_read_back(files: list[tuple[list[FunctionalUnit], So
     assert parts(read_back(text)) == parts(network)
 
 
+@pytest.mark.slow
 @steady
 @given(st.lists(units(), min_size=1, max_size=3))
 def test_merging_files_is_reading_them_together(

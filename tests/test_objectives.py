@@ -78,7 +78,7 @@ def best_by_hand(problem: Problem, objectives: tuple[Objective, ...]) -> tuple[F
 @pytest.mark.parametrize("reductions", [ALL, *(frozenset({one}) for one in Reduction), NONE])
 @pytest.mark.parametrize("new", NEW)
 @pytest.mark.parametrize("rule", RULES)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_row_is_all_that_a_new_objective_takes(
     new: str, reductions: frozenset[Reduction], rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -115,6 +115,7 @@ def test_trees_in_order_of_a_new_objective(new: str, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("new", NEW)
+@pytest.mark.sampled(3)
 def test_other_engines_are_asked_about_a_new_objective(new: str, monkeypatch: pytest.MonkeyPatch) -> None:
     objective = NEW[new]
     monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))

@@ -24,6 +24,8 @@ from foon_asp.text import (
 )
 from tests.conftest import CORPUS
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 PLAIN = """\
 # Source:\thttps://example.org/a
 //

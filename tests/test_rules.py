@@ -21,6 +21,8 @@ from foon_asp.resources import bundled_kitchen, encodings_folder
 from foon_asp.text import InputError, find_data, find_goal, read_data
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 MACARONI = ["solve", "--goal", "macaroni"]
 ICE = ["solve", "--goal", "ice"]
 
@@ -290,6 +292,7 @@ def test_it_is_one_in_every_question(words: list[str], cli: Cli, tmp_path: Path)
     assert "clingo would leave this out" in ran.err
 
 
+@pytest.mark.slow
 def test_no_limit_of_messages_hides_one(ice: Problem, tmp_path: Path) -> None:
     """Atoms that nothing defines have a message each, and there are more of them than of a usual limit."""
     many = "".join(f":- nothing{number}(1).\n" for number in range(3000))

@@ -23,6 +23,8 @@ from foon_asp.problem import Objective
 from foon_asp.report.comparison_table import comparisons_csv
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 UNSAFE = [
     *map(chr, (*range(9), *range(11, 32), *range(0x7F, 0xA0))),
     *"\u061c\u200b\u200c\u200d\u200e\u200f\u2028\u2029\u202a\u202b\u202c\u202d\u202e\u2060\u2066\u2067\u2068",

@@ -29,6 +29,8 @@ from tests.random_problems import MOTIONS, SERIES, random_objectives, random_pro
 from tests.test_exact_success import two_ways
 from tests.wrong_costs import with_measures
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 RULES = list(ContainerRule)
 PATIENCE = 60.0
 

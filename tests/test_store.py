@@ -27,6 +27,8 @@ from foon_asp.text import Data, DataFiles, InputError, find_data, find_goal, rea
 from tests.conftest import ROOT, Cli, Ran
 from tests.random_problems import random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 KITCHEN = ROOT / "data" / "kitchen"
 
 SOUP = """\

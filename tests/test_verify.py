@@ -144,6 +144,7 @@ def test_the_subjects_are_of_all_kinds() -> None:
     assert sum("branch" in content["proof"] for _, content in subjects()) >= 2
 
 
+@pytest.mark.slow
 def test_no_mutant_passes() -> None:
     tried = 0
     for problem, content in subjects():
@@ -221,6 +222,7 @@ def test_a_mutant_that_is_sealed_anew_passes_only_if_it_is_a_proof() -> None:
     assert passed > 0
 
 
+@pytest.mark.slow
 def test_weights_landmarks_and_digests_cannot_be_changed_even_if_sealed_anew() -> None:
     """Where nothing branches, the weights are all needed: none can be raised, lowered or left out."""
     tried = 0

@@ -11,7 +11,7 @@ import pytest
 
 from tests.conftest import ROOT, Cli
 
-PAGES = ("questions.md", "writing-constraints.md")
+PAGES = (pytest.param("questions.md", marks=pytest.mark.slow), "writing-constraints.md")
 # A block with a file name is a file; one without is a session.
 FENCE = re.compile(r"^```(?:[\w-]* )?(\S+\.\w+)?\n((?:.*\n)*?)```$", re.MULTILINE)
 

@@ -22,6 +22,8 @@ from foon_asp.text import FoonReader, InputError, read_object_list
 from foon_asp.text.answer_file import read_listed_tree
 from tests.conftest import ROOT, Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 UNIT = "O\tnöt → x\nM\tmix\nO\tb\n//\n"
 
 

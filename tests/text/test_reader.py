@@ -15,6 +15,8 @@ from foon_asp.text.reader import ReadUnit
 from foon_asp.text.writer import write_line
 from tests.text.foon_strategies import steady, texts, unit_texts, units
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 CORPUS = Path(__file__).resolve().parents[3] / "shared" / "corpus"
 
 TEA = """\
