@@ -28,6 +28,8 @@ from foon_asp.text import find_data
 from tests.conftest import CORPUS, Cli, Ran
 from tests.random_problems import random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 KITCHEN = bundled_kitchen()
 
 

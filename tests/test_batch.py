@@ -25,6 +25,8 @@ from foon_asp.resources import bundled_kitchen
 from foon_asp.text import InputError, find_data, find_goal, read_data
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 LINES = """
 {"goal": ["ice", "macaroni"], "objective": ["units", "success,units"], "containers": ["strict", "implied"]}
 {"goal": [["ice", "macaroni"]], "objective": "inputs"}

@@ -18,6 +18,8 @@ from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import MOTIONS, random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 Tree = tuple[FunctionalUnit, ...]
 Ways = Callable[[Tree], int]
 RULES = list(ContainerRule)

@@ -21,6 +21,8 @@ from foon_asp.text.plain_file import read_plain_text
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import names, steady, texts
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 TEXT = """\
 # Source:\thttps://example.org/tea.mp4
 # warm the cup first

@@ -26,6 +26,8 @@ from foon_asp.report.picture import MOST_UNITS, png_picture, svg_picture
 from foon_asp.report.whole_file import write_whole
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 SVG = "{http://www.w3.org/2000/svg}"
 CAPTION = ("a tree",)
 

@@ -30,6 +30,8 @@ from foon_asp.questions.alternatives import alternatives
 from tests.conftest import Cli
 from tests.hard_problem import hard_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 ENDLESS = "p(0). p(f(X)) :- p(X).\n"
 HUGE = "q(A,B,C,D) :- unit(A), unit(B), unit(C), unit(D).\n"
 LATE = 2.5  # seconds on a busy machine

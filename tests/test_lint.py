@@ -19,6 +19,8 @@ from foon_asp.text import Diagnostic, FoonReader, Severity
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import steady, texts
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 CHOP = "O\tonion\nS\twhole\nM\tchop\nO\tonion\nS\tchopped\n//\n"
 
 

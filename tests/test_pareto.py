@@ -24,6 +24,8 @@ from tests.conftest import Cli
 from tests.random_problems import MOTIONS, SERIES, random_problem
 from tests.test_alternatives import choosing
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 SVG = "{http://www.w3.org/2000/svg}"
 RULES = list(ContainerRule)
 SETS = [

@@ -26,6 +26,8 @@ from foon_asp.text import write_units
 from tests.conftest import ROOT, Cli, Ran
 from tests.hard_problem import hard_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 
 @pytest.fixture
 def shell(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
