@@ -28,7 +28,7 @@ from foon_asp.text import find_data
 from tests.conftest import CORPUS, Cli, Ran
 from tests.random_problems import random_problem
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 KITCHEN = bundled_kitchen()
 

@@ -23,7 +23,7 @@ from tests.conftest import Cli
 from tests.random_problems import MOTIONS, RATES, SERIES, UTENSILS, random_problem
 from tests.test_alternatives import choosing
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(4)  # by default some cases of each test: there are many
 
 RULES = list(ContainerRule)
 Table = Mapping[str, Fraction] | None

@@ -198,6 +198,7 @@ class OpenMisbehaving:
         return Misbehaving()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
 @pytest.mark.sampled(2)
 def test_one_question_never_ends_the_run(jobs: int) -> None:

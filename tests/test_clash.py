@@ -18,7 +18,7 @@ from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import MOTIONS, random_problem
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 Tree = tuple[FunctionalUnit, ...]
 Ways = Callable[[Tree], int]

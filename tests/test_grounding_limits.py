@@ -30,7 +30,7 @@ from foon_asp.questions.alternatives import alternatives
 from tests.conftest import Cli
 from tests.hard_problem import hard_problem
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 ENDLESS = "p(0). p(f(X)) :- p(X).\n"
 HUGE = "q(A,B,C,D) :- unit(A), unit(B), unit(C), unit(D).\n"

@@ -105,6 +105,7 @@ def test_ctrl_c_gives_the_best_tree_and_exits_with_3(hard_folder: Path) -> None:
     assert 0 < result["lower_bound"]["units"] <= result["costs"]["units"] == len(result["units"])
 
 
+@pytest.mark.slow
 def test_progress_is_shown_on_a_terminal_only(hard_folder: Path) -> None:
     arguments = command(hard_folder, "--time-limit", "2", "--format", "json")
     piped = subprocess.run(arguments, capture_output=True, check=False)

@@ -142,6 +142,7 @@ def test_other_engines_are_asked_about_a_new_objective(new: str, monkeypatch: py
 
 
 @pytest.mark.parametrize("new", NEW)
+@pytest.mark.sampled(3)
 def test_the_front_of_a_new_objective(new: str, monkeypatch: pytest.MonkeyPatch) -> None:
     objective = NEW[new]
     monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
@@ -266,7 +267,7 @@ def criteria(problem: Problem, tree: list[int], objectives: list[Objective]) -> 
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("objective", Objective)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_encodings_and_rooms_measure_the_same(objective: Objective, rule: ContainerRule) -> None:
     """What cuts go by where no solver runs is what ``objectives.lp`` says, and what is counted by hand."""
     measured = 0

@@ -24,7 +24,7 @@ from tests.conftest import Cli
 from tests.random_problems import MOTIONS, SERIES, random_problem
 from tests.test_alternatives import choosing
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 SVG = "{http://www.w3.org/2000/svg}"
 RULES = list(ContainerRule)

@@ -29,7 +29,7 @@ from tests.random_problems import MOTIONS, SERIES, random_objectives, random_pro
 from tests.test_exact_success import two_ways
 from tests.wrong_costs import with_measures
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(4)  # by default some cases of each test: there are many
 
 RULES = list(ContainerRule)
 PATIENCE = 60.0
@@ -247,6 +247,7 @@ def wrong_answers(outcome: Outcome, allowed: oracle.Allowed) -> Iterator[Outcome
             yield with_tree(outcome, tuple(numbers[unit] for unit in tree))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("objective", [Objective.UNITS, Objective.SUCCESS, Objective.KITCHEN])
 @pytest.mark.sampled(2)

@@ -163,6 +163,7 @@ def test_a_rate_too_small_for_the_scale_of_others() -> None:
             assert measured(kept) == measured(afresh)
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("scale", [1, 7])
 @pytest.mark.sampled(2)
@@ -181,6 +182,7 @@ def test_coarse_weights_with_kept_products(part: int, scale: int, monkeypatch: p
             problem = change(problem, rng, [ContainerRule.IMPLIED])
 
 
+@pytest.mark.slow
 def test_after_a_limit_the_session_goes_on() -> None:
     problem, session = hard_problem(12, 8, 3, 3), Session()
     settings = Settings(

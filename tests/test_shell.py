@@ -426,6 +426,7 @@ def terminal(words: list[str | Path], steps: list[tuple[str, str]], state: Path)
     return process.wait(timeout=30), re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", printed)
 
 
+@pytest.mark.slow
 def test_a_session_at_a_terminal(tmp_path: Path) -> None:
     """An error keeps the session, tab completes, ctrl-D leaves, and the lines are kept for the next time."""
     prompt = "foon-asp>"

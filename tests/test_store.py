@@ -524,6 +524,7 @@ def killed_import(source: Path, store: Path) -> None:
     assert process.returncode == -signal.SIGKILL
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no SIGKILL here")
 def test_a_killed_import_leaves_the_old_store_or_none(soup: tuple[DataFiles, Path], tmp_path: Path) -> None:
     files, store = soup
