@@ -294,8 +294,12 @@ def test_encodings_and_rooms_measure_the_same(objective: Objective, rule: Contai
                 assert exact.is_logarithm(reduced, -by_hand)
                 assert found == [sum(scale.weights[problem.rate(unit)] for unit in units)]
             else:
-                assert costs.measure(objective) == reduced == by_hand
-                assert found == [by_hand]
+                assert costs.measure(objective) == exact.total(objective, reduced) == by_hand
+                scales = Scales(problem, range(len(problem.network)), [objective])
+                [weight] = found
+                assert weight % 2**32 == scales.weight(objective, units) % 2**32
+                assert scales.allows(objective, scales.weight(objective, units), by_hand)
+                assert not objective.row.whole or found == [by_hand]
             measured += 1
     assert measured > 100
 
