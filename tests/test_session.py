@@ -182,6 +182,18 @@ def test_coarse_weights_with_kept_products(part: int, scale: int, monkeypatch: p
             problem = change(problem, rng, [ContainerRule.IMPLIED])
 
 
+def test_a_kept_program_counts_the_items_of_the_kitchen_asked_about() -> None:
+    """Two kitchens, and again the first: what counts is the kitchen of the question, not of one before."""
+    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=9",), session=Session())
+    for seed in range(20):
+        problem = random_problem(seed, ContainerRule.STRICT, units=7)
+        less = replace(problem, kitchen=frozenset(sorted(problem.kitchen)[1:]))
+        for asked in (problem, less, problem, less):
+            for objectives in ([Objective.KITCHEN], [Objective.KITCHEN, Objective.SUCCESS, Objective.INPUTS]):
+                kept = solve(asked, objectives, settings)
+                assert measured(kept) == measured(solve(asked, objectives, settings._replace(session=None)))
+
+
 @pytest.mark.slow
 def test_after_a_limit_the_session_goes_on() -> None:
     problem, session = hard_problem(12, 8, 3, 3), Session()

@@ -1,5 +1,6 @@
 """What units cost, as integers for clingo: as it is, to scale, or rounded down and settled exactly later."""
 
+import copy
 import math
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
@@ -66,6 +67,12 @@ class Scales:
                 "only one such objective exactly: leave one of them out"
             )
         self.rounded: Objective | None = rounded[0] if rounded else None
+
+    def of(self, problem: Problem) -> "Scales":
+        """Give the same scales for a problem of the same units that differs in its kitchen or goals."""
+        scales = copy.copy(self)
+        scales._problem = problem
+        return scales
 
     @property
     def likeness(self) -> list[int | Fraction | None]:

@@ -324,7 +324,7 @@ class _Solver:
         began = time.perf_counter()
         if self._open is None:
             self._open = session.program(self.program, self.problem, self.units, self.levels, self.deadline)
-            self.scales = self._open.scales
+            self.scales = self._open.scales.of(self.problem)
         self._spent("ground", began)
         try:
             ended = self._open.run(
