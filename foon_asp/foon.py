@@ -160,7 +160,7 @@ class Foon:
     def goals(self) -> tuple[ObjectNode, ...]:
         """The object nodes of the goals file; raises :class:`UserError` for an entry that matches none."""
         try:
-            return tuple(map(self._node, dict.fromkeys(self._dataset.each_goal(()))))
+            return tuple(map(self._dataset.names.node, dict.fromkeys(self._dataset.each_goal(()))))
         except GoalError as error:
             raise UserError(in_python(error)) from None
 
@@ -178,17 +178,12 @@ class Foon:
     def nodes(self, label: str) -> tuple[ObjectNode, ...]:
         """Give the object nodes that have a label; of a store, the first dozen or more."""
         names = self._dataset.names
-        found = names.by_label.get(label, ()) if isinstance(names, Network) else names.labelled(label)[1]
-        return tuple(map(self._node, found))
+        return tuple(map(names.node, names.labelled(label)[1]))
 
     @property
     def dataset(self) -> Dataset:
         """What the rooms below ask the data with."""
         return self._dataset
-
-    def _node(self, o: int) -> ObjectNode:
-        names = self._dataset.names
-        return names.objects[o] if isinstance(names, Network) else names.node(o)
 
     def __repr__(self) -> str:
         return f"<Foon of {self._name}>"

@@ -17,7 +17,6 @@ from foon_asp.text import (
     Wording,
     find_goal,
     kitchen_item_warning,
-    node_names,
     read_object_list,
     summarize,
 )
@@ -38,7 +37,7 @@ class ShellKitchen:
     @property
     def names(self) -> NodeNames:
         """What the names of object nodes are looked up in."""
-        return node_names(self.dataset.names)
+        return self.dataset.names
 
     @property
     def names_at_hand(self) -> NodeNames:

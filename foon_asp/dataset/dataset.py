@@ -7,7 +7,7 @@ from pathlib import Path
 
 from foon_asp.dataset.names import changed_rates, item_ids, listed, node_ids
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, pattern_at_level
+from foon_asp.network import FunctionalUnit, pattern_at_level
 from foon_asp.problem import Names, Number, Origin, Problem, container_rule
 from foon_asp.text import (
     Data,
@@ -65,7 +65,7 @@ class Dataset:
         return self.data.goals
 
     @property
-    def names(self) -> Network | NodeNames:
+    def names(self) -> NodeNames:
         """What goals are looked up in."""
         return self.data.network
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network, ObjectNode, node_at_level
+from foon_asp.network import ObjectNode, node_at_level
 from foon_asp.problem import Names, Number, success_rate
 from foon_asp.text import GoalError, ListedObject, NodeNames, Wording, find_goal
 
@@ -15,7 +15,7 @@ class Named(Protocol):
     """Data that names are looked up in."""
 
     @property
-    def names(self) -> Network | NodeNames:
+    def names(self) -> NodeNames:
         """What object nodes are looked up in."""
 
     @property
@@ -52,11 +52,7 @@ def item_ids(dataset: Named, name: str | ObjectNode) -> list[int]:
     """Give the kitchen items that a name stands for: a label for all that have it."""
     names = dataset.names
     if isinstance(name, str) and ";" not in name:
-        count, found = (
-            (len(ids := names.by_label.get(name, ())), ids)
-            if isinstance(names, Network)
-            else names.labelled(name)
-        )
+        count, found = names.labelled(name)
         if count > len(found):
             raise UserError(f"{count} object nodes have the label {name!r}: name those you mean in full")
         if count:

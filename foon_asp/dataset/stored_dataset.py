@@ -169,7 +169,7 @@ class StoredDataset(Dataset):
         return self._listed
 
     @property
-    def names(self) -> Network | NodeNames:
+    def names(self) -> NodeNames:
         """What goals are looked up in: the indexes of the store."""
         return self._store
 

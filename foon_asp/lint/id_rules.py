@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 from foon_asp.lint.names import times
 from foon_asp.lint.sheet import Sheet
-from foon_asp.network import Contents, Relation
 from foon_asp.text import Diagnostic
-from foon_asp.text.line import Line, MotionLine, ObjectLine
+from foon_asp.text.line import name_of
 
 _KINDS = {"O": "object", "S": "state", "M": "motion"}
 _MANY = 4  # names of one id: then it means nothing, and they are told together
@@ -25,8 +24,8 @@ def id_findings(sheet: Sheet) -> Iterator[Diagnostic]:
     uses: dict[str, dict[tuple[str, str], _Use]] = {letter: {} for letter in _KINDS}
     for line, index, count in sheet.distinct_lines:
         if line.id:
-            letter, name = _letter_and_name(line)
-            use = uses[letter].setdefault((line.id, name), _Use(index))
+            letter = sheet.lines[index][0]
+            use = uses[letter].setdefault((line.id, name_of(line)), _Use(index))
             use.index = min(use.index, index)
             use.count += count
     for letter, found in uses.items():
@@ -72,12 +71,3 @@ def _ids_of_name(sheet: Sheet, letter: str, name: str, uses: list[tuple[str, _Us
             f"({times(most_use.count)}, first on {sheet.where(most_use.index, sheet)}); it should have one"
         )
         yield sheet.finding("name-of-two-ids", message, use.index)
-
-
-def _letter_and_name(line: Line) -> tuple[str, str]:
-    if isinstance(line, ObjectLine):
-        return "O", line.label
-    if isinstance(line, MotionLine):
-        return "M", line.motion
-    attribute = line.attribute
-    return "S", attribute.word if isinstance(attribute, Relation | Contents) else attribute

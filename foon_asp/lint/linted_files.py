@@ -7,17 +7,17 @@ from typing import NamedTuple
 
 from foon_asp.lint.catalog import CATALOG
 from foon_asp.lint.sheet import Entry, Sheet
-from foon_asp.network import Network, NetworkBuilder, NodePattern, ObjectNode, Source
+from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source
 from foon_asp.text import Diagnostic, FoonReader, LineError
 from foon_asp.text.dialect import is_object_list
 from foon_asp.text.json_list import JsonList
-from foon_asp.text.json_object import read_object
+from foon_asp.text.json_object import read_objects
 from foon_asp.text.json_units import is_json
 from foon_asp.text.line import Line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.plain_file import split_lines
 from foon_asp.text.writer import write_line
 
-_LINE_END = re.compile(r"\r\n?")
 _LINE_BREAK = re.compile(r"[\r\n]")
 
 
@@ -70,12 +70,11 @@ class LintedFiles:
         if is_json(text):
             self._read_json(text, file)
             return
-        lines = _LINE_END.sub("\n", text).split("\n") if "\r" in text else text.split("\n")
-        sheet = Sheet(str(file), lines, self.reader)
+        sheet = Sheet(str(file), split_lines(text), self.reader)
         self.sheets.append(sheet)
         if is_object_list(text):
             sheet.entries = [
-                Entry(_pattern(block, None), block.source.line - 1)
+                Entry(block.pattern(), block.source.line - 1)
                 for block in self.reader.object_blocks(text, str(file))
             ]
         elif "# From:" in text:  # units of a merged file name the places that they come from
@@ -88,8 +87,7 @@ class LintedFiles:
     def _read_json(self, text: str, file: Path) -> None:
         lines: list[str] = []
         places: list[Source] = []
-        written = _LINE_END.sub("\n", text).split("\n")
-        sheet = Sheet(str(file), lines, self.reader, places, source_lines=written)
+        sheet = Sheet(str(file), lines, self.reader, places, source_lines=split_lines(text))
         self.sheets.append(sheet)
         if is_object_list(text):
             sheet.entries = self._read_json_list(text, file, lines, places)
@@ -103,22 +101,16 @@ class LintedFiles:
     def _read_json_list(self, text: str, file: Path, lines: list[str], places: list[Source]) -> list[Entry]:
         elements = JsonList(text, file)
         entries = []
-        for value, source in elements:
-            try:
-                line, states, container, left_out = read_object(value)
-            except ValueError as problem:
-                elements.error(source, str(problem))
-                continue
+        for block, container, left_out in read_objects(elements):
             self._remarks += [
-                Diagnostic(CATALOG["json-value"].severity, "json-value", message, source)
+                Diagnostic(CATALOG["json-value"].severity, "json-value", message, block.source)
                 for message in left_out
             ]
-            block = ObjectBlock(line, states, source)
-            entries.append(Entry(_pattern(block, container), len(lines)))
+            entries.append(Entry(block.pattern(container), len(lines)))
             written = [*map(_written, _lines([block]))]
             written += [f"S\tin\t[{container}]"] if container is not None else []
             lines += written
-            places += [source] * len(written)
+            places += [block.source] * len(written)
         self._remarks += elements.errors
         return entries
 
@@ -145,8 +137,3 @@ def _lines(blocks: Iterable[ObjectBlock]) -> list[Line]:
     for block in blocks:
         lines += (block.object, *block.states)
     return lines
-
-
-def _pattern(block: ObjectBlock, container: str | None) -> NodePattern:
-    node = block.node
-    return NodePattern(node.label, node.states, node.ingredients, container, node.relations)

@@ -11,6 +11,7 @@ from foon_asp.network.functional_unit import FunctionalUnit
 from foon_asp.network.node_pattern import NodePattern
 from foon_asp.network.object_node import ObjectNode
 from foon_asp.network.source import Source
+from foon_asp.network.spelling import near_labels
 
 # motion, ids of the inputs, ids of the outputs: the identity of a unit within one network
 UnitKey = tuple[str, frozenset[int], frozenset[int]]
@@ -146,6 +147,23 @@ class Network:
         for object_id, node in enumerate(self.objects):
             ids[node.label].append(object_id)
         return {label: tuple(found) for label, found in ids.items()}
+
+    def node(self, object_id: int) -> ObjectNode:
+        """Give the node with that id."""
+        return self.objects[object_id]
+
+    def labelled(self, label: str) -> tuple[int, tuple[int, ...]]:
+        """Give how many nodes have a label, and which."""
+        found = self.by_label.get(label, ())
+        return len(found), found
+
+    def beginning(self, start: str, most: int) -> list[str]:
+        """Give labels that begin so, in alphabetical order, and not more of them than ``most``."""
+        return sorted(label for label in self.by_label if label.startswith(start))[:most]
+
+    def near(self, label: str, most: int) -> list[str]:
+        """Give labels that are like one, the likest first, and not more of them than ``most``."""
+        return near_labels(label, self.by_label, most)
 
     def find(self, pattern: NodePattern) -> tuple[int, ...]:
         """Give the ids of the nodes that a kitchen or goals entry stands for."""

@@ -1,6 +1,9 @@
 """Two spellings of one name."""
 
+import difflib
 import re
+from collections import defaultdict
+from collections.abc import Iterable
 
 _DOUBLED = re.compile(r"([^\W\d_])\1+")
 _BETWEEN = re.compile(r"[\s\-_'’.]+")
@@ -26,3 +29,12 @@ def one_letter_apart(word: str, other: str) -> bool:
         a, b = a[:-1], b[:-1]
     swapped = len(a) == 2 and a == b[::-1]
     return (swapped or max(len(a), len(b)) == 1) and (a + b).isalpha()
+
+
+def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
+    """Give those of the known labels that are like one, whatever their capitals, the likest first."""
+    lower: defaultdict[str, list[str]] = defaultdict(list)
+    for name in known:
+        lower[name.lower()].append(name)
+    close = difflib.get_close_matches(label.lower(), lower, n=most, cutoff=0.6)
+    return [name for small in close for name in lower[small]]

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 from zlib import crc32
 
+from foon_asp.network.spelling import near_labels
 from foon_asp.store.block import SIZES, Table
-from foon_asp.text import near_labels
 
 LISTED = 12  # node ids kept with a label: as many as a message has room for
 

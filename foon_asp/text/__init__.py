@@ -13,7 +13,7 @@ from foon_asp.text.data_folder import (
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
 from foon_asp.text.dialect import Dialect
 from foon_asp.text.folder_files import FolderFile, foon_files
-from foon_asp.text.formatter import Change, Formatted, format_text
+from foon_asp.text.formatter import Change, format_text
 from foon_asp.text.goal_name import (
     GoalError,
     NodeNames,
@@ -21,12 +21,10 @@ from foon_asp.text.goal_name import (
     Wording,
     find_goal,
     listed_nodes,
-    near_labels,
-    node_names,
     nodes_beginning,
     notation,
 )
-from foon_asp.text.json_fault import JsonFault, json_fault
+from foon_asp.text.json_fault import json_fault
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.merged_network import merged_text
@@ -35,7 +33,7 @@ from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store, read_p
 from foon_asp.text.price_list import Price, read_prices
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
-from foon_asp.text.writer import write_node, write_unit, write_units
+from foon_asp.text.writer import write_units
 
 __all__ = [
     "STORE_MAGIC",
@@ -49,10 +47,8 @@ __all__ = [
     "Dialect",
     "FolderFile",
     "FoonReader",
-    "Formatted",
     "GoalError",
     "InputError",
-    "JsonFault",
     "LineError",
     "ListedObject",
     "NodeNames",
@@ -71,9 +67,7 @@ __all__ = [
     "kitchen_nodes",
     "listed_nodes",
     "merged_text",
-    "near_labels",
     "network_files",
-    "node_names",
     "nodes_beginning",
     "notation",
     "parse_node",
@@ -84,7 +78,5 @@ __all__ = [
     "read_prices",
     "read_rates",
     "summarize",
-    "write_node",
-    "write_unit",
     "write_units",
 ]

@@ -6,13 +6,13 @@ from typing import NamedTuple
 from foon_asp.network import Relation, Source
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line, lost_in_states
-from foon_asp.text.conversion_times import MotionFields, in_one_field, in_two_fields
+from foon_asp.text.conversion_times import in_one_field, in_two_fields
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.dialect import Dialect, dialect_of, is_object_list
 from foon_asp.text.formatter import format_text
 from foon_asp.text.json_layout import lay_out
 from foon_asp.text.json_list import JsonList
-from foon_asp.text.json_object import read_object
+from foon_asp.text.json_object import read_objects
 from foon_asp.text.json_units import is_json, read_json_units
 from foon_asp.text.json_writer import (
     json_motion,
@@ -25,6 +25,8 @@ from foon_asp.text.json_writer import (
 )
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.motion_times import MotionFields
+from foon_asp.text.plain_file import split_lines
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
@@ -89,7 +91,7 @@ class Converter:
                 for state in block.states:
                     self._numbering.learn(state)
             return
-        lines = dict.fromkeys(_split(text))
+        lines = dict.fromkeys(split_lines(text))
         self._reader.parse_new(lines)
         for written in lines:
             if written[:1] in {"O", "S", "M"}:
@@ -128,7 +130,7 @@ class Converter:
             return write_line(held)
 
         formatted = format_text(text, file, self.lenient, rewrite, self._reader)
-        for number, line in enumerate(_split(text), 1):
+        for number, line in enumerate(split_lines(text), 1):
             lost.add(seen.get(line, ()), Source(file, number))
         return formatted.content.decode()
 
@@ -181,7 +183,7 @@ class Converter:
         if self.target is Dialect.JSON_LIST:
             kept: tuple[str, ...] = ()
         elif self.target is Dialect.JSON:
-            lines = [line for line in _split(text) if line[:1] == "#"]
+            lines = [line for line in split_lines(text) if line[:1] == "#"]
             named = tuple(video for video in map(read_video, lines) if video)
             kept = common if named == common and not any(map(read_copy, lines)) else ()
         else:
@@ -294,28 +296,18 @@ class _Tally:
 
     def comments(self, text: str, kept: tuple[str, ...]) -> None:
         """Count the comments of a text that goes to JSON, but for videos that are kept."""
-        for number, line in enumerate(_split(text), 1):
+        for number, line in enumerate(split_lines(text), 1):
             if line[:1] == "#" and read_video(line) not in kept:
                 kind = Loss.VIDEOS if is_video(line) else Loss.COPIES if read_copy(line) else Loss.COMMENTS
                 self.add([kind], Source(self.file, number))
-
-
-def _split(text: str) -> list[str]:
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def _listed_json(text: str, file: str, errors: list[Diagnostic]) -> list[ObjectBlock]:
     """Read a list of objects; a container is a relation without a word, and comes last."""
     elements = JsonList(text, Path(file))
     blocks = []
-    for value, source in elements:
-        try:
-            line, states, container, _ = read_object(value)
-        except ValueError as problem:
-            elements.error(source, str(problem))
-            continue
-        if container is not None:
-            states = (*states, StateLine(Relation("", container)))
-        blocks.append(ObjectBlock(line, states, source))
+    for block, container, _ in read_objects(elements):
+        anywhere = (StateLine(Relation("", container)),) if container is not None else ()
+        blocks.append(block._replace(states=block.states + anywhere))
     errors += elements.errors
     return blocks

@@ -1,7 +1,6 @@
 """Numbers for what a file has no ids for."""
 
-from foon_asp.network import Contents, Relation
-from foon_asp.text.line import Line, MotionLine, ObjectLine
+from foon_asp.text.line import Line, name_of
 
 _DIGITS = 15  # an id with more is none that one could count on from
 
@@ -23,7 +22,7 @@ class Numbering:
         if not line.id:
             return
         kind = type(line)
-        self._ids.setdefault((kind, _name(line)), line.id)
+        self._ids.setdefault((kind, name_of(line)), line.id)
         self._taken.add((kind, line.id))
         if len(line.id) <= _DIGITS:
             self._highest[kind] = max(self._highest.get(kind, 0), int(line.id))
@@ -32,7 +31,7 @@ class Numbering:
         """Give the line with an id: its own, if it has one."""
         if line.id:
             return line
-        kind, name = type(line), _name(line)
+        kind, name = type(line), name_of(line)
         if (kind, name) not in self._ids:
             number = self._highest.get(kind, 0) + 1
             while (kind, str(number)) in self._taken:
@@ -40,12 +39,3 @@ class Numbering:
             self._highest[kind] = number
             self._ids[kind, name] = str(number)
         return line._replace(id=self._ids[kind, name])
-
-
-def _name(line: Line) -> str:
-    if isinstance(line, ObjectLine):
-        return line.label
-    if isinstance(line, MotionLine):
-        return line.motion
-    said = line.attribute
-    return said.word if isinstance(said, Relation | Contents) else said

@@ -1,35 +1,11 @@
-"""What stands behind a motion, and the times in the form of one dialect or the other."""
+"""The times of a motion in the form of one dialect or the other."""
 
 import re
-from typing import NamedTuple
 
-from foon_asp.text.line import is_rate
 from foon_asp.text.motion_times import is_time
 
 _SPAN = re.compile(r"<(\d[\d:]*) ?[,-] ?(\d[\d:]*)>")
 _ASSUMED = re.compile(r"<(assumed)(?:, ?(assumed))?>", re.IGNORECASE)
-
-
-class MotionFields(NamedTuple):
-    """The fields of a motion line: its times, and with a success rate who moves and the rate."""
-
-    times: tuple[str, ...]
-    entity: str | None = None
-    rate: str | None = None
-
-    @classmethod
-    def of(cls, fields: tuple[str, ...]) -> "MotionFields":
-        """Tell the fields apart: a rate is the last, behind an entity that is no time."""
-        if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):
-            return cls(fields[:-2], fields[-2], fields[-1])
-        return cls(fields)
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """The fields in the order in which they stand on the line."""
-        return (
-            self.times if self.entity is None or self.rate is None else (*self.times, self.entity, self.rate)
-        )
 
 
 def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:

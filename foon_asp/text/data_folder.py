@@ -11,6 +11,7 @@ from foon_asp.network import Network, network_at_level, pattern_at_level
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
+from foon_asp.text.plain_file import read_content
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 
@@ -111,10 +112,7 @@ def _may_be_network(file: Path) -> bool:
     if file.name[0] == "." or not file.is_file():
         return False
     if file.suffix == ".json":
-        try:
-            return _OBJECT_KEY.search(file.read_bytes()) is not None
-        except OSError as error:
-            raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+        return _OBJECT_KEY.search(read_content(file)) is not None
     return file.suffix == ".txt"
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_units import is_json
 from foon_asp.text.line import MotionLine, ObjectLine
+from foon_asp.text.plain_file import split_lines
 from foon_asp.text.reader import FoonReader
 
 
@@ -44,7 +45,7 @@ def dialect_of(text: str, reader: FoonReader) -> Dialect:
         by_its_name = any("object_label" in value for value in _first_objects(text))
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
     found = Dialect.PLAIN
-    lines = dict.fromkeys(text.replace("\r", "\n").split("\n"))
+    lines = dict.fromkeys(split_lines(text))
     reader.parse_new(lines)
     for line in lines:
         if line[:1] not in {"O", "S", "M"}:
@@ -64,7 +65,7 @@ def is_object_list(text: str) -> bool:
     if is_json(text):
         first = next(iter(JsonList(text, Path())), None) if text.lstrip(" \t\r\n")[0] == "[" else None
         return first is not None and isinstance(first.value, dict) and "input_nodes" not in first.value
-    starts = {line[:1] for line in text.replace("\r", "\n").split("\n")}
+    starts = {line[:1] for line in split_lines(text)}
     return "O" in starts and "M" not in starts
 
 

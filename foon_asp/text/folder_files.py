@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.text.plain_file import read_content
 
 _LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
@@ -45,9 +46,6 @@ def _is_foon(file: Path, within: Path) -> bool:
     if any(part[:1] == "." for part in within.parts) or not file.is_file():
         return False
     sign = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
-    try:
-        content = file.read_bytes() if sign else b""
-    except OSError as error:
-        raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+    content = read_content(file) if sign else b""
     # one in UTF-16 is not read, but whoever reads the folder has to be told
     return sign is not None and (sign.search(content) is not None or content[:2] in _UTF_16)

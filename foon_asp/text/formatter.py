@@ -10,6 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_layout import check_json, lay_out
 from foon_asp.text.json_units import is_json
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine
+from foon_asp.text.plain_file import split_lines
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 
@@ -67,8 +68,8 @@ def format_text(
     if is_json(text):
         return _format_json(text, file, lenient)
     ends = _LINE_END.findall(text)
-    end = max(("\n", "\r\n", "\r"), key=ends.count)
-    lines = _LINE_END.sub("\n", text).split("\n") if "\r" in text else text.split("\n")
+    end = _usual(ends)
+    lines = split_lines(text)
     reader = reader or FoonReader()
     reader.parse_new(lines)
     errors: list[Diagnostic] = []
@@ -135,10 +136,9 @@ def _format_json(text: str, file: str, lenient: bool) -> Formatted:
         if not lenient:
             raise
         return Formatted(text, ())
-    ends = _LINE_END.findall(text)
-    end = max(("\n", "\r\n", "\r"), key=ends.count)
+    end = _usual(_LINE_END.findall(text))
     laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
-    before, after = _LINE_END.sub("\n", text).split("\n"), laid_out.split("\n")
+    before, after = split_lines(text), laid_out.split("\n")
     new_text = laid_out.replace("\n", end)
     if new_text == text:
         return Formatted(text, ())
@@ -152,6 +152,11 @@ def _format_json(text: str, file: str, lenient: bool) -> Formatted:
         if min(same, len(before) - 1) <= index < last
     ]
     return Formatted(new_text, tuple(changes))
+
+
+def _usual(ends: list[str]) -> str:
+    """Give the line end that most lines have."""
+    return max(("\n", "\r\n", "\r"), key=ends.count)
 
 
 def _same(pairs: Iterable[tuple[str, str]]) -> int:

@@ -1,13 +1,13 @@
 """Finding the object node that a name means: of a goal, or of a thing in the kitchen."""
 
-import difflib
 import shlex
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network, NodePattern, ObjectNode, node_at_level
+from foon_asp.network import NodePattern, ObjectNode, node_at_level
+from foon_asp.network.spelling import near_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.object_list import ListedObject
 
@@ -44,7 +44,7 @@ class GoalError(UserError):
 
 
 class NodeNames(Protocol):
-    """What names are looked up in, where it is no :class:`Network`. Ids are those of the object nodes."""
+    """What names are looked up in: a :class:`~foon_asp.network.Network`, a store, the things at hand."""
 
     @property
     def level(self) -> int:
@@ -71,7 +71,7 @@ class NodeNames(Protocol):
 
 def find_goal(
     name: str,
-    network: Network | NodeNames,
+    names: NodeNames,
     listed: Sequence[ListedObject] = (),
     wording: Wording = _GOAL,
     by_beginning: bool = False,
@@ -84,7 +84,6 @@ def find_goal(
     one node alone begins so and no name is just this. Raises :class:`GoalError` with candidates ready
     to paste when it is unknown or means several nodes; ``wording`` is for other things than goals.
     """
-    names = node_names(network)
     begun = [] if not by_beginning else nodes_beginning(name, names, 2)
     try:
         named = parse_node(name)
@@ -120,12 +119,11 @@ def find_goal(
     raise _unknown(f"no object node{wording.where} has the label {node.label!r}", node.label, names, wording)
 
 
-def nodes_beginning(start: str, network: Network | NodeNames, most: int) -> list[int]:
+def nodes_beginning(start: str, names: NodeNames, most: int) -> list[int]:
     """Give the ids of nodes whose one-line notation begins so, in the order of their labels; so many at most.
 
     Up to the first semicolon that is a label, and of it as many letters as there are.
     """
-    names = node_names(network)
     label, semicolon, _ = start.partition(";")
     labels = [label] if semicolon else names.beginning(label, most)
     found: list[int] = []
@@ -147,9 +145,8 @@ def _is_closed(name: str, node: ObjectNode) -> bool:
     return name.endswith(";") and parse_node(name[:-1]) == node
 
 
-def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[int]:
+def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
     """Give the nodes that an entry of a goals file stands for; raises :class:`UserError` for none."""
-    names = node_names(network)
     found = names.find(entry.pattern)
     if not found:
         count, labelled = names.labelled(entry.pattern.label)
@@ -159,29 +156,6 @@ def listed_nodes(entry: ListedObject, network: Network | NodeNames) -> Sequence[
             raise _unclear(f"{said}; with that label there are", names, count, labelled, _GOAL)
         raise _unknown(f"{said} of the network", entry.pattern.label, names, _GOAL)
     return found
-
-
-class _NetworkNames:
-    """The names of a network that is in memory."""
-
-    def __init__(self, network: Network) -> None:
-        self.level = network.level
-        self.object_id = network.object_id
-        self.find = network.find
-        self._network = network
-
-    def node(self, object_id: int) -> ObjectNode:
-        return self._network.objects[object_id]
-
-    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        found = self._network.by_label.get(label, ())
-        return len(found), found
-
-    def beginning(self, start: str, most: int) -> Sequence[str]:
-        return sorted(label for label in self._network.by_label if label.startswith(start))[:most]
-
-    def near(self, label: str, most: int) -> Sequence[str]:
-        return near_labels(label, self._network.by_label, most)
 
 
 class SomeNames:
@@ -218,20 +192,6 @@ class SomeNames:
     def near(self, label: str, most: int) -> Sequence[str]:
         """Give labels that are like one, the likest first, at most so many."""
         return near_labels(label, self._labels, most)
-
-
-def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
-    """Give those of the known labels that are like one, whatever their capitals, the likest first."""
-    lower: defaultdict[str, list[str]] = defaultdict(list)
-    for name in known:
-        lower[name.lower()].append(name)
-    close = difflib.get_close_matches(label.lower(), lower, n=most, cutoff=0.6)
-    return [name for small in close for name in lower[small]]
-
-
-def node_names(network: Network | NodeNames) -> NodeNames:
-    """Give what names are looked up in."""
-    return _NetworkNames(network) if isinstance(network, Network) else network
 
 
 def _only(name: str, names: NodeNames, count: int, found: Sequence[int], wording: Wording) -> int:

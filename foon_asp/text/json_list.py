@@ -41,15 +41,10 @@ class JsonList:
             for offset, value in self._elements():
                 yield JsonElement(value, self.place(offset))
         except json.JSONDecodeError as problem:
-            fault = json_fault(problem)
-            self.error(self.place(fault.offset), fault.message)
-        except _UnexpectedError as problem:
-            found = self._text[problem.position :].split("\n", 1)[0].rstrip("\r")
-            found = found if len(found) <= 24 else found[:24] + "..."
-            shown = repr(found) if found else "the end of the line"
-            self.error(self.place(problem.position), f"found {shown}, expected {problem.expected}")
-        except _RepeatedKeyError as problem:
-            self.error(self.place(problem.start), f"found the key {problem.key!r} twice in one object")
+            found = json_fault(problem)
+            self.error(self.place(found.offset), found.message)
+        except _FaultError as fault:
+            self.error(self.place(fault.position), str(fault))
         except RecursionError:
             self.error(self.place(0), "found lists within lists without end, expected a list of objects")
 
@@ -82,9 +77,9 @@ class JsonList:
             start = position
             key, position = self._value(position)
             if not isinstance(key, str):
-                raise _UnexpectedError("a key in quotes", start)
+                raise self._unexpected("a key in quotes", start)
             if key in seen:
-                raise _RepeatedKeyError(key, start)
+                raise _repeated(key, start)
             seen.add(key)
             position = self._expect(":", self._skip(position))
             if key == self._key:
@@ -95,9 +90,9 @@ class JsonList:
             if self._text[position : position + 1] != "}":
                 position = self._expect(",", position, "a comma or }")
                 if self._text[position : position + 1] == "}":
-                    raise _UnexpectedError("a key in quotes", position)
+                    raise self._unexpected("a key in quotes", position)
         if self._key not in seen:
-            raise _UnexpectedError(f"a list, or an object with the key {self._key!r}", 0)
+            raise self._unexpected(f"a list, or an object with the key {self._key!r}", 0)
         self._nothing_after(position + 1)
 
     def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
@@ -116,19 +111,25 @@ class JsonList:
     def _value(self, position: int) -> tuple[object, int]:
         try:
             return _DECODER.raw_decode(self._text, position)
-        except _RepeatedKeyError as problem:
-            problem.start = position
+        except _FaultError as fault:
+            fault.position = position
             raise
 
     def _expect(self, character: str, position: int, what: str = "") -> int:
         if self._text[position : position + 1] != character:
-            raise _UnexpectedError(what or character, position)
+            raise self._unexpected(what or character, position)
         return self._skip(position + 1)
 
     def _nothing_after(self, end: int) -> None:
         rest = self._skip(end)
         if rest != len(self._text):
-            raise _UnexpectedError("the end of the file after the list", rest)
+            raise self._unexpected("the end of the file after the list", rest)
+
+    def _unexpected(self, expected: str, position: int) -> "_FaultError":
+        found = self._text[position:].split("\n", 1)[0].rstrip("\r")
+        found = found if len(found) <= 24 else found[:24] + "..."
+        shown = repr(found) if found else "the end of the line"
+        return _FaultError(f"found {shown}, expected {expected}", position)
 
     def _skip(self, position: int) -> int:
         match = _SPACE.match(self._text, position)
@@ -142,25 +143,21 @@ class JsonNumber:
     text: str
 
 
-class _UnexpectedError(Exception):
-    def __init__(self, expected: str, position: int) -> None:
-        super().__init__(expected)
-        self.expected = expected
+class _FaultError(Exception):
+    def __init__(self, message: str, position: int) -> None:
+        super().__init__(message)
         self.position = position
 
 
-class _RepeatedKeyError(Exception):
-    def __init__(self, key: str, start: int = 0) -> None:
-        super().__init__(key)
-        self.key = key
-        self.start = start
+def _repeated(key: str, position: int) -> _FaultError:
+    return _FaultError(f"found the key {key!r} twice in one object", position)
 
 
 def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
     value = dict(pairs)
     if len(value) < len(pairs):
         keys = [key for key, _ in pairs]
-        raise _RepeatedKeyError(next(key for key in value if keys.count(key) > 1))
+        raise _repeated(next(key for key in value if keys.count(key) > 1), 0)
     return value
 
 

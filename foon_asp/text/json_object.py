@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 from foon_asp.escapes import note_line_end
 from foon_asp.network import Contents, Relation
-from foon_asp.text.json_list import JsonNumber
+from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number, read_state
+from foon_asp.text.listed_unit import ObjectBlock
 
 # The names that say the same, and which of them are read at all.
 _LABEL, _STATES = ("label", "object_label"), ("states", "object_states")
@@ -38,8 +39,7 @@ def read_object(value: object) -> JsonObject:
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {_shown(value)}, expected an object {{"label": ..., "states": [...]}}')
-    if unknown := sorted(value.keys() - KEYS):
-        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(KEYS))}")
+    check_keys(value, KEYS)
     key, found = first_of(value, _LABEL)
     label = _name(found, key).strip(" ")
     if not label:
@@ -55,6 +55,23 @@ def read_object(value: object) -> JsonObject:
     remarks = (remark.message for state in states for remark in state.remarks)
     plain = tuple(state._replace(remarks=()) for state in states)
     return JsonObject(line, plain, container, (*remarks, *_left_out(value)))
+
+
+def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, str | None, tuple[str, ...]]]:
+    """Read the nodes of a list with their containers and remarks; what is none is noted as its error."""
+    for value, source in elements:
+        try:
+            line, states, container, remarks = read_object(value)
+        except ValueError as problem:
+            elements.error(source, str(problem))
+        else:
+            yield ObjectBlock(line, states, source), container, remarks
+
+
+def check_keys(value: dict[str, object], known: set[str]) -> None:
+    """Raise :class:`ValueError` for a key that nothing reads."""
+    if unknown := sorted(value.keys() - known):
+        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(known))}")
 
 
 def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
@@ -95,10 +112,7 @@ def _fields(value: dict[str, object]) -> tuple[str, ...]:
 
 def _state(value: object) -> StateLine:
     if isinstance(value, dict):
-        if unknown := sorted(value.keys() - _STATE_KEYS):
-            raise ValueError(
-                f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(_STATE_KEYS))}"
-            )
+        check_keys(value, _STATE_KEYS)
         key, found = first_of(value, _STATE_LABEL)
         state = _state(_name(found, key))
         related = optional_name(first_of(value, _RELATED)[1], _RELATED[0])

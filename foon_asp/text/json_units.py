@@ -11,10 +11,10 @@ from pathlib import Path
 from foon_asp.network import Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
-from foon_asp.text.json_object import number, optional_name, read_object
-from foon_asp.text.line import MotionLine, StateLine, is_rate
+from foon_asp.text.json_object import check_keys, number, optional_name, read_object
+from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
-from foon_asp.text.motion_times import is_time
+from foon_asp.text.motion_times import is_rate, is_time
 
 _KEYS = {"input_nodes", "motion_node", "output_nodes"}
 _LABELS = {"label", "object_label"}
@@ -79,8 +79,7 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
     value, source = element
     if not isinstance(value, dict) or not value.keys() >= _KEYS:
         raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_KEYS))}")
-    if unknown := sorted(value.keys() - _KEYS):
-        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(_KEYS))}")
+    check_keys(value, _KEYS)
     remarks: list[str] = []
     inputs, outputs = (_side(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
     motion = _motion(value["motion_node"], remarks)
@@ -109,8 +108,7 @@ def _names(state: StateLine, container: str) -> bool:
 def _motion(value: object, remarks: list[str]) -> MotionLine:
     if not isinstance(value, dict):
         value = {"motion_label": value}
-    if unknown := sorted(value.keys() - _MOTION_KEYS):
-        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(_MOTION_KEYS))}")
+    check_keys(value, _MOTION_KEYS)
     label = optional_name(value.get("motion_label"), "motion_label")
     if label is None:
         raise ValueError("found a motion without a label, expected a name")

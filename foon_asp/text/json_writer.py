@@ -8,10 +8,11 @@ import re
 from collections.abc import Sequence
 
 from foon_asp.network import Contents, Relation
-from foon_asp.text.conversion_times import MotionFields, in_two_fields
+from foon_asp.text.conversion_times import in_two_fields
 from foon_asp.text.json_layout import STEP
 from foon_asp.text.json_list import JsonNumber
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
+from foon_asp.text.motion_times import MotionFields
 
 # What a JSON number may look like; other digits, such as 007, are written as text.
 _NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")

@@ -10,7 +10,7 @@ from lark import Lark, Token, Transformer
 from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken
 
 from foon_asp.network import Contents, ObjectNode, Relation
-from foon_asp.text.motion_times import is_time, mended_time
+from foon_asp.text.motion_times import MotionFields, is_time, mended_time
 
 
 class Remark(NamedTuple):
@@ -78,6 +78,15 @@ class MotionLine(NamedTuple):
 
 
 Line = ObjectLine | StateLine | MotionLine
+
+
+def name_of(line: Line) -> str:
+    """Give what an id stands for: a label, a motion, a state, or the word of a relation or of contents."""
+    if isinstance(line, ObjectLine):
+        return line.label
+    if isinstance(line, MotionLine):
+        return line.motion
+    return line.attribute if isinstance(line.attribute, str) else line.attribute.word
 
 
 class LineError(Exception):
@@ -205,9 +214,7 @@ class _LineBuilder(Transformer[Token, object]):
                     _remark(tokens[1], "outer-space", f"{written!r} read as '{motion}*'", len(motion))
                 )
         fields = _fields(tokens[2:], remarks)
-        times = fields
-        if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):  # an entity and its rate
-            times = fields[:-2]
+        times = MotionFields.of(fields).times
         mended = tuple(map(mended_time, times))
         column = (tokens[2].column or 1) + 1 if times else 1
         for raw, time, token in zip(times, mended, tokens[2:], strict=False):
@@ -270,11 +277,6 @@ def _unquoted(name: object) -> str:
 def is_number(field: str) -> bool:
     """Whether a field is a number such as an id: digits, of the Latin script."""
     return field.isascii() and field.isdigit()
-
-
-def is_rate(field: str) -> bool:
-    """Whether a field of a motion line is a success rate, a decimal from 0 to 1: ``0.85``."""
-    return re.fullmatch(r"0(\.[0-9]*)?|\.[0-9]+|1(\.0*)?", field) is not None
 
 
 def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:

@@ -6,7 +6,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import Contents, Network, ObjectNode, Relation, Source
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
 from foon_asp.text.listed_unit import node_of
-from foon_asp.text.provenance import read_copy, write_copies
+from foon_asp.text.provenance import read_copy, write_copy
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_node
 
@@ -57,7 +57,7 @@ def _check_names(nodes: tuple[ObjectNode, ...], blocks: list[str], motions: dict
 
 def _copy(source: Source) -> str:
     """Write a place, and read it back: the name of a file may hold what ends it in a line of text."""
-    written = write_copies([source])
+    written = write_copy(source)
     if "\n" in written[:-1] or "\r" in written or read_copy(written[:-1]) != source or not _is_utf8(written):
         raise UserError(
             f"{source.file!r} cannot be named in a line of text: rename it, without tabs, line ends and"

@@ -1,6 +1,7 @@
-"""The times of a motion line: when in the source video a motion begins and ends."""
+"""What stands behind a motion: when in the source video it begins and ends, and who moves."""
 
 import re
+from typing import NamedTuple
 
 _CLOCK = r"\d+:\d\d(?::\d\d)?"
 _SPAN = rf"{_CLOCK}(?: ?- ?{_CLOCK})?"
@@ -26,3 +27,30 @@ def mended_time(field: str) -> str:
         bare = "Assumed"
     mended = f"<{bare}>" if field.startswith("<") else bare
     return mended if _TIME.fullmatch(mended) else field
+
+
+def is_rate(field: str) -> bool:
+    """Whether a field of a motion line is a success rate, a decimal from 0 to 1: ``0.85``."""
+    return re.fullmatch(r"0(\.[0-9]*)?|\.[0-9]+|1(\.0*)?", field) is not None
+
+
+class MotionFields(NamedTuple):
+    """The fields of a motion line: its times, and with a success rate who moves and the rate."""
+
+    times: tuple[str, ...]
+    entity: str | None = None
+    rate: str | None = None
+
+    @classmethod
+    def of(cls, fields: tuple[str, ...]) -> "MotionFields":
+        """Tell the fields apart: a rate is the last, behind an entity that is no time."""
+        if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):
+            return cls(fields[:-2], fields[-2], fields[-1])
+        return cls(fields)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The fields in the order in which they stand on the line."""
+        return (
+            self.times if self.entity is None or self.rate is None else (*self.times, self.entity, self.rate)
+        )

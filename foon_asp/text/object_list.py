@@ -3,12 +3,11 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.network import Contents, NodePattern, Relation, Source
+from foon_asp.network import NodePattern, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_list import JsonList
-from foon_asp.text.json_object import read_object
+from foon_asp.text.json_object import read_objects
 from foon_asp.text.json_units import is_json
-from foon_asp.text.line import StateLine
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
 
@@ -32,14 +31,10 @@ def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> li
         return _read_blocks(text, file, warnings)
     elements = JsonList(text, file)
     entries: list[ListedObject] = []
-    for value, source in elements:
-        try:
-            line, states, container, remarks = read_object(value)
-            if warnings is not None:
-                warnings += [Diagnostic(Severity.WARNING, "json-value", text, source) for text in remarks]
-            entries.append(ListedObject(_pattern(line.label, states, container), source))
-        except ValueError as problem:
-            elements.error(source, str(problem))
+    for block, container, remarks in read_objects(elements):
+        if warnings is not None:
+            warnings += [Diagnostic(Severity.WARNING, "json-value", text, block.source) for text in remarks]
+        entries.append(ListedObject(block.pattern(container), block.source))
     if elements.errors:
         raise InputError(elements.errors)
     return entries
@@ -51,15 +46,4 @@ def _read_blocks(text: str, file: Path, warnings: list[Diagnostic] | None) -> li
     reader.raise_errors()
     if warnings is not None:
         warnings += [d for d in reader.diagnostics if d.severity is Severity.WARNING]
-    return [ListedObject(_pattern(b.object.label, b.states, None), b.source) for b in blocks]
-
-
-def _pattern(label: str, states: tuple[StateLine, ...], container: str | None) -> NodePattern:
-    attributes = [state.attribute for state in states]
-    return NodePattern(
-        label,
-        frozenset(a for a in attributes if isinstance(a, str)),
-        tuple(sorted(i for a in attributes if isinstance(a, Contents) for i in a.ingredients)),
-        container,
-        frozenset(a for a in attributes if isinstance(a, Relation)),
-    )
+    return [ListedObject(block.pattern(), block.source) for block in blocks]

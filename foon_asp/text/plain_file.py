@@ -24,16 +24,26 @@ def is_store(file: Path) -> bool:
         return False
 
 
+def read_content(file: Path) -> bytes:
+    """Read a whole file; raises :class:`UserError` when it cannot be opened."""
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+
+
+def split_lines(text: str) -> list[str]:
+    """Give the lines of a text without their ends, whatever these are."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
 def read_plain_text(file: Path) -> str:
     """Read a whole file as UTF-8, line ends untouched.
 
     Raises :class:`UserError` when it cannot be opened and :class:`InputError` with line and column of
     the first byte that is not UTF-8.
     """
-    try:
-        data = file.read_bytes()
-    except OSError as error:
-        raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+    data = read_content(file)
     if data.startswith(STORE_MAGIC):
         raise UserError(f"{file}: is a store, expected text; a store is named by --network alone")
     data = data.removeprefix(BOM_UTF8)

@@ -4,8 +4,6 @@
 above a unit of a merged file names one copy that the unit was merged from, and the videos of that copy.
 """
 
-from collections.abc import Iterable
-
 from foon_asp.network import Source
 
 _VIDEO = "# Source:"
@@ -36,10 +34,9 @@ def read_copy(comment: str) -> Source | None:
     return Source(file, int(line), 1, tuple(_fields("\t".join(videos))))
 
 
-def write_copies(sources: Iterable[Source]) -> str:
-    """Give the comment lines, each with its line end, that :func:`read_copy` reads."""
-    lines = ("\t".join((f"{_COPY}\t{s.file}:{s.line}", *s.videos)) for s in sources)
-    return "".join(f"{line}\n" for line in lines)
+def write_copy(source: Source) -> str:
+    """Give the comment line, with its line end, that :func:`read_copy` reads."""
+    return "\t".join((f"{_COPY}\t{source.file}:{source.line}", *source.videos)) + "\n"
 
 
 def _fields(text: str) -> list[str]:

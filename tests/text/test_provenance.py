@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from foon_asp.network import Source
 from foon_asp.text import FoonReader
-from foon_asp.text.provenance import is_video, read_copy, read_video, write_copies
+from foon_asp.text.provenance import is_video, read_copy, read_video, write_copy
 from tests.text.foon_strategies import steady
 
 UNIT = "O\ta\nM\tmix\nO\tb\n//\n"
@@ -73,7 +73,7 @@ _sources = st.builds(
 @steady
 @given(st.lists(_sources, max_size=4))
 def test_copies_are_read_as_they_were_written(sources: list[Source]) -> None:
-    text = write_copies(sources)
+    text = "".join(map(write_copy, sources))
     assert text.count("\n") == len(sources)
     assert [read_copy(line) for line in text.splitlines()] == sources
 
@@ -82,7 +82,7 @@ def test_copies_are_read_as_they_were_written(sources: list[Source]) -> None:
 @given(st.lists(_sources, min_size=1, max_size=4))
 def test_a_unit_has_the_copies_above_it(sources: list[Source]) -> None:
     reader = FoonReader()
-    text = "//\n" + write_copies(sources) + UNIT + UNIT
+    text = "//\n" + "".join(map(write_copy, sources)) + UNIT + UNIT
     assert [unit.sources for unit in reader.units(text, "f.txt")] == [
         tuple(sources),
         (Source("f.txt", len(sources) + 6),),
