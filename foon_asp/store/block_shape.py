@@ -1,5 +1,6 @@
 """What blocks of a store look like inside: one with a fitting checksum may still have been made up."""
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -69,12 +70,8 @@ def _block(table: Table, shape: Shape) -> Shape:
     return lambda value: every(value) and len(value) <= SIZES[table]
 
 
-def _places(value: Any) -> bool:
-    return _numbers(value) and len(value) % 3 == 0 and value != []
-
-
-def _pairs(value: Any) -> bool:
-    return _numbers(value) and len(value) % 2 == 0
+def _in_groups(size: int, least: int = 0) -> Shape:
+    return lambda value: _numbers(value) and len(value) % size == 0 and len(value) >= least
 
 
 def _by_trigram(value: Any) -> bool:
@@ -89,24 +86,25 @@ def _rate(value: Any) -> bool:
     """A fraction from 0 to 1, 0 excluded, in digits."""
     if type(value) is not str:
         return False
-    above, slash, below = value.partition("/")
-    digits = above.isascii() and above.isdigit() and (not slash or (below.isascii() and below.isdigit()))
-    return digits and len(value) < _DIGITS and 0 < int(above) <= int(below or "1")
+    found = _FRACTION.fullmatch(value)
+    return found is not None and len(value) < _DIGITS and 0 < int(found[1]) <= int(found[2] or "1")
 
 
 def _counts(value: Any) -> bool:
     return (
         type(value) is dict
-        and value.keys() == {*_COUNTS, *_SPREAD, "kitchen"}
-        and all(_number(value[name]) for name in _COUNTS)
-        and all(_positive(value[name]) for name in _SPREAD)
-        and (value["kitchen"] is None or _number(value["kitchen"]))
+        and value.keys() == _COUNTS.keys()
+        and all(shape(value[name]) for name, shape in _COUNTS.items())
     )
 
 
 _DIGITS = 4000  # of a rate; Python turns no more than 4,300 into a number
-_COUNTS = ("units", "objects", "labels", "motions", "origins", "left_out")
-_SPREAD = ("hash_blocks", "trigram_blocks")
+_FRACTION = re.compile("([0-9]+)(?:/([0-9]+))?")
+_COUNTS: dict[str, Shape] = {
+    **dict.fromkeys(("units", "objects", "labels", "motions", "origins", "left_out"), _number),
+    **dict.fromkeys(("hash_blocks", "trigram_blocks"), _positive),
+    "kitchen": _maybe(_number),
+}
 
 _texts = _list(_text)
 _relations = _list(_row(_text, _text))
@@ -115,10 +113,10 @@ _entry = _row(_text, _texts, _texts, _maybe(_text), _relations, _text, _number, 
 
 _ABOUT: tuple[Shape, ...] = (_counts, _maybe(_rates), _maybe(_texts), _list(_entry), _numbers)
 _SHAPES: dict[Table, Shape] = {
-    Table.UNIT: _block(Table.UNIT, _row(_number, _numbers, _numbers, _places)),
+    Table.UNIT: _block(Table.UNIT, _row(_number, _numbers, _numbers, _in_groups(3, least=1))),
     Table.NODE: _block(Table.NODE, _node),
     Table.PRODUCERS: _block(Table.PRODUCERS, _numbers),
-    Table.NODE_HASH: _pairs,
+    Table.NODE_HASH: _in_groups(2),
     Table.LABEL: _block(Table.LABEL, _row(_text, _number, _numbers)),
     Table.TRIGRAM: _by_trigram,
     Table.MOTION: _block(Table.MOTION, _row(_text, _text, _number, _number)),

@@ -2,6 +2,7 @@
 
 import sqlite3
 from array import array
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import islice
@@ -9,7 +10,7 @@ from typing import Any
 
 from foon_asp.network import ObjectNode, Source
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, table_statement, unseal
-from foon_asp.store.label_index import label_blocks, trigram_blocks
+from foon_asp.store.label_index import label_values, trigram_blocks
 from foon_asp.store.plain_values import entry_values, node_hashes, node_values, pattern_hash
 from foon_asp.text import ListedObject
 
@@ -47,14 +48,14 @@ class StoreBuilder:
         self._origins: dict[tuple[str, tuple[str, ...]], int] = {}
         self._last_origin: tuple[str, tuple[str, ...]] | None = None
         self._last_number = -1
-        self._labels: dict[str, list[int]] = {}  # nodes
+        self._labels: defaultdict[str, list[int]] = defaultdict(list)  # nodes
         self._hashes = array("I")
         self._hashed = array("I")  # the node with the hash at the same place
         self._makers = array("I")  # with the node at the same place in _made
         self._made = array("I")
         self._node_block: list[object] = []
         self._unit_block: list[list[Any]] = []
-        self._later: dict[int, list[int]] = {}  # sources of later copies, by unit
+        self._later: defaultdict[int, list[int]] = defaultdict(list)  # sources of later copies, by unit
         self._kept_back = 0
 
     @property
@@ -99,7 +100,7 @@ class StoreBuilder:
         elif unit >= at_hand:
             block[unit - at_hand][3] += places
         else:
-            self._later.setdefault(unit, []).extend(places)
+            self._later[unit] += places
             self._kept_back += 1
             if self._kept_back == _LATER_COPIES:
                 self._write_later()
@@ -117,21 +118,19 @@ class StoreBuilder:
         self._write_later()
         self._units.clear()  # memory for what follows
         producers = _by_key(self._made, self._makers, len(self._nodes))
-        self._write_all(Table.PRODUCERS, _in_blocks(producers, SIZES[Table.PRODUCERS]))
+        self._write_values(Table.PRODUCERS, producers)
         hashes, hashed = self._hashes, self._hashed
         buckets = len(hashes) // SIZES[Table.NODE_HASH] + 1
         by_hash = _by_key(array("I", [h % buckets for h in hashes]), range(len(hashes)), buckets)
         pairs = ([number for at in places for number in (hashes[at], hashed[at])] for places in by_hash)
         self._write_all(Table.NODE_HASH, pairs)
-        self._write_all(Table.LABEL, label_blocks(self._labels))
+        self._write_values(Table.LABEL, label_values(self._labels))
         trigrams = trigram_blocks(self._labels)
         self._write_all(Table.TRIGRAM, trigrams)
-        motions = [[motion, *source[:3]] for motion, source in self.motion_sources()]
-        self._write_all(Table.MOTION, _in_blocks(motions, SIZES[Table.MOTION]))
-        origins = [[file, videos] for file, videos in self._origins]
-        self._write_all(Table.ORIGIN, _in_blocks(origins, SIZES[Table.ORIGIN]))
-        entries = map(entry_values, self._kitchen or ())
-        self._write_all(Table.KITCHEN, _in_blocks(entries, SIZES[Table.KITCHEN]))
+        motions = ([motion, *source[:3]] for motion, source in self.motion_sources())
+        self._write_values(Table.MOTION, motions)
+        self._write_values(Table.ORIGIN, self._origins)
+        self._write_values(Table.KITCHEN, map(entry_values, self._kitchen or ()))
         counts: dict[str, object] = {
             "units": self.units,
             "objects": len(self._nodes),
@@ -165,10 +164,7 @@ class StoreBuilder:
             for entry in self._entries.get(node_hash, ()):
                 if self._kitchen is not None and self._kitchen[entry].pattern.matches(node):
                     in_kitchen = self.matched[entry] = True
-        labelled = self._labels.get(node.label)
-        if labelled is None:
-            labelled = self._labels[node.label] = []
-        labelled.append(number)
+        self._labels[node.label].append(number)
         self._node_block.append(node_values(node, in_kitchen))
         if len(self._node_block) == SIZES[Table.NODE]:
             self._flush(Table.NODE, number, self._node_block)
@@ -200,7 +196,8 @@ class StoreBuilder:
         for unit in sorted(self._later):
             by_block.setdefault(unit // SIZES[Table.UNIT], []).append(unit)
         for number, units in by_block.items():
-            block: Any = unseal(Table.UNIT, number, self._read(Table.UNIT, number))
+            row = self._database.execute(f"SELECT content FROM {Table.UNIT} WHERE number = ?", (number,))
+            block: Any = unseal(Table.UNIT, number, row.fetchone()[0])
             for unit in units:
                 block[unit % SIZES[Table.UNIT]][3] += self._later[unit]
             content = seal(Table.UNIT, number, block)
@@ -208,9 +205,9 @@ class StoreBuilder:
         self._later.clear()
         self._kept_back = 0
 
-    def _read(self, table: Table, number: int) -> object:
-        found = self._database.execute(f"SELECT content FROM {table} WHERE number = ?", (number,)).fetchone()
-        return found[0]
+    def _write_values(self, table: Table, values: Iterable[object]) -> None:
+        waiting = iter(values)
+        self._write_all(table, iter(lambda: list(islice(waiting, SIZES[table])), []))
 
     def _write_all(self, table: Table, blocks: Iterable[object]) -> None:
         for number, block in enumerate(blocks):
@@ -219,12 +216,6 @@ class StoreBuilder:
     def _write(self, table: Table, number: int, block: object) -> None:
         content = seal(table, number, block)
         self._database.execute(f"INSERT INTO {table} VALUES (?, ?)", (number, content))
-
-
-def _in_blocks(values: Iterable[object], size: int) -> Iterator[list[object]]:
-    waiting = iter(values)
-    while block := list(islice(waiting, size)):
-        yield block
 
 
 def _by_key(keys: Sequence[int], values: Sequence[int], size: int) -> Iterator[list[int]]:

@@ -1,27 +1,19 @@
 """The labels of a store: by name, by how they begin, and by what they are like, without reading them all."""
 
-from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from bisect import bisect_left
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from zlib import crc32
 
 from foon_asp.network.spelling import near_labels
 from foon_asp.store.block import SIZES, Table
+from foon_asp.store.store_file import StoreFile
 
 LISTED = 12  # node ids kept with a label: as many as a message has room for
 
 _TELLING = 5_000  # three letters that more labels have tell nothing: only how many do is kept
 _COMPARED = 300  # labels looked at closely when a similar one is wanted
-
-Read = Callable[[Table, int], Any]
-
-
-class Labelled(NamedTuple):
-    """A label: how many ``nodes`` have it, and the ids of the first :data:`LISTED`."""
-
-    label: str
-    nodes: int
-    first: tuple[int, ...]
 
 
 def trigrams(label: str) -> set[str]:
@@ -35,13 +27,9 @@ def trigram_block(trigram: str, blocks: int) -> int:
     return crc32(trigram.encode("utf-8", "surrogatepass")) % blocks
 
 
-def label_blocks(nodes: Mapping[str, Sequence[int]]) -> Iterator[list[list[object]]]:
-    """Give the contents of the table ``label`` for labels and the ids of their nodes."""
-    ordered = sorted(nodes)
-    size = SIZES[Table.LABEL]
-    for start in range(0, len(ordered), size):
-        labels = ordered[start : start + size]
-        yield [[label, len(nodes[label]), nodes[label][:LISTED]] for label in labels]
+def label_values(nodes: Mapping[str, Sequence[int]]) -> Iterator[list[object]]:
+    """Give what the table ``label`` has for labels and the ids of their nodes."""
+    return ([label, len(nodes[label]), nodes[label][:LISTED]] for label in sorted(nodes))
 
 
 def trigram_blocks(labels: Mapping[str, object]) -> list[dict[str, list[int] | int]]:
@@ -59,28 +47,26 @@ def trigram_blocks(labels: Mapping[str, object]) -> list[dict[str, list[int] | i
 
 
 class LabelIndex:
-    """Looks labels up in blocks.
+    """Looks labels up in the blocks of a file."""
 
-    ``read`` gives the content of a block by table and number, ``at`` what a table has under a number.
-    """
-
-    def __init__(self, read: Read, at: Read, labels: int, trigram_blocks: int) -> None:
-        self._read = read
-        self._value = at
+    def __init__(self, file: StoreFile, labels: int, trigram_blocks: int) -> None:
+        self._file = file
         self._labels = labels
         self._trigram_blocks = trigram_blocks
 
-    def labelled(self, label: str) -> Labelled:
-        """Give the nodes of a label, which may be none."""
+    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
+        """Give how many nodes have a label, and the ids of the first :data:`LISTED`."""
         place = self._place(label)
-        found = self._at(place) if place < self._labels else None
-        return found if found is not None and found.label == label else Labelled(label, 0, ())
+        if place == self._labels or self._at(place) != label:
+            return 0, ()
+        _, count, first = self._file.value(Table.LABEL, place)
+        return count, first
 
     def beginning(self, start: str, most: int) -> list[str]:
         """Give labels that begin so, in alphabetical order, and not more of them than ``most``."""
         found: list[str] = []
         for place in range(self._place(start), self._labels):
-            label = self._at(place).label
+            label = self._at(place)
             if len(found) == most or not label.startswith(start):
                 break
             found.append(label)
@@ -90,28 +76,18 @@ class LabelIndex:
         """Give labels that are like one, the likest first, of those that share rare letters with it."""
         lists: list[list[int]] = []
         for trigram in trigrams(label):
-            block = self._read(Table.TRIGRAM, trigram_block(trigram, self._trigram_blocks))
+            block = self._file.block(Table.TRIGRAM, trigram_block(trigram, self._trigram_blocks))
             places = block.get(trigram)
             if isinstance(places, list):
                 lists.append(places)
-        shared: defaultdict[int, int] = defaultdict(int)
-        for places in sorted(lists, key=len):
-            for place in places:
-                shared[place] += 1
+        shared = Counter(chain.from_iterable(lists))
         likest = sorted(shared, key=lambda place: (-shared[place], place))[:_COMPARED]
-        return near_labels(label, (self._at(place).label for place in sorted(likest)), most)
+        return near_labels(label, map(self._at, sorted(likest)), most)
 
     def _place(self, label: str) -> int:
         """Give the place of the first label that is not before this one."""
-        low, high = 0, self._labels
-        while low < high:
-            middle = (low + high) // 2
-            if self._at(middle).label < label:
-                low = middle + 1
-            else:
-                high = middle
-        return low
+        return bisect_left(range(self._labels), label, key=self._at)
 
-    def _at(self, place: int) -> Labelled:
-        label, count, first = self._value(Table.LABEL, place)
-        return Labelled(label, count, tuple(first))
+    def _at(self, place: int) -> str:
+        label: str = self._file.value(Table.LABEL, place)[0]
+        return label

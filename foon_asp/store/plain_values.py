@@ -10,11 +10,10 @@ from foon_asp.text import ListedObject
 def node_values(node: ObjectNode, in_kitchen: bool) -> list[object]:
     """Give a node as lists, first whether it is in the store's kitchen; what is empty at the end is cut."""
     label, states, relations, contents = node
-    if contents:
-        return [int(in_kitchen), label, sorted(states), sorted(relations), contents]
-    if relations:
-        return [int(in_kitchen), label, sorted(states), sorted(relations)]
-    return [int(in_kitchen), label, sorted(states)] if states else [int(in_kitchen), label]
+    values = [int(in_kitchen), label, sorted(states), sorted(relations), contents]
+    while len(values) > 2 and not values[-1]:
+        values.pop()
+    return values
 
 
 def node_of(values: list[Any]) -> ObjectNode:
@@ -61,9 +60,7 @@ def node_hashes(node: ObjectNode) -> list[int]:
     """Give the hashes that a node is found by: one for each object that it is related to, at least one."""
     label, states, relations, _ = node
     attributes = _attributes_hash(label, states, node.ingredients)
-    if len(relations) > 1:
-        return [_hash(related, attributes) for related in {related for _, related in relations}]
-    return [_hash(related, attributes) for _, related in relations] or [attributes]
+    return [_hash(related, attributes) for related in {related for _, related in relations}] or [attributes]
 
 
 def pattern_hash(pattern: NodePattern) -> int:

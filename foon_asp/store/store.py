@@ -35,11 +35,10 @@ class Store:
         self.units: int = about["units"]
         self.objects: int = about["objects"]
         self.left_out: int = about["left_out"]
-        self._kitchen: int | None = about["kitchen"]
+        self.has_kitchen = about["kitchen"] is not None  # if only an empty one
         self._counts = about
-        self._labels = LabelIndex(
-            self._file.block, self._file.value, about["labels"], about["trigram_blocks"]
-        )
+        labels = LabelIndex(self._file, about["labels"], about["trigram_blocks"])
+        self.labelled, self.beginning, self.near = labels.labelled, labels.beginning, labels.near
         self._nodes: dict[int, ObjectNode] = {}
 
     def close(self) -> None:
@@ -51,11 +50,6 @@ class Store:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    @property
-    def has_kitchen(self) -> bool:
-        """Whether a kitchen file was imported, if only an empty one."""
-        return self._kitchen is not None
 
     @cached_property
     def rates(self) -> dict[str, Fraction] | None:
@@ -101,18 +95,6 @@ class Store:
     def find(self, pattern: NodePattern) -> list[int]:
         """Give the ids of the nodes that a kitchen or goals entry stands for."""
         return self._hashed(pattern_hash(pattern), pattern.matches)
-
-    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Give how many nodes have a label, and the first of them."""
-        return self._labels.labelled(label)[1:]
-
-    def beginning(self, start: str, most: int) -> list[str]:
-        """Give labels that begin so, in alphabetical order, at most so many."""
-        return self._labels.beginning(start, most)
-
-    def near(self, label: str, most: int) -> list[str]:
-        """Give labels that are like one, the likest first, at most so many."""
-        return self._labels.near(label, most)
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
         """Give the id of a unit, or ``None`` when the network does not have it."""

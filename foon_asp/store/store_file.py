@@ -11,6 +11,7 @@ from foon_asp.errors import UserError
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, table_statement, unseal
 from foon_asp.store.block_shape import check_block, note_line_ends
 from foon_asp.text import STORE_MAGIC
+from foon_asp.text.plain_file import read_beginning
 
 _HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where
 
@@ -19,13 +20,7 @@ Value = TypeVar("Value")
 
 def is_database_of_ours(file: Path) -> bool:
     """Whether a file begins like a store of any version, whole or not."""
-    if not file.is_file():
-        return False
-    try:
-        with file.open("rb") as opened:
-            header = opened.read(_HEADER)
-    except OSError:
-        return False
+    header = read_beginning(file, _HEADER)
     return header[: len(STORE_MAGIC)] == STORE_MAGIC and int.from_bytes(header[68:72]) == APPLICATION_ID
 
 

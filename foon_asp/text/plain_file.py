@@ -15,13 +15,18 @@ def is_store(file: Path) -> bool:
     """Whether a path is no text but a store: it is named like one, or begins like any database."""
     if file.suffix == STORE_SUFFIX and not file.is_dir():
         return True
-    if not file.is_file():  # a pipe can be read once only
-        return False
+    return read_beginning(file, len(STORE_MAGIC)) == STORE_MAGIC
+
+
+def read_beginning(file: Path, length: int) -> bytes:
+    """Give the first bytes of a file; nothing where it cannot be read, or can be once only, as a pipe."""
+    if not file.is_file():
+        return b""
     try:
         with file.open("rb") as opened:
-            return opened.read(len(STORE_MAGIC)) == STORE_MAGIC
+            return opened.read(length)
     except OSError:
-        return False
+        return b""
 
 
 def read_content(file: Path) -> bytes:
