@@ -10,7 +10,8 @@ from foon_asp.batch.asked import Asked, Asker
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import ContainerRule, parse_objectives
-from foon_asp.text import Diagnostic, InputError, Severity, json_fault, read_plain_text
+from foon_asp.text import Diagnostic, InputError, Severity, read_plain_text
+from foon_asp.text.json_fault import json_fault
 from foon_asp.text.json_value import read_json
 
 _LONGEST = 1e9  # seconds, some thirty years

@@ -15,7 +15,8 @@ from foon_asp.report.lint_annotations import lint_annotations
 from foon_asp.report.lint_json import lint_json
 from foon_asp.report.lint_text import lint_text
 from foon_asp.report.whole_file import write_whole
-from foon_asp.text import Diagnostic, Severity, foon_files
+from foon_asp.text import Diagnostic, Severity
+from foon_asp.text.folder_files import foon_files
 
 _CODE = click.Choice(list(CATALOG))
 

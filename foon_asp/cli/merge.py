@@ -13,7 +13,8 @@ from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder
 from foon_asp.report.whole_file import utf_8, write_whole
-from foon_asp.text import FoonReader, merged_text, network_files, summarize
+from foon_asp.text import FoonReader, network_files, summarize
+from foon_asp.text.merged_network import merged_text
 
 
 @click.command("merge")

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, TextIO, cast
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable, escaped_lines, forget_line_ends
-from foon_asp.report.whole_file import utf_8
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -103,6 +102,8 @@ def write_data(content: str | bytes) -> None:
 
     Raises :class:`UserError` for text that UTF-8 cannot hold.
     """
+    from foon_asp.report.whole_file import utf_8
+
     cast(SafeStream, sys.stdout).write_data(utf_8(content) if isinstance(content, str) else content)
 
 

@@ -1,6 +1,5 @@
 """Names that callers of Python write, looked up in data."""
 
-import difflib
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Protocol
@@ -76,6 +75,8 @@ def changed_rates(
     for motion, given in changed.items():
         rate = success_rate(given, f"the success rate of {motion!r}")
         if known is not None and motion not in known:
+            import difflib  # noqa: PLC0415 (for a fault alone)
+
             near = difflib.get_close_matches(motion, known, n=3, cutoff=0.6)
             similar = f"; similar are {', '.join(map(repr, near))}" if near else ""
             raise UserError(f"no motion {motion!r} has a success rate{similar}")

@@ -1,6 +1,5 @@
 """Two spellings of one name."""
 
-import difflib
 import re
 from collections import defaultdict
 from collections.abc import Iterable
@@ -33,6 +32,8 @@ def one_letter_apart(word: str, other: str) -> bool:
 
 def near_labels(label: str, known: Iterable[str], most: int) -> list[str]:
     """Give those of the known labels that are like one, whatever their capitals, the likest first."""
+    import difflib  # noqa: PLC0415 (for faults alone)
+
     lower: defaultdict[str, list[str]] = defaultdict(list)
     for name in known:
         lower[name.lower()].append(name)

@@ -2,13 +2,15 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
-from foon_asp.foon import Foon
 from foon_asp.problem import Problem
 from foon_asp.questions.result import Result
+
+if TYPE_CHECKING:
+    from foon_asp.foon import Foon
 
 
 class Command(Protocol):
@@ -44,8 +46,10 @@ def one_problem(command: Command, goals_named: Sequence[str], containers: str) -
         return (dataset.problem(dataset.goals(goals_named), containers),)
 
 
-def the_data(command: Command) -> tuple[Foon]:
+def the_data(command: Command) -> "tuple[Foon]":
     """Ask about the data as a whole."""
+    from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
+
     return (Foon(command.dataset, "the data"),)
 
 

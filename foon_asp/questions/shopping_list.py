@@ -31,7 +31,8 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RU
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import counted, fraction_json, goal_lines, headline, outcome_dict, steps
 from foon_asp.report.drawing import Drawing
-from foon_asp.text import LineError, Price, parse_node, read_prices
+from foon_asp.text import LineError, parse_node
+from foon_asp.text.price_list import Price, read_prices
 
 
 class Offer(StrEnum):

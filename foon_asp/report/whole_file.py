@@ -3,7 +3,6 @@
 import os
 import stat
 from pathlib import Path
-from secrets import token_hex
 
 from foon_asp.errors import UserError
 
@@ -42,7 +41,7 @@ def utf_8(text: str) -> bytes:
 
 def _replace(target: Path, content: bytes) -> None:
     # A name that nobody has: no other file of the user's is written over on the way.
-    partial = target.with_name(f".foon-asp.{token_hex(8)}")
+    partial = target.with_name(f".foon-asp.{os.urandom(8).hex()}")
     mode = None
     if target.exists():
         with target.open("ab"):  # may it be written? Renaming asks the folder alone

@@ -1,6 +1,5 @@
 """FOON text and the tables beside it, in and out."""
 
-from foon_asp.text.conversion import Converted, Converter
 from foon_asp.text.data_folder import (
     Data,
     DataFiles,
@@ -11,9 +10,6 @@ from foon_asp.text.data_folder import (
     read_data,
 )
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
-from foon_asp.text.dialect import Dialect
-from foon_asp.text.folder_files import FolderFile, foon_files
-from foon_asp.text.formatter import Change, format_text
 from foon_asp.text.goal_name import (
     GoalError,
     NodeNames,
@@ -24,13 +20,10 @@ from foon_asp.text.goal_name import (
     nodes_beginning,
     notation,
 )
-from foon_asp.text.json_fault import json_fault
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.line import LineError, parse_node
-from foon_asp.text.merged_network import merged_text
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store, read_plain_text
-from foon_asp.text.price_list import Price, read_prices
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_units
@@ -38,35 +31,25 @@ from foon_asp.text.writer import write_units
 __all__ = [
     "STORE_MAGIC",
     "STORE_SUFFIX",
-    "Change",
-    "Converted",
-    "Converter",
     "Data",
     "DataFiles",
     "Diagnostic",
-    "Dialect",
-    "FolderFile",
     "FoonReader",
     "GoalError",
     "InputError",
     "LineError",
     "ListedObject",
     "NodeNames",
-    "Price",
     "Severity",
     "SomeNames",
     "Wording",
     "excerpt_with_caret",
     "find_data",
     "find_goal",
-    "foon_files",
-    "format_text",
     "is_store",
-    "json_fault",
     "kitchen_item_warning",
     "kitchen_nodes",
     "listed_nodes",
-    "merged_text",
     "network_files",
     "nodes_beginning",
     "notation",
@@ -75,7 +58,6 @@ __all__ = [
     "read_labels",
     "read_object_list",
     "read_plain_text",
-    "read_prices",
     "read_rates",
     "summarize",
     "write_units",

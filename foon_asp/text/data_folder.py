@@ -127,8 +127,11 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     network = network_at_level(reader.read_network(files.network), level)
     warnings = reader.diagnostics
     items = tuple(read_object_list(files.kitchen, warnings)) if files.kitchen else ()
+    kitchen: set[int] = set()
     for item in items:
-        if not network.find(pattern_at_level(item.pattern, level)):
+        found = network.find(pattern_at_level(item.pattern, level))
+        kitchen.update(found)
+        if not found:
             warnings.append(kitchen_item_warning(item))
     goals = tuple(
         entry._replace(pattern=pattern_at_level(entry.pattern, level))
@@ -136,7 +139,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     )
     return Data(
         network,
-        kitchen_nodes(network, items),
+        frozenset(kitchen),
         items,
         goals,
         read_rates(files.rates) if files.rates else None,

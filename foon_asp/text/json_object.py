@@ -45,16 +45,17 @@ def read_object(value: object) -> JsonObject:
     if not label:
         raise ValueError(f'found {_shown(found)} as "{key}", expected a name')
     states = [_state(state) for state in _list(value, *first_of(value, _STATES))]
-    ingredients = tuple(
-        item for item in map(_ingredient, _list(value, "ingredients", value.get("ingredients"))) if item
-    )
+    listed = _list(value, "ingredients", value.get("ingredients"))
+    ingredients = tuple(item for item in map(_ingredient, listed) if item)
     if ingredients:
         states = _with_contents(states, ingredients)
     container = optional_name(value.get("container"), "container")
-    line = ObjectLine(label, number(value, "object_id"), _fields(value))
+    flag, category = number(value, "object_in_motion"), number(value, "recipe_category")
+    fields = tuple(field for field in (flag, category) if field)
+    line = ObjectLine(label, number(value, "object_id"), fields)
     remarks = (remark.message for state in states for remark in state.remarks)
-    plain = tuple(state._replace(remarks=()) for state in states)
-    return JsonObject(line, plain, container, (*remarks, *_left_out(value)))
+    plain = tuple(state._replace(remarks=()) if state.remarks else state for state in states)
+    return JsonObject(line, plain, container, (*remarks, *_left_out(value, flag, category, listed)))
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, str | None, tuple[str, ...]]]:
@@ -70,8 +71,9 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, str | None, 
 
 def check_keys(value: dict[str, object], known: set[str]) -> None:
     """Raise :class:`ValueError` for a key that nothing reads."""
-    if unknown := sorted(value.keys() - known):
-        raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(sorted(known))}")
+    if not value.keys() <= known:
+        unknown = min(value.keys() - known)
+        raise ValueError(f"found the key {unknown!r}, expected one of {', '.join(sorted(known))}")
 
 
 def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
@@ -96,18 +98,12 @@ def optional_name(value: object, key: str) -> str | None:
 def number(value: dict[str, object], key: str) -> str:
     """Give the digits of a number, which may be written as text; empty where there is none."""
     found = value.get(key)
+    if found in (None, "", "None"):
+        return ""
     written = found.text if isinstance(found, JsonNumber) else found
     if isinstance(written, str) and is_number(written):
         return written
-    if found in (None, "", "None"):
-        return ""
     raise ValueError(f'found {_shown(found)} as "{key}", expected a number')
-
-
-def _fields(value: dict[str, object]) -> tuple[str, ...]:
-    flag = number(value, "object_in_motion")
-    category = number(value, "recipe_category")
-    return tuple(field for field in (flag, category) if field)
 
 
 def _state(value: object) -> StateLine:
@@ -137,16 +133,14 @@ def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> lis
     return [*states, StateLine(contents, "", ingredients)]
 
 
-def _left_out(value: dict[str, object]) -> Iterator[str]:
-    flag = number(value, "object_in_motion")
+def _left_out(value: dict[str, object], flag: str, category: str, ingredients: list[object]) -> Iterator[str]:
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
-    category = number(value, "recipe_category")
     if category and not flag:
         yield f"the recipe category {category!r} stands without a motion flag"
     if value.get("has_portions") not in (None, False, "False", ""):
         yield "has_portions left out: FOON text has no place for it"
-    for ingredient in _list(value, "ingredients", value.get("ingredients")):
+    for ingredient in ingredients:
         if isinstance(ingredient, dict) and any(read_object(ingredient)[1:3]):
             yield "states and containers of ingredients left out: only their labels count"
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple, cast
 
@@ -154,6 +154,7 @@ def parse_node(notation: str) -> ObjectNode:
     return cast(ObjectNode, _parse("node", notation.rstrip(" ")))
 
 
+@lru_cache(10_000)  # a kitchen says "empty" hundreds of times
 def read_state(text: str) -> StateLine:
     """Read what a state of a JSON file says, as on a state line: ``whole``, ``in [bowl]``, ``coated {a,b}``.
 

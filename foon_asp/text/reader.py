@@ -60,7 +60,9 @@ class FoonReader:
         self.nodes: dict[str, ObjectNode] = {}
         self.motions: dict[str, str] = {}
         self.same_node: dict[ObjectNode, ObjectNode] = {}  # one object for each node: quick to compare
-        self.clean: dict[str, ObjectLine | str | Relation | Contents] = {}  # what state lines say
+        self.labels: dict[str, str] = {}  # what object lines say
+        # By the whole line.
+        self.attributes: dict[str, str | Relation | Contents] = {}  # what state lines say
         self._lines: dict[str, Line | LineError] = {}
 
     def read_network(self, files: Iterable[Path]) -> Network:
@@ -139,9 +141,9 @@ class FoonReader:
             known[line] = parsed
             if isinstance(parsed, StateLine):
                 if not parsed.remarks:
-                    self.clean[line] = parsed.attribute
+                    self.attributes[line] = parsed.attribute
             elif isinstance(parsed, ObjectLine) and not parsed.remarks:
-                self.clean[line] = parsed
+                self.labels[line[1:]] = parsed.label
 
     def parse(self, line: str) -> Line | LineError:
         """Parse a line, or remember what came of it."""
@@ -249,16 +251,11 @@ class _FileReading:
         """Build the node of a block not met before, and remember it; ``None`` if there is anything to say."""
         self._look_ahead(length)
         reader = self.reader
-        clean = reader.clean
         first, *rest = block.split("\n")
         try:
-            label = clean["O" + first]
-            attributes = [clean[line] for line in rest]
+            node = node_of(reader.labels[first], [reader.attributes[line] for line in rest])
         except KeyError:
             return None
-        if type(label) is not ObjectLine or ObjectLine in map(type, attributes):
-            return None
-        node = node_of(label.label, cast(list[str | Relation | Contents], attributes))
         if len(reader.nodes) >= _REMEMBERED:
             reader.nodes.clear()
         node = reader.nodes[block] = reader.same_node.setdefault(node, node)

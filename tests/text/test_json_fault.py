@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from foon_asp.text import json_fault
+from foon_asp.text.json_fault import json_fault
 
 
 @pytest.mark.parametrize(
