@@ -283,7 +283,7 @@ def compare(question: Question, trials: Sequence[tuple[str, str, Trial]]) -> Non
         outcome = Outcome(problem, (objective,), Status(reference.said["status"]), units, costs, {}, {})
         for name, trial in answered[1:]:
             found = trial.said["units"]
-            agree(outcome, EngineAnswer(name, (objective,), found, True, trial.seconds))
+            agree(outcome, EngineAnswer(name, (objective,), found, True))
         return
     for name, trial in answered[1:]:
         found = trial.said["units"]

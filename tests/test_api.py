@@ -358,7 +358,7 @@ def test_other_engines(source: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) 
     assert soft.json()["cross_check"][0]["agrees_by"] == ["units"]
 
     def disagrees(*args: object) -> None:
-        raise DisagreementError("no", EngineAnswer("clingo", (), None, True, 0.0))
+        raise DisagreementError("no", EngineAnswer("clingo", (), None, True))
 
     monkeypatch.setattr("foon_asp.engines.bare_clingo.check_with_bare_clingo", disagrees)
     with pytest.raises(foon_asp.BugError, match="no"):

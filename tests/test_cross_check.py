@@ -131,7 +131,7 @@ def optimum() -> Outcome:
 
 
 def answer(outcome: Outcome, units: tuple[int, ...] | None) -> EngineAnswer:
-    return EngineAnswer("Oracle", levels(outcome.objectives), units, True, 0.0)
+    return EngineAnswer("Oracle", levels(outcome.objectives), units, True)
 
 
 def test_disagreements_are_found() -> None:
@@ -217,7 +217,7 @@ def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     def liar(
         problem: Problem, objectives: tuple[Objective, ...], forbidden: frozenset[int], seconds: float
     ) -> EngineAnswer:
-        return EngineAnswer("Liar", objectives, None, True, seconds)
+        return EngineAnswer("Liar", objectives, None, True)
 
     def with_liar(asked: Asked) -> list[Check]:
         return cross_check(asked, 60.0, (Engine("Liar", lambda: True, liar),))

@@ -7,7 +7,7 @@ Bonet and Helmert (2010) bound delete-free plans by hitting landmarks of this ki
 """
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import NamedTuple
 
 from foon_asp.bounds.hypergraph import Hypergraph
@@ -105,20 +105,7 @@ class Cutter:
         """
         graph, reachable = self._graph, self._reachable
         inside = {o for o in objects if not graph.at_start[o]}
-        stack = list(inside)
-        makers: set[int] = set()
-        while stack:
-            for action in graph.makers[stack.pop()]:
-                if action in makers or action in self._forbidden:
-                    continue
-                makers.add(action)
-                if inside.isdisjoint(graph.needs[action]):
-                    lacking = [o for o in graph.needs[action] if not reachable[o]]
-                    if lacking:
-                        inside.add(lacking[0])
-                        stack.append(lacking[0])
-        landmark = sorted(a for a in makers if inside.isdisjoint(graph.needs[a]))
-        return Cut(tuple(sorted(inside)), tuple(landmark))
+        return self._closed(inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None))
 
     def _shrink(self, target: int, members: set[int], reached: bytearray, takers: Mapping[int, float]) -> Cut:
         """Go back from an object that is not reached, only as far as is needed for the cut to hold.
@@ -127,21 +114,29 @@ class Cutter:
         that is not reached; the one with the most takers is taken, which other actions need, too. Those that
         nothing makes have no number of takers, and come first.
         """
+
+        def most_taken(action: int) -> int | None:
+            if action in members:
+                return None
+            lacking = (o for o in self._graph.needs[action] if not reached[o])
+            return max(lacking, key=lambda o: (takers.get(o, math.inf), -o))
+
+        return self._closed({target}, most_taken)
+
+    def _closed(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
+        """Give the cut of objects and of what ``needed`` tells of each action that would be a member."""
         graph, forbidden = self._graph, self._forbidden
-        inside = {target}
-        stack = [target]
+        stack = list(inside)
         makers: set[int] = set()
         while stack:
             for action in graph.makers[stack.pop()]:
                 if action in makers or action in forbidden:
                     continue
                 makers.add(action)
-                if action in members or not inside.isdisjoint(graph.needs[action]):
-                    continue
-                lacking = [o for o in graph.needs[action] if not reached[o]]
-                o = max(lacking, key=lambda o: (takers.get(o, math.inf), -o))
-                inside.add(o)
-                stack.append(o)
+                o = needed(action) if inside.isdisjoint(graph.needs[action]) else None
+                if o is not None:
+                    inside.add(o)
+                    stack.append(o)
         landmark = sorted(a for a in makers if inside.isdisjoint(graph.needs[a]))
         return Cut(tuple(sorted(inside)), tuple(landmark))
 

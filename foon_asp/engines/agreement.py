@@ -9,7 +9,14 @@ from typing import NamedTuple
 from foon_asp.asp import Outcome, Status
 from foon_asp.certificate import Coverage, coverage
 from foon_asp.engines import bare_clingo, fast_downward, highs
-from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError, check_tree
+from foon_asp.engines.engine import (
+    Asked,
+    DisagreementError,
+    EngineAnswer,
+    NotCheckedError,
+    check_tree,
+    differing,
+)
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 
 Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
@@ -29,7 +36,7 @@ class Engine(NamedTuple):
 
 
 ENGINES = (
-    Engine(highs.NAME, highs.installed, highs.solve_with_highs),
+    Engine(highs.NAME, lambda: True, highs.solve_with_highs),
     Engine(fast_downward.NAME, fast_downward.installed, fast_downward.solve_with_fast_downward),
 )
 
@@ -141,11 +148,7 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
         better = theirs > ours if multiplies(objective) else theirs < ours
         if not better and _close(objective, outcome.costs, costs):
             break  # what it then finds for the objectives after this one is about other trees
-        raise DisagreementError(
-            f"by {objective} our tree has {ours}, the one of {answer.engine} {theirs}; "
-            + ("ours is not the best" if better else f"{answer.engine} calls a worse one the best"),
-            answer,
-        )
+        raise differing(str(objective), ours, theirs, better, answer)
     if not agreed:
         raise NotCheckedError("its floats cannot tell our tree from a slightly worse one")
     return tuple(agreed)

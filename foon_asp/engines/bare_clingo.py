@@ -21,14 +21,20 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from foon_asp.asp import Status
 from foon_asp.asp.bare_program import BareProgram, bare_program
 from foon_asp.asp.facts import write_exactly_alike, write_given, write_most_alike, write_same_rates
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError, check_tree
+from foon_asp.engines.engine import (
+    Asked,
+    DisagreementError,
+    EngineAnswer,
+    NotCheckedError,
+    check_tree,
+    differing,
+)
 from foon_asp.problem import Objective, levels, multiplies
 
 NAME = "clingo"
@@ -40,11 +46,6 @@ _OUT_OF_MEMORY = (b"bad_alloc", b"MemoryError", b"cannot allocate memory")
 _SECOND_OPINION = "second_opinion.lp"
 _STRING_OR_WEIGHT = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])(?:risk\(|cost\((\w+),)(\d+),(\d+)\)')
 _SHOWN = re.compile(r"use\((\d+)\)")
-
-
-def installed() -> bool:
-    """Whether the engine can be asked: always, since clingo is among the dependencies."""
-    return True
 
 
 def check_with_bare_clingo(asked: Asked, seconds: float) -> None:
@@ -107,7 +108,8 @@ class _Clingo:
     def _run(self, more: str, options: Iterable[str]) -> dict[str, Any]:
         program = self.program
         # absolute, since a name may begin with -; not resolved, since files include others beside them
-        files = [str(file.absolute()) for file in (*program.files, *([_second_opinion()] if more else []))]
+        added = (question_encoding(_SECOND_OPINION),) if more else ()
+        files = [str(file.absolute()) for file in (*program.files, *added)]
         command = [sys.executable, "-P", "-m", "clingo", *files, "-", *program.constants, "--outf=2"]
         text = (program.facts + more).encode("utf-8", "surrogatepass")
         left = self.end - time.monotonic()
@@ -185,7 +187,7 @@ class _Check:
         """
         assert self.outcome.units is not None
         network = self.problem.network
-        units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True, 0.0))
+        units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True))
         if self.problem.costs(units) != self.outcome.costs:
             raise self._disagreement("the costs of our tree are not those of its units", theirs)
         given = self.clingo.best(write_given([network.unit_number(unit) for unit in self.outcome.units]))
@@ -238,27 +240,18 @@ class _Check:
         for name, more_is_better, ours, theirs in rows:
             if ours != theirs:
                 better = theirs > ours if more_is_better else theirs < ours
-                raise self._disagreement(
-                    f"by {name} our tree has {ours}, the one of clingo {theirs}; "
-                    + ("ours is not the best" if better else "clingo calls a worse one the best"),
-                    found,
-                )
+                raise differing(name, ours, theirs, better, self._answer(found))
 
     def _weight(self, objective: Objective, numbers: Iterable[int]) -> int:
         return sum(self.weights[objective].get(number, 0) for number in numbers)
 
     def _is_to_scale(self, objective: Objective) -> bool:
         """Whether weights compare as what units cost: none is rounded."""
+        figures, weights = self._figures(objective), self.weights[objective]
         if multiplies(objective):
-            return all(self.problem.rate(self._unit(number)) == 1 for number in self.weights[objective])
-        figures = self._figures(objective)
-        return len({Fraction(weight, 1) / figures[n] for n, weight in self._above_0(objective)}) <= 1 and all(
-            weight == 0 for n, weight in self.weights[objective].items() if not figures[n]
-        )
-
-    def _above_0(self, objective: Objective) -> list[tuple[int, int]]:
-        figures = self._figures(objective)
-        return [(number, weight) for number, weight in self.weights[objective].items() if figures[number]]
+            return all(figure == 1 for figure in figures.values())
+        ratios = {weight / figures[n] for n, weight in weights.items() if figures[n]}
+        return len(ratios) <= 1 and all(figures[n] or not weight for n, weight in weights.items())
 
     def _figures(self, objective: Objective) -> dict[int, Fraction]:
         """Give what each unit costs by an objective, by number."""
@@ -346,7 +339,7 @@ class _Check:
 
     def _answer(self, found: Found | None) -> EngineAnswer:
         units = None if found is None else tuple(map(self._unit, sorted(found.units)))
-        return EngineAnswer(NAME, self.levels, units, True, 0.0)
+        return EngineAnswer(NAME, self.levels, units, True)
 
     def _disagreement(self, message: str, found: Found | None) -> DisagreementError:
         return DisagreementError(message, self._answer(found))
@@ -413,10 +406,6 @@ def _answers(found: Mapping[str, Any]) -> list[Found]:
         for witness in call.get("Witnesses", ())
         if "Value" in witness
     ]
-
-
-def _second_opinion() -> Path:
-    return question_encoding(_SECOND_OPINION)
 
 
 def _limit(process: int, seconds: float, memory: int) -> None:

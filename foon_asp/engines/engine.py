@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,7 +35,6 @@ class EngineAnswer(NamedTuple):
     objectives: tuple[Objective, ...]
     units: tuple[int, ...] | None
     finished: bool
-    seconds: float
 
 
 class DisagreementError(Exception):
@@ -43,6 +43,16 @@ class DisagreementError(Exception):
     def __init__(self, message: str, answer: EngineAnswer) -> None:
         super().__init__(message)
         self.answer = answer
+
+
+def differing(
+    by: str, ours: int | Fraction, theirs: int | Fraction, better: bool, answer: EngineAnswer
+) -> DisagreementError:
+    """Say that two trees called best cost something else by an objective; ``better`` is the engine's."""
+    which = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
+    return DisagreementError(
+        f"by {by} our tree has {ours}, the one of {answer.engine} {theirs}; {which}", answer
+    )
 
 
 class NotCheckedError(Exception):

@@ -9,17 +9,20 @@ from collections.abc import Callable, Mapping, Sequence
 from clingo import Control, Model, SolveHandle, parse_term
 from clingo.symbol import Number, SymbolType
 
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
-from foon_asp.grounding.run import Ended, Heard
+from foon_asp.grounding.run import Heard
 
 
 class GroundProgram:
     """Files and text, grounded; raises :class:`ProgramError` for what clingo refuses.
 
     It raises that, too, for what clingo would leave out with no more than a message. ``products`` says how
-    many products of rates the text describes.
+    many products of rates the text describes. A search ends at the ``deadline``, where there is one.
     """
+
+    deadline: Deadline | None = None
 
     def __init__(self, files: Sequence[str], text: str, arguments: Sequence[str], products: int = 0) -> None:
         self._messages: list[str] = []
@@ -48,18 +51,20 @@ class GroundProgram:
         predicates: Sequence[tuple[str, int]],
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
-        wait: Callable[[SolveHandle], None] | None = None,
-    ) -> Ended:
-        """Search for the best answer; what is heard of on the way is heard in any thread.
+    ) -> bool:
+        """Search for the best answer, and say whether all was gone through; trees are heard of in any thread.
 
         ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
         ``predicates``, by name and arity, have atoms that are wanted beside ``use``, which begin with a
-        number. ``wait`` waits for the end, or cancels the search. Raises :class:`UserError` for an option
-        that clasp does not take, for answers that are none, and what ``on_tree`` raises.
+        number. Raises :class:`UserError` for an option that clasp does not take, for answers that are none,
+        and what ``on_tree`` raises.
         """
+        # whatever the options say: a proof needs the whole search space
         models = 1 if opt_mode == "ignore" else 0
+        settings = {"opt_mode": opt_mode, "models": models, "enum_mode": "auto", "project": "no"}
         try:
-            self._set(opt_mode=opt_mode, models=models, enum_mode="auto", project="no", opt_stop="no")
+            for name, value in {**settings, "opt_stop": "no"}.items():
+                setattr(self._control.configuration.solve, name, value)
         except RuntimeError as error:
             raise UserError(str(error)) from None
         faults: list[Exception] = []  # raised in clingo's thread, to be raised in ours
@@ -76,18 +81,27 @@ class GroundProgram:
             on_bound(list(lower))
 
         with self._control.solve(async_=True, on_model=model, on_unsat=unsat) as handle:
-            if wait:
-                wait(handle)
+            if self.deadline:
+                _wait(handle, self.deadline)
             ended = handle.get()
         if faults:
             raise faults[0]
-        exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
-        return Ended(exhausted, ended.satisfiable)
+        return bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
 
-    def _set(self, **values: str | int) -> None:
-        """Set how to search, whatever the options say: a proof needs the whole search space."""
-        for name, value in values.items():
-            setattr(self._control.configuration.solve, name, value)
+    def close(self) -> None:
+        """Say that it is not needed any more."""
+
+
+def _wait(handle: SolveHandle, deadline: Deadline) -> None:
+    """Wait for the end of a search, and cancel it when it is time to stop."""
+    try:
+        while not handle.wait(deadline.slice()):
+            if deadline.passed:
+                handle.cancel()
+                break
+    except KeyboardInterrupt:
+        deadline.interrupt()
+        handle.cancel()
 
 
 def _used(model: Model) -> frozenset[int]:

@@ -5,8 +5,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clingo import SolveHandle
-
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.grounding.ground_program import GroundProgram
 from foon_asp.grounding.run import Heard, Run
@@ -37,30 +35,23 @@ class Grounded:
         deadline.doing = "grounding"
         deadline.check()
         names = [str(file) for file in files]
-        self._here: GroundProgram | None = None
-        self._there: WorkerProgram | None = None
+        self._program: GroundProgram | WorkerProgram
         if endless or len(text) > _SMALL or deadline.memory is not None:
             from foon_asp.grounding import worker_process  # noqa: PLC0415 (often not needed)
 
-            self._there = worker_process.WorkerProgram(names, text, arguments, products, deadline)
+            self._program = worker_process.WorkerProgram(names, text, arguments, products, deadline)
         else:
-            self._here = GroundProgram(names, text, arguments, products)
+            self._program = GroundProgram(names, text, arguments, products)
 
     def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
         """Ground more text, and what there is to say about a product of rates; raises as the class does."""
-        deadline.doing = "grounding"
-        deadline.check()
-        if self._there:
-            self._there.add(part, text, product, deadline)
-        elif self._here:
-            self._here.add(part, text, product)
+        self._begin("grounding", deadline)
+        self._program.add(part, text, product)
 
     def assign(self, atoms: Mapping[str, bool], deadline: Deadline) -> None:
         """Say of external atoms whether they hold from now on."""
-        if self._there:
-            self._there.assign(atoms, deadline)
-        elif self._here:
-            self._here.assign(atoms)
+        self._program.deadline = deadline
+        self._program.assign(atoms)
 
     def search(
         self,
@@ -79,7 +70,6 @@ class Grounded:
         """
         result = Run()
         began = time.perf_counter()
-        deadline.doing = "searching"
 
         def tree(heard: Heard) -> None:
             result.units, result.cost, result.atoms = heard
@@ -92,13 +82,8 @@ class Grounded:
                 on_bound(lower)
 
         try:
-            deadline.check()
-            if self._there:
-                ended = self._there.search(opt_mode, predicates, tree, bound, deadline)
-                result.exhausted = ended.exhausted
-            elif self._here:
-                ended = self._here.search(opt_mode, predicates, tree, bound, _waiting(deadline))
-                result.exhausted = ended.exhausted
+            self._begin("searching", deadline)
+            result.exhausted = self._program.search(opt_mode, predicates, tree, bound)
         except LimitError:  # what was heard stands
             pass
         result.solve_seconds = time.perf_counter() - began
@@ -106,24 +91,9 @@ class Grounded:
 
     def close(self) -> None:
         """Say that it is not needed any more; so is one that is dropped."""
-        if self._there:
-            self._there.close()
+        self._program.close()
 
-
-def _waiting(deadline: Deadline) -> Callable[[SolveHandle], None]:
-    """Wait for the end of a search, and cancel it when it is time to stop."""
-
-    def wait(handle: SolveHandle) -> None:
-        while True:
-            try:
-                if handle.wait(deadline.slice()):
-                    break
-                if deadline.passed:
-                    handle.cancel()
-                    break
-            except KeyboardInterrupt:
-                deadline.interrupt()
-                handle.cancel()
-                break
-
-    return wait
+    def _begin(self, doing: str, deadline: Deadline) -> None:
+        deadline.doing = doing
+        deadline.check()
+        self._program.deadline = deadline

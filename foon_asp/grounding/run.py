@@ -22,13 +22,6 @@ class Heard(NamedTuple):
     atoms: dict[str, Counter[int]]
 
 
-class Ended(NamedTuple):
-    """How a search ended: whether the search space was exhausted, whether there was an answer, if known."""
-
-    exhausted: bool
-    satisfiable: bool | None
-
-
 @dataclass
 class Run:
     """What a run of clingo ended with.

@@ -20,7 +20,7 @@ from typing import Any, cast
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.pipe import OUT_OF_MEMORY, receive, send
-from foon_asp.grounding.run import Ended, Heard, ProgramError
+from foon_asp.grounding.run import Heard, ProgramError
 
 _PACKAGES = str(Path(__file__).resolve().parents[2])
 _SERVE = "import sys; sys.path[:] = {paths!r}; from foon_asp.grounding.worker import serve; serve()"
@@ -47,16 +47,17 @@ class WorkerProgram:
         if deadline.memory is not None:
             memory = max(1, deadline.memory - deadline.memory_in_use())
         command = "ground", _folder(), list(files), text, list(arguments), products, memory
+        self.deadline = deadline
         self._worker.ask(deadline, *command)
 
-    def add(self, part: str, text: str, product: int, deadline: Deadline) -> None:
+    def add(self, part: str, text: str, product: int) -> None:
         """Ground more text, and what there is to say about a product of rates."""
-        self._worker.ask(deadline, "add", part, text, product)
+        self._worker.ask(self.deadline, "add", part, text, product)
 
-    def assign(self, atoms: Mapping[str, bool], deadline: Deadline) -> None:
+    def assign(self, atoms: Mapping[str, bool]) -> None:
         """Say of external atoms whether they hold from now on."""
         if atoms:
-            self._worker.ask(deadline, "assign", dict(atoms))
+            self._worker.ask(self.deadline, "assign", dict(atoms))
 
     def search(
         self,
@@ -64,12 +65,10 @@ class WorkerProgram:
         predicates: Sequence[tuple[str, int]],
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
-        deadline: Deadline,
-    ) -> Ended:
-        """Search for the best answer; what is heard of on the way is heard in this thread."""
+    ) -> bool:
+        """Search for the best answer, and say whether all was gone through; trees are heard of here."""
         hear: dict[str, Callable[[Any], None]] = {"tree": on_tree, "bound": on_bound}
-        ended: Ended = self._worker.ask(deadline, "search", opt_mode, list(predicates), hear=hear)
-        return ended
+        return bool(self._worker.ask(self.deadline, "search", opt_mode, list(predicates), hear=hear))
 
     def close(self) -> None:
         """Let the process have another program."""
