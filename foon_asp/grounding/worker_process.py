@@ -14,16 +14,13 @@ import threading
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from io import RawIOBase
-from pathlib import Path
 from typing import Any, cast
 
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.pipe import OUT_OF_MEMORY, receive, send
 from foon_asp.grounding.run import Heard, ProgramError
-
-_PACKAGES = str(Path(__file__).resolve().parents[2])
-_SERVE = "import sys; sys.path[:] = {paths!r}; from foon_asp.grounding.worker import serve; serve()"
+from foon_asp.python_process import start_python
 
 
 class WorkerProgram:
@@ -85,19 +82,8 @@ def _folder() -> str | None:
 
 class _Worker:
     def __init__(self) -> None:
-        if not sys.executable:
-            raise UserError(
-                "rules of yours are grounded by a Python of their own, and this program does not know where "
-                "Python is: sys.executable is not set"
-            )
-        paths = [_PACKAGES, *(str(Path(path).resolve()) for path in sys.path)]
-        self._process = subprocess.Popen(
-            [sys.executable, "-SP", "-c", _SERVE.format(paths=paths)],
-            bufsize=0,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            **_APART,
+        self._process = start_python(
+            "foon_asp.grounding.worker", "rules of yours are grounded", "-S", stderr=subprocess.DEVNULL
         )
         self.lost = False  # ended, or in the middle of something
         self._answers: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
@@ -214,11 +200,6 @@ def _hear(pipe: RawIOBase, answers: "queue.SimpleQueue[tuple[str, Any]]") -> Non
             answers.put(receive(pipe))
     answers.put(("ended", None))
 
-
-# A process group of its own: ctrl-C at a terminal is for this process, which ends the other.
-_APART: dict[str, Any] = {"start_new_session": True}
-if sys.platform == "win32":
-    _APART = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
 
 _OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
 _MOST_IDLE = 1
