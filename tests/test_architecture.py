@@ -17,10 +17,10 @@ MODULES = {path.relative_to(ROOT).as_posix(): path for path in sorted(PACKAGE.rg
 # foon_asp/__init__.py. Rooms that are planned and not built yet are named too.
 FACE = "the face"
 FLOORS = (
-    {"errors", "escapes", "resources", "deadline", "warning"},
+    {"errors", "escapes", "resources", "deadline", "python_process", "warning"},
     {"network"},
     {"text", "problem", "bounds"},
-    {"reduce", "grounding"},
+    {"reduce", "grounding", "offered"},
     {"asp", "search", "proof", "store"},
     {"compare", "lint", "certificate", "engines", "dataset"},
     {"report"},
@@ -36,6 +36,7 @@ FLOORS = (
 SIDEWAYS = {
     ("resources", "errors"): "a broken installation is reported as such",
     ("deadline", "errors"): "a limit that cannot be held is refused",
+    ("python_process", "errors"): "where Python is not found, that is said",
     ("warning", "errors"): "what is warned of has a class of its own",
     ("asp", "proof"): "every tree found is simulated before it is given out",
     ("engines", "certificate"): "which rules do no more than rule units out is asked of both",

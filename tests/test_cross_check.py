@@ -16,12 +16,12 @@ from foon_asp.engines import (
     Asked,
     Check,
     DisagreementError,
+    Engine,
     EngineAnswer,
     NotCheckedError,
     agree,
     cross_check,
 )
-from foon_asp.engines.agreement import Engine
 from foon_asp.engines.fast_downward import installed, solve_with_fast_downward
 from foon_asp.engines.highs import solve_with_highs
 from foon_asp.network import FunctionalUnit
@@ -219,7 +219,7 @@ def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     ) -> EngineAnswer:
         return EngineAnswer("Liar", objectives, None, True)
 
-    def with_liar(asked: Asked) -> list[Check]:
+    def with_liar(asked: Asked, engines: tuple[Engine, ...]) -> list[Check]:
         return cross_check(asked, 60.0, (Engine("Liar", lambda: True, liar),))
 
     monkeypatch.setattr("foon_asp.questions.cross_check.ask_engines", with_liar)

@@ -176,7 +176,7 @@ def test_limits_end_in_unknown() -> None:
 @pytest.mark.parametrize("rule", RULES)
 def test_no_tree_that_executes_beats_the_optimum(rule: ContainerRule) -> None:
     for seed in range(200):
-        comparison = compare(random_problem(seed, rule), tuple(SEARCHES), SearchSettings())
+        comparison = compare(random_problem(seed, rule), tuple(SEARCHES.values()), SearchSettings())
         for judgement in comparison.judgements:
             if judgement.executes in {Verdict.AS_LISTED, Verdict.REORDERED}:
                 for objective in judgement.measures:
@@ -209,7 +209,7 @@ def test_on_the_real_universal_foon(data: Data, name: str, count: Count) -> None
         problem = Problem(
             data.network, data.kitchen, (goal,), data.rates, data.utensils, ContainerRule.IMPLIED
         )
-        comparison = compare(problem, (name,), SearchSettings(count=count))
+        comparison = compare(problem, (SEARCHES[name],), SearchSettings(count=count))
         (judgement,) = comparison.judgements
         assert judgement.units is not None
         found.append(len(judgement.units))

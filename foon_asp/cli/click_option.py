@@ -49,8 +49,9 @@ def click_options(*options: Option) -> Callable[[Command], Command]:
 
 def click_option(option: Option) -> Callable[[Command], Command]:
     """Make a parameter of click of an option."""
+    choices = option.choices() if callable(option.choices) else option.choices
     kinds: dict[Kind, Any] = {
-        Kind.TEXT: click.Choice(option.choices) if option.choices else None,
+        Kind.TEXT: click.Choice(choices) if choices else None,
         Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
         Kind.FILE: click.Path(path_type=NamedPath),
         Kind.SECONDS: seconds,

@@ -8,7 +8,7 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.errors import BugError
 from foon_asp.problem import ContainerRule, Objective, Problem, conditions, multiplies
 from foon_asp.proof import Verdict, simulate_for
-from foon_asp.search import SEARCHES, Ending, SearchSettings
+from foon_asp.search import Ending, Search, SearchSettings
 
 # The objectives whose optima a tree is held against.
 MEASURED = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
@@ -70,9 +70,9 @@ class Comparison(NamedTuple):
 
 
 def compare(
-    problem: Problem, searches: Sequence[str], settings: SearchSettings, time_limit: float | None = None
+    problem: Problem, searches: Sequence[Search], settings: SearchSettings, time_limit: float | None = None
 ) -> Comparison:
-    """Run searches by name on a problem, simulate their trees and prove the optima beside them.
+    """Run searches on a problem, simulate their trees and prove the optima beside them.
 
     ``time_limit`` is in seconds for each optimum. Optima of ``success`` are left out where no rates are
     known.
@@ -91,7 +91,7 @@ def compare(
         " + ".join(str(objects[goal]) for goal in problem.goals),
         str(problem.containers),
         optima,
-        tuple(judge(problem, name, settings) for name in searches),
+        tuple(judge(problem, search, settings) for search in searches),
         problem.network.level,
     )
     _require_consistent(comparison)
@@ -112,13 +112,13 @@ def _require_consistent(comparison: Comparison) -> None:
                 )
 
 
-def judge(problem: Problem, name: str, settings: SearchSettings) -> Judgement:
+def judge(problem: Problem, search: Search, settings: SearchSettings) -> Judgement:
     """Run one search and simulate the tree it returns."""
     objects = problem.network.objects
-    retrieval = SEARCHES[name].run(problem, settings)
+    retrieval = search.run(problem, settings)
     if retrieval.ending is not Ending.TREE:
         stuck_at = None if retrieval.stuck_at is None else str(objects[retrieval.stuck_at])
-        return Judgement(name, str(retrieval.ending), stuck_at=stuck_at)
+        return Judgement(search.name, str(retrieval.ending), stuck_at=stuck_at)
     tree = problem.tree(retrieval.units)
     simulation = simulate_for(problem, tree)
     obstacle = None
@@ -133,7 +133,7 @@ def judge(problem: Problem, name: str, settings: SearchSettings) -> Judgement:
         if not multiplies(objective) or costs.success is not None
     }
     return Judgement(
-        name,
+        search.name,
         str(retrieval.ending),
         retrieval.units,
         measures,

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from foon_asp.compare.comparison import Comparison, compare
 from foon_asp.problem import Problem, reach
-from foon_asp.search import SearchSettings
+from foon_asp.search import Search, SearchSettings
 
-Work = tuple[Problem, tuple[str, ...], SearchSettings, float | None]
+Work = tuple[Problem, tuple[Search, ...], SearchSettings, float | None]
 
 _work: Work | None = None  # of this worker process, set once when it starts
 
@@ -22,7 +22,7 @@ def makeable(problem: Problem) -> list[int]:
 def compare_goals(
     problem: Problem,
     goals: Sequence[int],
-    searches: Sequence[str],
+    searches: Sequence[Search],
     settings: SearchSettings,
     time_limit: float | None = None,
     jobs: int = 1,
@@ -31,8 +31,7 @@ def compare_goals(
 
     With more than one job, processes share the goals; the rows are the same.
     """
-    # the data behind the problem are not asked, and an open store could not be handed to a process
-    work = replace(problem, origin=None), tuple(searches), settings, time_limit
+    work = problem.plain, tuple(searches), settings, time_limit
     if jobs == 1:
         for goal in goals:
             yield _compare(work, goal)

@@ -12,7 +12,7 @@ from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.compare.rows_file import RowsFile
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import Verdict
-from foon_asp.search import Ending, SearchSettings
+from foon_asp.search import Ending, Search, SearchSettings
 
 Plain = TypeVar("Plain")
 
@@ -110,10 +110,11 @@ def _fraction(text: str) -> Fraction:
 
 
 def results_question(
-    problem: Problem, searches: Sequence[str], settings: SearchSettings
+    problem: Problem, searches: Sequence[Search], settings: SearchSettings
 ) -> dict[str, object]:
     """Describe what is asked, so that results of another question are not taken for this one's."""
     network = problem.network
+    packages = {search.name: search.package for search in searches if search.package is not None}
     digest = hashlib.sha256()
     for part in (
         [str(node) for node in network.objects],
@@ -127,7 +128,8 @@ def results_question(
         "data": digest.hexdigest()[:16],
         "containers": str(problem.containers),
         "level": problem.network.level,
-        "searches": list(searches),
+        "searches": [search.name for search in searches],
+        **({"packages": packages} if packages else {}),
         "ties": str(settings.ties),
         "count": str(settings.count),
         "published": settings.published,

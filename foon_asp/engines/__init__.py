@@ -1,15 +1,18 @@
 """Second engines: the same questions put to others than our solver, and what to make of it."""
 
-from foon_asp.engines.agreement import ENGINES, Check, agree, cross_check
-from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError
+from foon_asp.engines.agreement import ENGINES, Check, agree, cross_check, find_engines
+from foon_asp.engines.engine import Asked, DisagreementError, Engine, EngineAnswer, NotCheckedError, Solve
 
 __all__ = [
     "ENGINES",
     "Asked",
     "Check",
     "DisagreementError",
+    "Engine",
     "EngineAnswer",
     "NotCheckedError",
+    "Solve",
     "agree",
     "cross_check",
+    "find_engines",
 ]

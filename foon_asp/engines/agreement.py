@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from foon_asp.asp import Outcome, Status
 from foon_asp.certificate import Coverage, coverage
@@ -12,14 +12,15 @@ from foon_asp.engines import bare_clingo, fast_downward, highs
 from foon_asp.engines.engine import (
     Asked,
     DisagreementError,
+    Engine,
     EngineAnswer,
     NotCheckedError,
     check_tree,
     differing,
 )
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
-
-Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
+from foon_asp.engines.offered_engine import offered_engine
+from foon_asp.offered import find_offers, offers_by_name
+from foon_asp.problem import Costs, Objective, levels, multiplies
 
 # Engines compute logarithms of rates in floats or in millionths: closer than this for each unit is equal.
 _CLOSE = 2e-6
@@ -27,31 +28,38 @@ PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
 _EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
 
 
-class Engine(NamedTuple):
-    """A second engine that knows no constraints but units ruled out, whether it is there, how it is asked."""
-
-    name: str
-    installed: Callable[[], bool]
-    solve: Solve
-
-
-ENGINES = (
+ENTRY_POINTS: Final = "foon_asp.engines"
+ENGINES: Final = (
     Engine(highs.NAME, lambda: True, highs.solve_with_highs),
     Engine(fast_downward.NAME, fast_downward.installed, fast_downward.solve_with_fast_downward),
 )
+"""Those of ours that are asked beside bare clingo."""
+
+
+def find_engines() -> tuple[Engine, ...]:
+    """Give all engines that are asked beside bare clingo, those of other packages after ours.
+
+    Raises :class:`UserError` where a package offers one by a name that is taken.
+    """
+    taken = ["foon-asp", bare_clingo.NAME, *(engine.name for engine in ENGINES)]
+    offers = offers_by_name(find_offers(ENTRY_POINTS), taken)
+    return (*ENGINES, *map(offered_engine, offers.values()))
 
 
 class Check(NamedTuple):
     """What came of asking an engine: it agrees, or has not checked the answer; to disagree is an exception.
 
     ``objectives`` are those by which it finds our tree best, in the order of the list; ``reason`` says why it
-    has checked nothing, and is ``None`` where it agrees.
+    has checked nothing, and is ``None`` where it agrees. An engine of another ``package`` may also disagree
+    and be wrong: then ``refuted`` says in what.
     """
 
     engine: str
     objectives: tuple[Objective, ...]
     reason: str | None
     seconds: float
+    package: str | None = None
+    refuted: str | None = None
 
 
 def cross_check(
@@ -62,8 +70,9 @@ def cross_check(
     Without ``seconds``, each has the time limit of the question, or a minute; where the question has a
     deadline, its part of what is left.
     Bare clingo is asked under whatever rules there are; ``engines`` where all rules are ours, or rule units
-    out one by one. Raises :class:`DisagreementError` at the first that says otherwise. From ctrl-C on nothing
-    else is checked.
+    out one by one. From ctrl-C on nothing else is checked. Raises :class:`DisagreementError` at the first
+    that says otherwise. An engine of another package that does so is wrong, which our tree shows, or its own
+    that is none; only where its tree shows that we are wrong is it raised, too.
     """
     if seconds is None:
         limit = asked.settings.time_limit
@@ -72,10 +81,11 @@ def cross_check(
         seconds = PATIENCE if limit is None else limit
     checks: list[Check] = []
     interrupted = False
-    for name, ask in _engines(asked, seconds, engines):
+    for name, package, ask in _engines(asked, seconds, engines):
         began = time.monotonic()
         objectives: tuple[Objective, ...] = ()
         reason: str | None = None
+        refuted: str | None = None
         try:
             if interrupted:
                 raise NotCheckedError("interrupted")
@@ -86,14 +96,18 @@ def cross_check(
             reason = str(error)
         except KeyboardInterrupt:
             interrupted, reason = True, "interrupted"
-        checks.append(Check(name, objectives, reason, time.monotonic() - began))
+        except DisagreementError as error:
+            if package is None or error.ours:
+                raise
+            refuted = str(error)
+        checks.append(Check(name, objectives, reason, time.monotonic() - began, package, refuted))
     return checks
 
 
 def _engines(
     asked: Asked, seconds: float, engines: tuple[Engine, ...]
-) -> Iterator[tuple[str, Callable[[], tuple[Objective, ...]]]]:
-    """Give every engine by name, with a function that asks it and gives by what it agrees."""
+) -> Iterator[tuple[str, str | None, Callable[[], tuple[Objective, ...]]]]:
+    """Give every engine by name and package, with a function that asks it and gives by what it agrees."""
     outcome = asked.outcome
     wanted = levels(outcome.objectives)
 
@@ -101,7 +115,7 @@ def _engines(
         bare_clingo.check_with_bare_clingo(asked, seconds)
         return () if outcome.units is None else wanted
 
-    yield bare_clingo.NAME, ask_clingo
+    yield bare_clingo.NAME, None, ask_clingo
     covered = coverage(asked.settings)
 
     def ask(engine: Engine) -> tuple[Objective, ...]:
@@ -111,10 +125,13 @@ def _engines(
         if not engine.installed():
             raise NotCheckedError(_EXTRA)
         forbidden = covered.forbids(outcome.problem.network)
-        return agree(outcome, engine.solve(outcome.problem, wanted, forbidden, seconds))
+        answer = engine.solve(outcome.problem, wanted, forbidden, seconds)
+        if not forbidden.isdisjoint(answer.units or ()):
+            raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
+        return agree(outcome, answer)
 
     for engine in engines:
-        yield engine.name, lambda engine=engine: ask(engine)  # type: ignore[misc]
+        yield engine.name, engine.package, lambda engine=engine: ask(engine)  # type: ignore[misc]
 
 
 def _foreign(asked: Asked, covered: Coverage) -> list[str]:
@@ -132,13 +149,15 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """
     if not answer.finished:
         raise NotCheckedError("it found no answer in time")
-    if (answer.units is None) != (outcome.status is Status.INFEASIBLE):
-        sides = ("a tree exists", "no tree exists")
-        none = answer.units is None
-        raise DisagreementError(f"we say {sides[not none]}, {answer.engine} says {sides[none]}", answer)
-    if answer.units is None or outcome.costs is None:
+    if answer.units is None and outcome.status is not Status.INFEASIBLE:
+        raise DisagreementError(f"we say a tree exists, {answer.engine} says no tree exists", answer)
+    if answer.units is None:
         return ()
     costs = outcome.problem.costs(check_tree(outcome.problem, answer))
+    if outcome.status is Status.INFEASIBLE or outcome.costs is None:
+        raise DisagreementError(
+            f"we say no tree exists, {answer.engine} says a tree exists", answer, ours=True
+        )
     agreed: list[Objective] = []
     for objective in answer.objectives:
         ours, theirs = outcome.costs.measure(objective), costs.measure(objective)

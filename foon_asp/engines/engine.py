@@ -1,10 +1,10 @@
 """What every second engine is asked and answers."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from foon_asp.asp import Outcome, Settings
 from foon_asp.problem import Objective, Problem, executable_order, multiplies
@@ -37,12 +37,45 @@ class EngineAnswer(NamedTuple):
     finished: bool
 
 
-class DisagreementError(Exception):
-    """Two engines give answers that cannot both be right: a bug, here or there."""
+class Solve(Protocol):
+    """The function of an engine, ours or that of another package (docs/entry-points.md)."""
 
-    def __init__(self, message: str, answer: EngineAnswer) -> None:
+    def __call__(
+        self,
+        problem: Problem,
+        objectives: tuple[Objective, ...],
+        forbidden: frozenset[int],
+        seconds: float,
+        /,
+    ) -> EngineAnswer:
+        """Find a best tree by objectives, of which the first counts most, without the forbidden units.
+
+        It may look at the first of the objectives alone, and says so. It gives up after so many seconds.
+        Raises :class:`NotCheckedError` for what it cannot be asked.
+        """
+
+
+class Engine(NamedTuple):
+    """A second engine that knows no constraints but units ruled out, whether it is there, how it is asked.
+
+    ``package`` is the one that it is of if it is not ours.
+    """
+
+    name: str
+    installed: Callable[[], bool]
+    solve: Solve
+    package: str | None = None
+
+
+class DisagreementError(Exception):
+    """Two engines give answers that cannot both be right: a bug, here or there.
+
+    ``ours`` says that it is here: the tree of the other is one, and better than what we call the best.
+    """
+
+    def __init__(self, message: str, answer: EngineAnswer, ours: bool = False) -> None:
         super().__init__(message)
-        self.answer = answer
+        self.answer, self.ours = answer, ours
 
 
 def differing(
@@ -50,9 +83,8 @@ def differing(
 ) -> DisagreementError:
     """Say that two trees called best cost something else by an objective; ``better`` is the engine's."""
     which = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
-    return DisagreementError(
-        f"by {by} our tree has {ours}, the one of {answer.engine} {theirs}; {which}", answer
-    )
+    words = f"by {by} our tree has {ours}, the one of {answer.engine} {theirs}; {which}"
+    return DisagreementError(words, answer, ours=better)
 
 
 class NotCheckedError(Exception):

@@ -1,7 +1,7 @@
 """One question: a network, a kitchen, goals, rates and the container rule."""
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -92,6 +92,12 @@ class Problem:
         """The same problem over the whole network: of a store, all of it is read."""
         part = self.origin is not None and self.network.object_numbers
         return self.origin.posed_whole(self) if self.origin is not None and part else self
+
+    @property
+    def plain(self) -> "Problem":
+        """The same problem without the data it was posed of, as another process can be handed it."""
+        rates = None if self.rates is None else dict(self.rates)
+        return replace(self, origin=None, rates=rates, own_rates=dict(self.own_rates))
 
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
         """Give the same problem over a network that has these units, as far as it is known to have them.

@@ -36,7 +36,7 @@ from foon_asp.report.comparison_table import (
 from foon_asp.report.published_table import PublishedTable, published_markdown, read_published
 from foon_asp.report.renderable import Renderable
 from foon_asp.resources import published_table
-from foon_asp.search import SEARCHES
+from foon_asp.search import search_names
 
 _CHARTED = 60  # goals that a chart has room for
 
@@ -164,11 +164,10 @@ def _hold_readable(problem: Problem) -> None:
     ),
     Option(
         "searches",
-        "A search to run; repeatable.",
-        default=tuple(SEARCHES),
+        "A search to run; repeatable. By default all, those of other packages too.",
         flags=("--search",),
         many=True,
-        choices=tuple(SEARCHES),
+        choices=search_names,
     ),
     *SEARCHING,
     Option(
@@ -211,7 +210,7 @@ def _hold_readable(problem: Problem) -> None:
 )
 def compare_searches(
     problem: Problem,
-    searches: Iterable[str] = tuple(SEARCHES),
+    searches: Iterable[str] = (),
     *,
     all_makeable: bool = False,
     ties: str = "first",
@@ -225,13 +224,14 @@ def compare_searches(
 ) -> Compared:
     """Run searches for each goal of a problem, a question of its own each, and prove the optima beside them.
 
+    Without ``searches`` all are run, those that other packages offer too.
     With ``all_makeable`` the goals are all objects that can be made, and the text is a summary.
     ``published`` runs ids as published, and the text has the published figures beside ours, where all goals
     have some. The limits are for each optimum and each search; ``jobs`` are processes to use. ``results`` is
     a file that is written as results come, JSON Lines; what is in it already is not done again. Otherwise as
     :func:`foon_asp.retrieve`.
     """
-    names = [search.name for search in searched(searches)]
+    chosen = searched(searches)
     limits = settings(time_limit=time_limit, memory_limit=memory_limit)
     how = search_settings(ties, count, depth_limit, published, limits.time_limit, limits.memory_limit)
     at_least(jobs, 1, "jobs")
@@ -244,13 +244,13 @@ def compare_searches(
         done: dict[str, Comparison] = {}
         file = None
         if results is not None:
-            begun_for = results_question(problem, names, how)
+            begun_for = results_question(problem, chosen, how)
             file = stack.enter_context(ResultsFile(Path(results), begun_for))
             done = file.done
         left = [goal for name, goal in goals.items() if name not in done]
         before = len(goals) - len(left)
         caller().reporter.step("comparing", before, len(goals))
-        for number, row in enumerate(compare_goals(problem, left, names, how, how.time_limit, jobs), 1):
+        for number, row in enumerate(compare_goals(problem, left, chosen, how, how.time_limit, jobs), 1):
             if file is None:
                 done[row.goal] = row
             else:

@@ -47,8 +47,8 @@ class Option(NamedTuple):
 
     ``name`` is the parameter; ``flags`` are those of the command line, by default ``--name``, where dashes
     stand for underscores; a ``positional`` one has none and has to be given, unless it is ``many``. ``many``
-    says that it is given again and again, ``choices`` that it is one of them, ``least`` how small a number
-    may be, ``metavar`` what stands for the value in help.
+    says that it is given again and again, ``choices`` that it is one of them, which a function gives where
+    not all are ours, ``least`` how small a number may be, ``metavar`` what stands for the value in help.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Option(NamedTuple):
     flags: tuple[str, ...] = ()
     many: bool = False
     metavar: str | None = None
-    choices: tuple[str, ...] = ()
+    choices: tuple[str, ...] | Callable[[], tuple[str, ...]] = ()
     least: int | None = None
     positional: bool = False
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from foon_asp.asp import Settings, Status
 from foon_asp.dataset.paths import File, Files
-from foon_asp.engines import Asked, Check, DisagreementError
+from foon_asp.engines import Asked, Check, DisagreementError, Engine, find_engines
 from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
 from foon_asp.problem import Problem
@@ -32,8 +32,8 @@ class CrossChecked(Result):
     """An ``answer`` and what other engines say of it.
 
     Each of the ``checks`` has the name of its ``engine``, the ``objectives`` by which it finds the tree best,
-    too, and the ``reason`` why it has not checked the answer, ``None`` where it has. On the command line the
-    answer may come with a certificate.
+    too, and the ``reason`` why it has not checked the answer, ``None`` where it has. An engine of another
+    ``package`` may disagree and be ``refuted``. On the command line the answer may come with a certificate.
     """
 
     answer: Answer | SoftAnswer | Certified
@@ -51,14 +51,18 @@ class CrossChecked(Result):
     def _lines(self) -> Iterator[str]:
         """Say for each engine by what it agrees, or why it has not checked the answer."""
         for check in self.checks:
+            engine = check.engine if check.package is None else f"{check.engine} ({check.package})"
             if check.reason is not None:
-                yield f"cross-check: {check.engine}: not checked: {check.reason}"
+                yield f"cross-check: {engine}: not checked: {check.reason}"
+                continue
+            if check.refuted is not None:
+                yield f"cross-check: {engine} disagrees and is wrong: {check.refuted} ({check.seconds:.2f} s)"
                 continue
             soft = isinstance(self.answer, SoftAnswer)
             by = ", ".join((*(("penalty",) if soft else ()), *check.objectives))
             none = _outcome(self.answer).status is Status.INFEASIBLE
             that = "that no tree exists" if none else f"by {by}"
-            yield f"cross-check: {check.engine} agrees {that} ({check.seconds:.2f} s)"
+            yield f"cross-check: {engine} agrees {that} ({check.seconds:.2f} s)"
 
     def json_dict(self) -> dict[str, object]:
         """Give the answer with what each engine says of it.
@@ -68,8 +72,10 @@ class CrossChecked(Result):
         rows = [
             {
                 "engine": check.engine,
+                "package": check.package,
                 "checked": check.reason is None,
                 "agrees_by": list(map(str, check.objectives)),
+                "disagrees": check.refuted,
                 "reason": check.reason,
                 "seconds": round(check.seconds, 6),
             }
@@ -104,8 +110,9 @@ def cross_check(
 ) -> CrossChecked:
     """Solve a problem, and ask other engines the same question.
 
-    ``soft`` gives constraint files that may be broken, as for :func:`foon_asp.solve_soft`. Every engine has
-    ``time_limit`` seconds of its own, or a minute. Raises :class:`BugError` where one says otherwise; the
+    Those that other packages offer are asked too, in processes of their own. ``soft`` gives constraint files
+    that may be broken, as for :func:`foon_asp.solve_soft`. Every engine has ``time_limit`` seconds of its
+    own, or a minute. Raises :class:`BugError` where one says otherwise; the
     command ``foon-asp solve --cross-check`` then writes down all that is needed to look into it. Otherwise as
     :func:`foon_asp.solve`.
     """
@@ -113,15 +120,19 @@ def cross_check(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     weights = file_weights(soft or {})
     problem = whole(problem)
+    engines = find_engines()
     answer = softly_answered(problem, chosen, how, weights) if weights else answered(problem, chosen, how)
     try:
-        return CrossChecked(answer, tuple(ask_engines(_asked(answer, how, weights))))
+        return CrossChecked(answer, tuple(ask_engines(_asked(answer, how, weights), engines=engines)))
     except DisagreementError as found:
         raise BugError(str(found)) from None
 
 
 def checked_or_reported(
-    answer: Answer | SoftAnswer | Certified, how: Settings, weights: Mapping[Path, int]
+    answer: Answer | SoftAnswer | Certified,
+    how: Settings,
+    weights: Mapping[Path, int],
+    engines: tuple[Engine, ...],
 ) -> CrossChecked:
     """Ask other engines about an answer, as the command does.
 
@@ -130,7 +141,7 @@ def checked_or_reported(
     """
     asked = _asked(answer, how, weights)
     try:
-        return CrossChecked(answer, tuple(ask_engines(asked)))
+        return CrossChecked(answer, tuple(ask_engines(asked, engines=engines)))
     except DisagreementError as found:
         raise BugError(write_disagreement(asked, found)) from None
 

@@ -1,4 +1,4 @@
-"""The tree that one of the searches of the literature returns, and whether it executes."""
+"""The tree that a search returns, one of the literature or of another package, and whether it executes."""
 
 from dataclasses import dataclass
 
@@ -20,8 +20,8 @@ from foon_asp.report.answer import (
 )
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.verdict import Listed, obstacle_json, verdict_text
-from foon_asp.search import SEARCHES, Retrieval, Search
 from foon_asp.search import Ending as Searched
+from foon_asp.search import Retrieval, Search, search_names
 from foon_asp.text import write_units
 
 
@@ -79,6 +79,7 @@ class Retrieved(Result):
             "containers": str(problem.containers),
             "level": problem.network.level,
             "search": self.search.name,
+            "package": self.search.package,
             "ending": str(found.ending),
             "stuck_at": None if found.stuck_at is None else str(objects[found.stuck_at]),
             "verdict": None if simulation is None else str(simulation.verdict),
@@ -120,13 +121,15 @@ class Retrieved(Result):
         if found.ending is Searched.STUCK and found.stuck_at is not None:
             stuck = self.problem.network.objects[found.stuck_at]
             return f"no tree: no unit makes {stuck}, and it is not in the kitchen"
+        if found.ending is Searched.NONE and self.search.package is not None:
+            return f"no tree: {self.search.package} says that none executes, which is not checked"
         if found.ending is Searched.NONE:
             return "no tree: none executes, at any depth"
         return "unknown: stopped at a limit before a tree was found"
 
 
 @question(
-    Option("search", "Which search.", positional=True, choices=tuple(SEARCHES)),
+    Option("search", "Which search.", positional=True, choices=search_names),
     GOALS,
     *SEARCHING,
     Option("published", "Run ids as published: the first unit everywhere, as bfs.", Kind.FLAG, default=False),
@@ -138,7 +141,8 @@ class Retrieved(Result):
     foon-asp search ids --goal macaroni --containers implied
 
     bfs, dfs, greedy-success and greedy-inputs choose one unit for each object and never look back; ids
-    backtracks, and returns a tree of least depth that executes or says that none does.
+    backtracks, and returns a tree of least depth that executes or says that none does. Other packages may
+    bring searches: docs/entry-points.md.
 
     Exits with 0 when the tree executes, as listed or in another order; 1 when it never does or there is
     none; 3 when stopped at a limit.
@@ -158,10 +162,12 @@ def retrieve(
 ) -> Retrieved:
     """Retrieve a tree as the literature does, and say whether it executes.
 
-    ``search`` is ``bfs``, ``dfs``, ``ids``, ``greedy-success`` or ``greedy-inputs``. ``ties`` says which of
+    ``search`` is ``bfs``, ``dfs``, ``ids``, ``greedy-success``, ``greedy-inputs``, or one that another
+    package offers, which runs in a process of its own. ``ties`` says which of
     equally good units is taken, the ``first`` or the ``last``; ``count`` what greedy-inputs counts,
     ``ingredients`` or ``nodes``; ``depth_limit`` how deep ids looks; ``published`` makes ids the published
-    one. The limits are as for :func:`foon_asp.solve`. Raises :class:`UserError` for other names.
+    one. The limits are as for :func:`foon_asp.solve`. Raises :class:`UserError` for other names,
+    and where a search of another package raises or gives what is no tree.
     """
     (wanted,) = searched([search])
     limits = settings(time_limit=time_limit, memory_limit=memory_limit).begun

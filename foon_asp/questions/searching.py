@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from foon_asp.errors import UserError
 from foon_asp.questions.arguments import at_least
 from foon_asp.questions.contract import Kind, Option
-from foon_asp.search import SEARCHES, Count, Search, SearchSettings, Ties
+from foon_asp.search import Count, Search, SearchSettings, Ties, find_searches
 
 SEARCHING = (
     Option(
@@ -25,12 +25,16 @@ SEARCHING = (
 
 
 def searched(names: Iterable[str]) -> list[Search]:
-    """Find searches by name; raises :class:`UserError` for another name."""
-    names = list(names)
-    unknown = [name for name in names if name not in SEARCHES]
+    """Find searches by name, and all where none is named.
+
+    Raises :class:`UserError` for another name, and where a package offers one by a name that is taken.
+    """
+    known = find_searches()
+    names = list(dict.fromkeys(names)) or list(known)
+    unknown = [name for name in names if name not in known]
     if unknown:
-        raise UserError(f"found the search {unknown[0]!r}, expected one of {', '.join(SEARCHES)}")
-    return [SEARCHES[name] for name in names]
+        raise UserError(f"found the search {unknown[0]!r}, expected one of {', '.join(known)}")
+    return [known[name] for name in names]
 
 
 def search_settings(

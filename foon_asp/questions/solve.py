@@ -25,6 +25,7 @@ from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
 
 if TYPE_CHECKING:
+    from foon_asp.engines import Engine
     from foon_asp.questions.certify import Certified
     from foon_asp.questions.solve_soft import SoftAnswer
 
@@ -65,8 +66,11 @@ def solve_and_more(
     )
     if soft and certificate_file is not None:
         raise UserError("soft constraints have no certificates; leave one of them out")
+    engines: tuple[Engine, ...] = ()
     if cross_check:
-        problem = whole(problem)
+        from foon_asp.engines import find_engines  # noqa: PLC0415
+
+        problem, engines = whole(problem), find_engines()
     found: Answer | SoftAnswer | Certified
     if soft:
         from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
@@ -82,7 +86,7 @@ def solve_and_more(
         return found
     from foon_asp.questions.cross_check import checked_or_reported  # noqa: PLC0415
 
-    return checked_or_reported(found, how, file_weights(soft or {}))
+    return checked_or_reported(found, how, file_weights(soft or {}), engines)
 
 
 @question(
@@ -108,7 +112,7 @@ def solve_and_more(
     ),
     Option(
         "cross_check",
-        "Also ask other engines: bare clingo, HiGHS, and Fast Downward where it is installed.",
+        "Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if installed.",
         Kind.FLAG,
     ),
     Option(

@@ -35,6 +35,8 @@ def comparisons_table(comparisons: Sequence[Comparison]) -> RenderableType:
     parts: list[RenderableType] = [
         Text(f"Searches and the optimum ({comparisons[0].conditions})", style="bold")
     ]
+    names = (judgement.search for comparison in comparisons for judgement in comparison.judgements)
+    widths = {**_WIDTHS, "search": max((_WIDTHS["search"], *(len(name) + 1 for name in names)))}
     for place, comparison in enumerate(comparisons):
         table = Table(
             box=SIMPLE_HEAD if place == 0 else None,
@@ -43,7 +45,7 @@ def comparisons_table(comparisons: Sequence[Comparison]) -> RenderableType:
             show_edge=False,
             padding=0,
         )
-        for heading, width in _WIDTHS.items():
+        for heading, width in widths.items():
             right = heading in {"units", "inputs", "success"}
             table.add_column(heading, justify="right" if right else "left", no_wrap=True, width=width)
         goal, *rows = _rows(comparison)

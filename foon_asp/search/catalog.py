@@ -1,42 +1,29 @@
-"""The searches by name, with what each aims at and promises."""
+"""The searches by name: ours, and those that other packages offer."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Final
 
-from foon_asp.problem import Objective, Problem
+from foon_asp.offered import find_offers, offers_by_name
+from foon_asp.problem import Problem
 from foon_asp.search.breadth_first import breadth_first
 from foon_asp.search.depth_first import depth_first
-from foon_asp.search.greedy_inputs import Count, greedy_inputs
+from foon_asp.search.greedy_inputs import greedy_inputs
 from foon_asp.search.greedy_success import greedy_success
 from foon_asp.search.iterative_deepening import iterative_deepening
-from foon_asp.search.retrieval import Retrieval, Ties
+from foon_asp.search.offered_search import offered_search
+from foon_asp.search.retrieval import Retrieval
+from foon_asp.search.search import Search, SearchSettings
+
+ENTRY_POINTS: Final = "foon_asp.searches"
+_OPTIMUM = "optimum"  # what tables have in the place of a search
 
 
-@dataclass(frozen=True, slots=True)
-class SearchSettings:
-    """What can be set of the searches; each looks at what concerns it.
-
-    ``published`` makes ``ids`` the published iterative deepening, which takes the first unit everywhere
-    and so is breadth-first retrieval. ``time_limit`` is in seconds, ``memory_limit``
-    in bytes.
-    """
-
-    ties: Ties = Ties.FIRST
-    count: Count = Count.INGREDIENTS
-    published: bool = False
-    depth_limit: int | None = None
-    time_limit: float | None = None
-    memory_limit: int | None = None
+def _breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
+    return breadth_first(problem, settings.ties)
 
 
-class Search(NamedTuple):
-    """One search: the objective it aims at, what it promises, and how to run it."""
-
-    name: str
-    aims_at: Objective
-    promise: str
-    run: Callable[[Problem, SearchSettings], Retrieval]
+def _depth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
+    return depth_first(problem, settings.ties)
 
 
 def _deepen(problem: Problem, settings: SearchSettings) -> Retrieval:
@@ -45,22 +32,40 @@ def _deepen(problem: Problem, settings: SearchSettings) -> Retrieval:
     return iterative_deepening(problem, settings.depth_limit, settings.time_limit, settings.memory_limit)
 
 
+def _greedy_success(problem: Problem, settings: SearchSettings) -> Retrieval:
+    return greedy_success(problem, settings.ties)
+
+
+def _greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
+    return greedy_inputs(problem, settings.ties, settings.count)
+
+
 _NOTHING = (
     "nothing of the tree but that each input it needs is in the kitchen or an output of one of its units"
 )
 
-SEARCHES = {
+SEARCHES: Final[Mapping[str, Search]] = {
     search.name: search
     for search in (
-        Search("bfs", Objective.UNITS, _NOTHING, lambda p, s: breadth_first(p, s.ties)),
-        Search("dfs", Objective.UNITS, _NOTHING, lambda p, s: depth_first(p, s.ties)),
-        Search(
-            "ids",
-            Objective.UNITS,
-            "a tree that executes, of least depth, or the proof that none does",
-            _deepen,
-        ),
-        Search("greedy-success", Objective.SUCCESS, _NOTHING, lambda p, s: greedy_success(p, s.ties)),
-        Search("greedy-inputs", Objective.INPUTS, _NOTHING, lambda p, s: greedy_inputs(p, s.ties, s.count)),
+        Search("bfs", _NOTHING, _breadth_first),
+        Search("dfs", _NOTHING, _depth_first),
+        Search("ids", "a tree that executes, of least depth, or the proof that none does", _deepen),
+        Search("greedy-success", _NOTHING, _greedy_success),
+        Search("greedy-inputs", _NOTHING, _greedy_inputs),
     )
 }
+"""The searches of the literature."""
+
+
+def search_names() -> tuple[str, ...]:
+    """List the names of all searches, those of other packages after ours; for help, not to go by."""
+    return tuple(dict.fromkeys([*SEARCHES, *(offer.name for offer in find_offers(ENTRY_POINTS))]))
+
+
+def find_searches() -> dict[str, Search]:
+    """Give all searches, those of other packages after ours; none of these is imported.
+
+    Raises :class:`UserError` where a package offers one by a name that is taken.
+    """
+    offers = offers_by_name(find_offers(ENTRY_POINTS), [*SEARCHES, _OPTIMUM])
+    return {**SEARCHES, **{name: offered_search(offer) for name, offer in offers.items()}}

@@ -1,0 +1,109 @@
+"""What goes on in the other process: functions of another package are called, until nobody asks any more.
+
+A thread reads the requests, so that the end of whoever asks is noticed while a function runs, and the process
+ends with it.
+"""
+
+import json
+import os
+import pickle
+import queue
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from importlib.metadata import EntryPoint
+from io import FileIO
+from typing import Any
+
+from foon_asp.offered.offer import Offer
+
+_LONGEST = 1000  # letters of a message
+
+
+def serve() -> None:
+    """Call what standard input asks for, and answer on what was standard output, which is now stderr."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    requests, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    asked: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(requests, asked), daemon=True).start()
+    functions: dict[Offer, Callable[..., object]] = {}
+    while True:
+        offer, arguments = pickle.loads(asked.get())
+        line = _answer(offer, arguments, functions)
+        left = memoryview(line)
+        while left:
+            left = left[answers.write(left) :]
+
+
+def _answer(
+    offer: Offer, arguments: tuple[object, ...], functions: dict[Offer, Callable[..., object]]
+) -> bytes:
+    """Call the function, and give a line of JSON: what it gave, what it raised, or what is wrong with it."""
+    if offer not in functions:
+        try:
+            function: Any = EntryPoint(offer.name, offer.function, offer.group).load()
+        except BaseException as error:
+            return _line("fault", [f"cannot be imported: {_in_words(error)}", traceback.format_exc()])
+        if not callable(function):
+            return _line("fault", [f"expected a function, found {_shown(function)}", ""])
+        functions[offer] = function
+    try:
+        given = functions[offer](*arguments)
+    except BaseException as error:
+        kinds = [f"{kind.__module__}.{kind.__qualname__}" for kind in type(error).__mro__]
+        place = next(
+            (
+                f"{frame.filename}:{frame.lineno}"
+                for frame in reversed(traceback.extract_tb(error.__traceback__))
+                if frame.filename != __file__ and not frame.filename.startswith("<")
+            ),
+            "",
+        )
+        return _line("raised", [kinds, _message(error), place, traceback.format_exc()])
+    try:
+        return _line("given", given)
+    except Exception:
+        return _line("fault", [f"gave {_shown(given)}, which is no answer", ""])
+
+
+def _line(kind: str, value: object) -> bytes:
+    return json.dumps([kind, value], allow_nan=False).encode("ascii") + b"\n"
+
+
+def _in_words(error: BaseException) -> str:
+    return f"{type(error).__name__}: {_message(error)}"
+
+
+def _message(error: BaseException) -> str:
+    try:
+        return str(error)[:_LONGEST]
+    except Exception:
+        return ""
+
+
+def _shown(value: object) -> str:
+    try:
+        return repr(value)[:_LONGEST]
+    except Exception:
+        return f"a {type(value).__name__}"
+
+
+def _read(requests: FileIO, asked: "queue.SimpleQueue[bytes]") -> None:
+    while True:
+        length = int.from_bytes(_exactly(requests, 8), "big")
+        asked.put(_exactly(requests, length))
+
+
+def _exactly(pipe: FileIO, size: int) -> bytes:
+    content = bytearray()
+    while len(content) < size:
+        part = pipe.read(min(size - len(content), 1 << 20))
+        if not part:  # nobody asks any more
+            os._exit(0)
+        content += part
+    return bytes(content)
