@@ -9,14 +9,6 @@ from foon_asp.text import Diagnostic
 from foon_asp.text.line import StateLine
 
 
-class _Place:
-    """Where something was found first in a sheet, and how often."""
-
-    def __init__(self, index: int) -> None:
-        self.index = index
-        self.count = 0
-
-
 def block_findings(sheet: Sheet) -> Iterator[Diagnostic]:
     """Give a finding for each different pair of lines that stand under one object."""
     parts = {
@@ -24,7 +16,7 @@ def block_findings(sheet: Sheet) -> Iterator[Diagnostic]:
         for written in sheet.distinct_lines
         if isinstance(written.line, StateLine)
     }
-    found: dict[tuple[str, str, str, str], _Place] = {}
+    found: dict[tuple[str, str, str, str], list[int]] = {}  # where
     label, above = "", dict.fromkeys((Contents, Relation), "")
     states: set[str] = set()
     for index, line in enumerate(sheet.lines):
@@ -35,16 +27,16 @@ def block_findings(sheet: Sheet) -> Iterator[Diagnostic]:
                 states = set()
             continue
         if line in states:
-            found.setdefault(("repeated-state", label, line, line), _Place(index)).count += 1
+            found.setdefault(("repeated-state", label, line, line), []).append(index)
         elif part in above:
             if above[part]:
                 code = "second-contents" if part is Contents else "second-relation"
-                found.setdefault((code, label, above[part], line), _Place(index)).count += 1
+                found.setdefault((code, label, above[part], line), []).append(index)
             above[part] = line
         states.add(line)
-    for (code, label, first, second), place in found.items():
-        count = f" ({times(place.count)} in this file)" if place.count > 1 else ""
-        yield sheet.finding(code, _message(code, label, first, second) + count, place.index)
+    for (code, label, first, second), places in found.items():
+        count = f" ({times(len(places))} in this file)" if len(places) > 1 else ""
+        yield sheet.finding(code, _message(code, label, first, second) + count, places[0])
 
 
 def _message(code: str, label: str, first: str, second: str) -> str:
