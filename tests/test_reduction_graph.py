@@ -50,7 +50,7 @@ def test_the_goals_can_come_from_what_leads_to_them() -> None:
     actions, wanted = graph.cone({0, 2, 3, 4})
     assert (sorted(actions), wanted) == ([0, 2], {1, 3})
     actions, wanted = graph.cone(())
-    assert (actions, wanted) == ([], {1})
+    assert (actions, wanted) == (set(), {1})
 
 
 def test_what_makes_things_that_are_there_is_not_looked_at() -> None:

@@ -68,23 +68,17 @@ def _kept(row: dict[str, Any]) -> _Kept:
     return _Kept(asked.key, status, row)
 
 
-class JsonLines:
+class JsonLines(RowsFile[_Kept]):
     """A file with a row on each line, under one that says what is asked."""
 
     def __init__(self, path: Path, question: dict[str, object]) -> None:
-        self._rows = RowsFile(path, question, _kept)
-        self.done = {kept.key: kept.status for kept in self._rows.found}
+        super().__init__(path, question, _kept)
+        self.done = {kept.key: kept.status for kept in self.found}
 
     def add(self, asked: Asked, row: Row) -> None:
         """Keep a row."""
-        self._rows.write(row)
+        self.write(row)
         self.done[asked.key] = str(row["status"])
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._rows.__exit__()
 
 
 class ParquetFolder:

@@ -5,7 +5,7 @@ import json
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import Any, TypeVar
 
 from foon_asp.asp import Status
 from foon_asp.compare.comparison import Comparison, Judgement, Optimum
@@ -139,20 +139,14 @@ def results_question(
     }
 
 
-class ResultsFile:
+class ResultsFile(RowsFile[Comparison]):
     """A file of comparisons under construction, begun for a question as :class:`RowsFile` says."""
 
     def __init__(self, path: Path, question: dict[str, object]) -> None:
-        self._rows = RowsFile(path, question, read_comparison)
-        self.done = {comparison.goal: comparison for comparison in self._rows.found}
+        super().__init__(path, question, read_comparison)
+        self.done = {comparison.goal: comparison for comparison in self.found}
 
     def add(self, comparison: Comparison) -> None:
         """Write one comparison; it is on the disk when this returns."""
         self.done[comparison.goal] = comparison
-        self._rows.write(comparison_json(comparison))
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._rows.__exit__()
+        self.write(comparison_json(comparison))

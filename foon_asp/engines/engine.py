@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from foon_asp.asp import Outcome, Settings
-from foon_asp.problem import Objective, Problem, executable_order, multiplies
+from foon_asp.problem import Objective, Problem, backwards, executable_order, multiplies
 from foon_asp.proof import Verdict, simulate_for
 
 
@@ -107,21 +107,11 @@ class Scope(NamedTuple):
     goals: list[int]
 
 
-def backwards(problem: Problem, forbidden: frozenset[int]) -> Scope:
+def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
     """Go back from the goals to the kitchen through all units that are not forbidden, can they run or not."""
-    kitchen, makers = problem.kitchen, problem.makers
-    goals = [goal for goal in problem.goals if goal not in kitchen]
-    objects = dict.fromkeys(goals)
-    units: set[int] = set()
-    waiting = list(goals)
-    while waiting:
-        for unit in makers[waiting.pop()]:
-            if unit not in units and unit not in forbidden:
-                units.add(unit)
-                new = [o for o in problem.needs[unit] if o not in kitchen and o not in objects]
-                objects.update(dict.fromkeys(new))
-                waiting += new
-    return Scope(sorted(units), sorted(objects), goals)
+    allowed = frozenset(range(len(problem.network))) - forbidden
+    units, objects = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen, allowed)
+    return Scope(sorted(units), sorted(objects), [goal for goal in problem.goals if goal in objects])
 
 
 def cost(problem: Problem, objective: Objective, unit: int) -> float:

@@ -12,7 +12,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from foon_asp.engines.engine import EngineAnswer, backwards, cost, taken
+from foon_asp.engines.engine import EngineAnswer, cost, scope_of, taken
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 
@@ -66,7 +66,7 @@ def solve_with_fast_downward(
 
 def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> Iterator[str]:
     """Write the planning task, line by line; a variable is 0 once its node is at hand."""
-    scope = backwards(problem, forbidden)
+    scope = scope_of(problem, forbidden)
     items = taken(problem, scope.units) if objective.row.item else []
     places = {o: place for place, o in enumerate([*scope.objects, *items])}
     scale = 1 if objective.row.whole else _SCALE

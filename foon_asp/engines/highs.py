@@ -8,7 +8,7 @@ each node it needs, and a made node stands above the nodes that its maker needs,
 import time
 from collections.abc import Iterable
 
-from foon_asp.engines.engine import EngineAnswer, backwards, cost, taken
+from foon_asp.engines.engine import EngineAnswer, cost, scope_of, taken
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 
@@ -42,7 +42,7 @@ class _Program:
 
         self._library, self._numpy = highspy, np
         self._problem = problem
-        scope = backwards(problem, forbidden)
+        scope = scope_of(problem, forbidden)
         self._highs = highs = highspy.Highs()  # type: ignore[no-untyped-call]
         for option, value in (
             ("output_flag", False),

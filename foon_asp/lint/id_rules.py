@@ -43,7 +43,7 @@ def id_findings(sheet: Sheet) -> Iterator[Diagnostic]:
 
 
 def _names_of_id(sheet: Sheet, letter: str, id_: str, uses: list[_Use]) -> Iterator[Diagnostic]:
-    most = uses[0]
+    most, where = uses[0], sheet.where(uses[0].first, sheet)
     if len(uses) >= _MANY:
         shown = ", ".join(f"{use.other!r} ({-use.rarity})" for use in uses[: _MANY - 1])
         message = (
@@ -55,16 +55,16 @@ def _names_of_id(sheet: Sheet, letter: str, id_: str, uses: list[_Use]) -> Itera
     for use in uses[1:]:
         message = (
             f"the {_KINDS[letter]} id {letter}{id_} is that of {use.other!r} ({use.times()}) and "
-            f"of {most.other!r} ({most.times()}, first on {sheet.where(most.first, sheet)}); one needs another id"
+            f"of {most.other!r} ({most.times()}, first on {where}); one needs another id"
         )
         yield sheet.finding("id-of-two-names", message, use.first)
 
 
 def _ids_of_name(sheet: Sheet, letter: str, name: str, uses: list[_Use]) -> Iterator[Diagnostic]:
-    most = uses[0]
+    most, where = uses[0], sheet.where(uses[0].first, sheet)
     for use in uses[1:]:
         message = (
-            f"the {_KINDS[letter]} {name!r} has the id {letter}{use.other} ({use.times()}) and {letter}{most.other} "
-            f"({most.times()}, first on {sheet.where(most.first, sheet)}); it should have one"
+            f"the {_KINDS[letter]} {name!r} has the id {letter}{use.other} ({use.times()}) and "
+            f"{letter}{most.other} ({most.times()}, first on {where}); it should have one"
         )
         yield sheet.finding("name-of-two-ids", message, use.first)

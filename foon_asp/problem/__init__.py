@@ -12,7 +12,7 @@ from foon_asp.problem.number import Number, exact, success_rate
 from foon_asp.problem.objective import Measured, Objective, Row, levels, multiplies, parse_objectives
 from foon_asp.problem.order import executable_order
 from foon_asp.problem.problem import Names, Origin, Problem, require_rates
-from foon_asp.problem.relevance import Reached, first_tree, reach, relevant
+from foon_asp.problem.relevance import Reached, backwards, first_tree, reach, relevant
 
 __all__ = [
     "ContainerRule",
@@ -25,6 +25,7 @@ __all__ = [
     "Problem",
     "Reached",
     "Row",
+    "backwards",
     "conditions",
     "container_rule",
     "exact",

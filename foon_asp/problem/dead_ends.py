@@ -92,10 +92,7 @@ def dead_ends(problem: Problem) -> DeadEnds:
     cycle_of = {node: cycle for cycle in cycles for node in cycle.nodes}
     ordered = {o: _in_order(found, things, easiest.get(o)) for o, found in makers.items()}
     way = _way(goals, ordered, cycle_of)
-    users: dict[int, list[int]] = {}
-    for blocked in {b.unit: b for found in ordered.values() for b in found}.values():
-        for lack in blocked.lacks:
-            users.setdefault(lack, []).append(blocked.unit)
+    users = _users(ordered)
     roots = [
         Root(o, Cause.MISSING, tuple(sorted(users.get(o, ()))), o in way)
         for o, found in ordered.items()
@@ -128,6 +125,15 @@ def _makers(problem: Problem, goals: Sequence[int], available: bytearray) -> dic
     return makers
 
 
+def _users(makers: dict[int, tuple[Blocked, ...]]) -> dict[int, list[int]]:
+    """Give for each dead end the units that lack it."""
+    users: dict[int, list[int]] = {}
+    for blocked in {b.unit: b for found in makers.values() for b in found}.values():
+        for lack in blocked.lacks:
+            users.setdefault(lack, []).append(blocked.unit)
+    return users
+
+
 def _in_order(found: tuple[Blocked, ...], things: dict[int, int], easiest: int | None) -> tuple[Blocked, ...]:
     """Put the easiest unit first, and then those that take the fewest things more."""
     return tuple(
@@ -156,10 +162,7 @@ def _things_more(
     for o, found in makers.items():
         for blocked in found:
             made_by.setdefault(blocked.unit, []).append(o)
-    users: dict[int, list[int]] = {}
-    for blocked in {b.unit: b for found in makers.values() for b in found}.values():
-        for lack in blocked.lacks:
-            users.setdefault(lack, []).append(blocked.unit)
+    users = _users(makers)
     sums = dict.fromkeys(lacking, 0)
     settled: dict[int, int] = {}
     easiest: dict[int, int] = {}

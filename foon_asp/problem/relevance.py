@@ -1,6 +1,7 @@
 """What can be made from the kitchen, and what of it can matter for the goals; both in linear time."""
 
 from collections import deque
+from collections.abc import Container, Iterable, Sequence
 from typing import NamedTuple
 
 from foon_asp.problem.problem import Problem
@@ -58,22 +59,35 @@ def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
 
     Goes backwards from the goals through all reached makers and stops at the kitchen.
     """
-    network, needs, makers, kitchen = problem.network, problem.needs, problem.makers, problem.kitchen
-    can_run = bytearray(len(network))
-    for unit in reached.units:
-        can_run[unit] = 1
-    chosen = bytearray(len(network))
-    wanted = {o for o in problem.goals if o not in kitchen}
+    units, _ = backwards(
+        problem.goals, problem.makers, problem.needs, problem.kitchen, frozenset(reached.units)
+    )
+    return tuple(sorted(units))
+
+
+def backwards(
+    goals: Iterable[int],
+    makers: Sequence[Iterable[int]],
+    needs: Sequence[Iterable[int]],
+    start: Container[int],
+    allowed: Container[int] | None = None,
+) -> tuple[set[int], set[int]]:
+    """Go backwards from the goals through all (allowed) makers, and stop at the start.
+
+    Gives the makers that something wanted can come from, and the objects that are wanted.
+    """
+    wanted = {o for o in goals if o not in start}
     stack = list(wanted)
+    chosen: set[int] = set()
     while stack:
-        for unit in makers[stack.pop()]:
-            if can_run[unit] and not chosen[unit]:
-                chosen[unit] = 1
-                for o in needs[unit]:
-                    if o not in wanted and o not in kitchen:
+        for maker in makers[stack.pop()]:
+            if maker not in chosen and (allowed is None or maker in allowed):
+                chosen.add(maker)
+                for o in needs[maker]:
+                    if o not in wanted and o not in start:
                         wanted.add(o)
                         stack.append(o)
-    return tuple(unit for unit in range(len(network)) if chosen[unit])
+    return chosen, wanted
 
 
 def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:

@@ -4,7 +4,7 @@ from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 
 from foon_asp.bounds import Hypergraph
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, backwards
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -21,24 +21,12 @@ class Graph(Hypergraph):
     goals: tuple[int, ...]
     start: frozenset[int]
 
-    def cone(self, allowed: Container[int] | None = None) -> tuple[list[int], set[int]]:
+    def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
         """Go backwards from the goals through all (allowed) actions, and stop at the start.
 
         Gives the actions that something wanted can come from, in no order, and the objects that are wanted.
         """
-        needs, makers, start = self.needs, self.makers, self.start
-        wanted = set(self.goals)
-        stack = list(wanted)
-        chosen: set[int] = set()
-        while stack:
-            for action in makers[stack.pop()]:
-                if action not in chosen and (allowed is None or action in allowed):
-                    chosen.add(action)
-                    for o in needs[action]:
-                        if o not in wanted and o not in start:
-                            wanted.add(o)
-                            stack.append(o)
-        return list(chosen), wanted
+        return backwards(self.goals, self.makers, self.needs, self.start, allowed)
 
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:

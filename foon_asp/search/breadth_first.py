@@ -1,7 +1,7 @@
 """Breadth-first retrieval: the first unit that makes each object, objects from a queue."""
 
 from foon_asp.problem import Problem
-from foon_asp.search.retrieval import Retrieval, Ties, backward, in_order
+from foon_asp.search.retrieval import Retrieval, Ties, backward, least
 
 
 def breadth_first(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
@@ -10,4 +10,4 @@ def breadth_first(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
     Promises nothing about the tree but what :func:`~foon_asp.search.retrieval.backward` does: the first
     unit in file order is taken for each object, whether or not it can ever run.
     """
-    return backward(problem, in_order(ties))
+    return backward(problem, least(ties))

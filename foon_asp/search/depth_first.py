@@ -1,7 +1,7 @@
 """Depth-first retrieval: the first unit that makes each object, objects from a stack."""
 
 from foon_asp.problem import Problem
-from foon_asp.search.retrieval import Retrieval, Ties, backward, in_order
+from foon_asp.search.retrieval import Retrieval, Ties, backward, least
 
 
 def depth_first(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
@@ -10,4 +10,4 @@ def depth_first(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
     The units are those of breadth-first retrieval, since the choice for an object does not depend on when
     it is made; only the order in which they are listed differs.
     """
-    return backward(problem, in_order(ties), stack=True)
+    return backward(problem, least(ties), stack=True)

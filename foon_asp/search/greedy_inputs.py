@@ -1,10 +1,9 @@
 """Greedy best-first retrieval by number of inputs (heuristic 2 of the literature)."""
 
-from collections.abc import Sequence
 from enum import StrEnum
 
 from foon_asp.problem import Problem
-from foon_asp.search.retrieval import Retrieval, Ties, backward
+from foon_asp.search.retrieval import Retrieval, Ties, backward, least
 
 
 class Count(StrEnum):
@@ -28,9 +27,4 @@ def greedy_inputs(problem: Problem, ties: Ties = Ties.FIRST, count: Count = Coun
             return len(inputs)
         return len(inputs) + sum(len(network.objects[o].ingredients) for o in inputs)
 
-    def choose(candidates: Sequence[int]) -> int:
-        least = min(map(size, candidates))
-        equal = [unit for unit in candidates if size(unit) == least]
-        return equal[0 if ties is Ties.FIRST else -1]
-
-    return backward(problem, choose)
+    return backward(problem, least(ties, size))

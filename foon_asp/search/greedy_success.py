@@ -1,10 +1,8 @@
 """Greedy best-first retrieval by success rate (heuristic 1 of the literature)."""
 
-from collections.abc import Sequence
-
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.search.retrieval import Retrieval, Ties, backward
+from foon_asp.search.retrieval import Retrieval, Ties, backward, least
 
 
 def greedy_success(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
@@ -16,9 +14,4 @@ def greedy_success(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
     if problem.rates is None:
         raise UserError("the search by success rate needs a rates file (--rates)")
 
-    def choose(candidates: Sequence[int]) -> int:
-        best = max(map(problem.rate, candidates))
-        equal = [unit for unit in candidates if problem.rate(unit) == best]
-        return equal[0 if ties is Ties.FIRST else -1]
-
-    return backward(problem, choose)
+    return backward(problem, least(ties, lambda unit: -problem.rate(unit)))

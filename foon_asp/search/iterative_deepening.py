@@ -1,7 +1,7 @@
 """Iterative deepening: depth-limited depth-first search with backtracking, deeper and deeper."""
 
 from foon_asp.deadline import Deadline
-from foon_asp.problem import Problem
+from foon_asp.problem import Problem, backwards
 from foon_asp.search.retrieval import Ending, Retrieval
 
 
@@ -50,7 +50,8 @@ class _DepthLimited:
         self.deadline = deadline
         self.failed: dict[int, int] = {}
         self.found: dict[int, tuple[int, int]] = {}
-        self.objects = self._relevant()
+        _, relevant = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
+        self.objects = sorted(relevant)
 
     def within(self, goal: int, limit: int) -> bool:
         """Whether an object can be made within a limit; a stack of its own, so depth is no matter."""
@@ -113,16 +114,3 @@ class _DepthLimited:
         if o in self.found and self.found[o][0] <= limit:
             return True
         return None
-
-    def _relevant(self) -> list[int]:
-        """List the objects that a goal can need, without the kitchen."""
-        kitchen, needs = self.problem.kitchen, self.problem.needs
-        seen = {goal for goal in self.problem.goals if goal not in kitchen}
-        waiting = list(seen)
-        while waiting:
-            for unit in self.problem.makers[waiting.pop()]:
-                for o in needs[unit]:
-                    if o not in seen and o not in kitchen:
-                        seen.add(o)
-                        waiting.append(o)
-        return sorted(seen)

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 from enum import StrEnum
+from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.problem import Problem
@@ -71,7 +72,6 @@ def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval
     return Retrieval(Ending.TREE, tuple(reversed(units)))
 
 
-def in_order(ties: Ties) -> Choose:
-    """Choose the first, or the last, of the units in file order."""
-    place = 0 if ties is Ties.FIRST else -1
-    return lambda candidates: candidates[place]
+def least(ties: Ties, size: Callable[[int], int | Fraction] = lambda _: 0) -> Choose:
+    """Choose the unit of the least size; of several, the first or the last in file order."""
+    return lambda candidates: min(candidates if ties is Ties.FIRST else reversed(candidates), key=size)
