@@ -1,6 +1,7 @@
 # make demo   solve every goal of the bundled kitchen, compare the searches with the optimum, draw a tree
 # make test   the tests, in less than three minutes; make test-slow for the long ones
 # make test-lowest   the tests with the lowest versions of our dependencies that pyproject.toml allows
+# make coverage  which lines and branches of the package the tests reach, in one process: some minutes
 # make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes
 # make lint   style and types
 # make bench  the benchmarks, in a few minutes, into docs/performance.md; make bench-full the large ones, which
@@ -15,7 +16,7 @@ BIN := $(VENV)/bin
 CORES := -n auto --dist worksteal
 PAGE := --page docs/performance.md
 
-.PHONY: demo test test-slow test-lowest mutants lint bench bench-full clean
+.PHONY: demo test test-slow test-lowest coverage mutants lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -30,6 +31,10 @@ test: $(VENV)/installed-dev
 
 test-slow: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES) -m slow
+
+coverage: $(VENV)/installed-dev
+	$(BIN)/coverage run -m pytest
+	$(BIN)/coverage report --skip-covered --sort=-miss
 
 mutants: $(VENV)/installed-dev
 	$(BIN)/python -m tests.mutation $(if $(SAMPLE),--seconds $(SAMPLE))

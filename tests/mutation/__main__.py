@@ -18,8 +18,7 @@ from tests.mutation.report import share, survivors, table
 from tests.mutation.rooms import ROOT, all_mutants, texts
 from tests.mutation.trials import Outcome, Reach, Trials, read_reach
 
-AIM = 0.95  # of the mutants that are tried
-LEAST = 0.70  # what holds so far, with a margin: to be raised to the aim as survivors are dealt with
+LEAST = 0.95  # of the mutants that are tried
 FEWEST = 50  # fewer say nothing
 FOLDER = ROOT / ".mutants"
 _FEEDS = ("foon_asp", "encodings", "data", "tests", "pyproject.toml")
@@ -52,7 +51,7 @@ def main() -> int:
         survivors(trials.tried, texts()),
         table(trials.tried, tried_known),
         f"{len(trials.tried)} of {len(waiting)} tried in {time.monotonic() - began:.0f} s; "
-        f"{share(trials.tried):.1%} were noticed, the aim is {AIM:.0%}",
+        f"{share(trials.tried):.1%} were noticed",
     ]
     faults = [f"{test} fails unchanged when tried this way, and was not used" for test in trials.not_used]
     faults += [f"docs/testing.md lists a change that is not there: {' '.join(each)}" for each in sorted(gone)]
