@@ -13,6 +13,7 @@ from foon_asp.problem.objective import Measured, Objective, Row, levels, multipl
 from foon_asp.problem.order import executable_order
 from foon_asp.problem.problem import Names, Origin, Problem, require_rates
 from foon_asp.problem.relevance import Reached, backwards, first_tree, reach, relevant
+from foon_asp.problem.root import Root
 
 __all__ = [
     "ContainerRule",
@@ -24,6 +25,7 @@ __all__ = [
     "Origin",
     "Problem",
     "Reached",
+    "Root",
     "Row",
     "backwards",
     "conditions",
