@@ -1,7 +1,6 @@
 """Trade-offs: the whole Pareto front of two or three objectives, every point with a tree."""
 
 import time
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,7 +13,6 @@ from foon_asp.asp.at_most import better_than
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
-from foon_asp.network import Network
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
 from foon_asp.questions.caller import caller
@@ -23,6 +21,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RU
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import (
+    changes_text,
     costs_json,
     costs_text,
     counted,
@@ -35,7 +34,6 @@ from foon_asp.report.answer import (
 )
 
 _FEWEST, _MOST = 2, 3  # objectives
-_NAMED = 6  # motions that are named of those that a tree has and its neighbour does not
 
 
 class Point(NamedTuple):
@@ -308,7 +306,9 @@ def _table(front: Front) -> Iterator[str]:
         )
         columns.append([str(objective), *map(str, texts)])
     widths = [max(map(len, column)) for column in columns]
-    words = ["", *(_words(front, number) for number in range(len(front.points)))]
+    network = front.problem.network
+    changes = (_changes(front, number) for number in range(len(front.points)))
+    words = ["", *(changes_text(network, gone, new) for gone, new in changes)]
     if len(front.points) > 1:
         words[0] = "units that go (-) and come (+)"
     for *cells, note in zip(*columns, words, strict=True):
@@ -327,23 +327,6 @@ def _changes(front: Front, number: int) -> tuple[list[int], list[int]]:
 def _missing(point: Point, other: Point) -> list[int]:
     known = set(other.units)
     return [unit for unit in point.units if unit not in known]
-
-
-def _words(front: Front, number: int) -> str:
-    gone, new = _changes(front, number)
-    network = front.problem.network
-    parts = [f"{sign} {_motions(network, units)}" for sign, units in (("-", gone), ("+", new)) if units]
-    return "  ".join(parts)
-
-
-def _motions(network: Network, units: Sequence[int]) -> str:
-    """Name the motions of units, ``pour (2)`` for two of them."""
-    counts = Counter(network.motions[unit] for unit in units)
-    named = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
-    if len(named) <= _NAMED:
-        return ", ".join(named)
-    shown = _NAMED - 1
-    return f"{', '.join(named[:shown])} and {sum(list(counts.values())[shown:])} more"
 
 
 def _units(front: Front, number: int) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """An outcome for people, for programs and as FOON text."""
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -11,6 +12,7 @@ from foon_asp.text import write_units
 
 _DIGITS = 4  # of a success, where so many tell several apart
 _MOST_DIGITS = 40
+_NAMED = 6  # motions that are named of those that come, and of those that go
 
 
 def fraction_json(value: Fraction | None) -> dict[str, object] | None:
@@ -299,6 +301,23 @@ def unit_lines(network: Network, units: Iterable[int], sign: str = " ") -> Itera
     listed = sorted(units) if isinstance(units, frozenset) else units
     for unit in listed:
         yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{network.sources[unit][0]}]"
+
+
+def changes_text(network: Network, gone: Sequence[int], new: Sequence[int]) -> str:
+    """Name the motions of the units that go and that come: ``- heat  + pour (2)``."""
+    return "  ".join(
+        f"{sign} {_motions(network, units)}" for sign, units in (("-", gone), ("+", new)) if units
+    )
+
+
+def _motions(network: Network, units: Sequence[int]) -> str:
+    """Name the motions of units, ``pour (2)`` for two of them."""
+    counts = Counter(network.motions[unit] for unit in units)
+    named = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
+    if len(named) <= _NAMED:
+        return ", ".join(named)
+    shown = _NAMED - 1
+    return f"{', '.join(named[:shown])} and {sum(list(counts.values())[shown:])} more"
 
 
 def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
