@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -74,6 +75,9 @@ def test_the_facts_say_what_the_table_says() -> None:
         *("object(3)", r'label(3,"the \"soup\"")', 'ingredient(3,"salt")', 'ingredient(3,"water")'),
         *('utensil("cup")', "goal(3)", "optimize(success,2)", "optimize(units,1)"),
     }
+    other = replace(problem, rates={**rates, "stir\\in": Fraction(1, 2)}, as_seen=problem)
+    text = program_facts(other, (Objective.SUCCESS,), Settings())
+    assert ("rate(0,1000000)" in text, "risk(0,0)" in text) == (True, False)  # the first is for rules to see
 
 
 def test_numbers_too_large_for_clingo_are_refused() -> None:

@@ -157,9 +157,9 @@ def _unit_atoms(problem: Problem, unit: int, scales: Scales | None, with_sources
     atoms += [("gives", f"{u},{name(o)}") for o in problem.gives[unit]]
     atoms += [("inputs", f"{u},{len(inputs)}"), ("ingredients", f"{u},{_check(ingredients)}")]
     if scales and scales.rates:
-        rate = problem.rate(unit)
-        weight = scales.rates.weights[rate]
-        atoms += [("rate", f"{u},{_millionths(rate)}"), ("risk", f"{u},{_check(weight)}")]
+        weight = scales.rates.weights[problem.rate(unit)]
+        seen = (problem.as_seen or problem).rate(unit)
+        atoms += [("rate", f"{u},{_millionths(seen)}"), ("risk", f"{u},{_check(weight)}")]
     if scales:
         weights = ((each.row.term, scales.weight(each, [unit])) for each in scales.facts)
         atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]

@@ -57,7 +57,8 @@ class Problem:
     are the labels that the rule ``implied`` looks at. ``own_rates`` gives, by id, the rates of units that
     do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any. Of a store,
     ``network`` is the part that can matter for the goals. ``origin`` is the data that it was posed of,
-    ``None`` for a problem put together by hand.
+    ``None`` for a problem put together by hand. ``as_seen`` is the problem whose rates rules of the user's
+    look at, where others count.
     """
 
     network: Network
@@ -68,6 +69,7 @@ class Problem:
     containers: ContainerRule = ContainerRule.STRICT
     own_rates: Mapping[int, Fraction] = field(default_factory=dict)
     origin: Origin | None = field(default=None, kw_only=True)
+    as_seen: "Problem | None" = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
