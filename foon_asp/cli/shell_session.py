@@ -23,30 +23,11 @@ from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline, memory_size, seconds, size_text
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
+from foon_asp.questions.index import INDEX
 from foon_asp.text import Wording, notation
 
 # The verbs that ask something of a network and a kitchen.
-QUESTIONS = (
-    "solve",
-    "optima",
-    "search",
-    "compare",
-    "check",
-    "certify",
-    "verify",
-    "draw",
-    "why-not",
-    "shopping-list",
-    "clash",
-    "alternatives",
-    "pareto",
-    "regret",
-    "assist",
-    "menu",
-    "diff",
-    "facts",
-    "constraints",
-)
+QUESTIONS = (*INDEX, "facts", "constraints")
 
 # Those that ask for no tree under rules: diff asks by solve, which has them.
 _WITHOUT_RULES = {"diff", "verify", "constraints"}
@@ -314,7 +295,9 @@ class ShellSession:
             return
         for each in WORDS.values():
             click.echo(f"  {each.usage:<46}{each.purpose}")
-        questions = textwrap.fill(", ".join(QUESTIONS), 76, initial_indent="  ", subsequent_indent="  ")
+        questions = textwrap.fill(
+            ", ".join(QUESTIONS), 76, initial_indent="  ", subsequent_indent="  ", break_on_hyphens=False
+        )
         click.echo(f"\nQuestions, with the options they have on the command line:\n{questions}")
         click.echo(
             "\nOptions on a line count for that line. Its --constraint and -c are added to the rules that\n"
