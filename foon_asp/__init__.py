@@ -87,6 +87,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.regret import regret as regret
     from foon_asp.questions.search import Retrieved as Retrieved
     from foon_asp.questions.search import retrieve as retrieve
+    from foon_asp.questions.sensitivity import Sensitivity as Sensitivity
+    from foon_asp.questions.sensitivity import sensitivity as sensitivity
     from foon_asp.questions.shopping_list import Shopping as Shopping
     from foon_asp.questions.shopping_list import shopping_list as shopping_list
     from foon_asp.questions.solve import solve as solve

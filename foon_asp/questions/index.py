@@ -77,6 +77,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find the optimum without each unit of the best tree, and without each kitchen item it takes.",
         ("regret", "Regrets"),
     ),
+    "sensitivity": Entry(
+        "Explain",
+        "Find how wrong each success rate may be before another tree is the best.",
+        ("sensitivity", "Sensitivity"),
+    ),
     "menu": Entry(
         "Explain",
         "Solve several goals by one tree, and goal by goal, and say what is shared.",
