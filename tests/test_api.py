@@ -145,6 +145,7 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
         "strict",
         lambda p: foon_asp.regret(p, "success", units=[3]),
     ),
+    "sensitivity": (["sensitivity"], ["ice"], "strict", foon_asp.sensitivity),
     "menu": (["menu"], ["ice", "tea"], "strict", foon_asp.menu),
     "assist": (["assist"], ["macaroni"], "implied", foon_asp.assist),
     "assist with so many": (

@@ -113,7 +113,7 @@ def test_the_command_line_stops(rules: str, tmp_path: Path) -> None:
     assert b"look at them" in ran.stderr
 
 
-SLOW = ("alternatives", "assist", "certify", "menu", "pareto", "regret")  # like the others
+SLOW = ("alternatives", "assist", "certify", "menu", "pareto", "regret", "sensitivity")  # like the others
 VERBS = {
     "soft": ("solve", "--goal", "ice", "--soft", "{file}=2"),
     "alternatives": ("alternatives", "--goal", "ice", "--constraint", "{file}"),
@@ -122,6 +122,7 @@ VERBS = {
     "menu": ("menu", "--goal", "ice", "--goal", "tea", "--constraint", "{file}"),
     "regret": ("regret", "--goal", "ice", "--constraint", "{file}"),
     "assist": ("assist", "--goal", "ice", "--constraint", "{file}"),
+    "sensitivity": ("sensitivity", "--goal", "ice", "--constraint", "{file}"),
     "shopping-list": ("shopping-list", "--goal", "hot cocoa", "--constraint", "{file}"),
     "clash": ("clash", "--goal", "ice", "--constraint", "{file}"),
     "certify": ("certify", "--goal", "ice", "--constraint", "{file}"),

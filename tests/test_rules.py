@@ -281,6 +281,7 @@ def test_it_is_one_in_soft_constraints_and_clashes(ice: Problem, tmp_path: Path)
         ["menu", "--goal", "macaroni"],
         ["clash"],
         ["assist"],
+        ["sensitivity"],
     ],
     ids=lambda words: words[0],
 )

@@ -166,6 +166,7 @@ VERBS: list[tuple[str, ...]] = [
     ("regret", *GOAL),
     ("menu", *GOAL),
     ("assist", *GOAL),
+    ("sensitivity", *GOAL),
     ("certify", *GOAL),
     ("clash", *GOAL, "--constraint", "FOLDER/mine\n::error::x.lp"),
     ("solve", *GOAL, "--constraint", "FOLDER/mine\n::error::x.lp"),
