@@ -10,8 +10,8 @@ from foon_asp.dataset import Dataset, dataset_files, read_dataset
 from foon_asp.dataset.names import in_python
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.errors import UserError
-from foon_asp.network import Network, ObjectNode
-from foon_asp.problem import Names, Number, Problem
+from foon_asp.network import Network, ObjectNode, UnitPrices
+from foon_asp.problem import Names, Number, Problem, UnitPricesNamed
 from foon_asp.text import Data, GoalError
 from foon_asp.warning import warn
 
@@ -23,6 +23,7 @@ def load(
     rates: File | None = None,
     utensils: File | None = None,
     goals: File | None = None,
+    unit_prices: File | None = None,
     level: int = 3,
     lenient: bool = False,
 ) -> "Foon":
@@ -44,7 +45,7 @@ def load(
     folder = paths[0] if one and paths[0].is_dir() else None
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
-    beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals)]
+    beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
     dataset = read_dataset(dataset_files(folder, () if folder else paths, *beside), lenient, level)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
@@ -59,14 +60,16 @@ def build(
     kitchen: Names = (),
     rates: Mapping[str, Number] | None = None,
     utensils: Iterable[str] = (),
+    unit_prices: UnitPricesNamed | None = None,
 ) -> "Foon":
     """Give a network that was put together by hand, with what stands beside it, as data to ask.
 
     ``kitchen`` is at hand, ``rates`` are the success rates of all motions, ``utensils`` the labels that the
-    container rule ``implied`` looks at. Raises :class:`UserError` for names that mean nothing or too much.
+    container rule ``implied`` looks at, ``unit_prices`` prices by motion and of single units. Raises
+    :class:`UserError` for names that mean nothing or too much.
     """
     data = Data(network, frozenset(), (), (), None, frozenset(utensils), (), 0)
-    return Foon(Dataset(data, 0.0).vary(kitchen=kitchen, rates=rates), "a network")
+    return Foon(Dataset(data, 0.0).vary(kitchen=kitchen, rates=rates, unit_prices=unit_prices), "a network")
 
 
 class Foon:
@@ -92,7 +95,9 @@ class Foon:
         if isinstance(problem.origin, Dataset):
             return cls(problem.origin.with_kitchen_of(problem), "a problem")
         rates = None if problem.rates is None else dict(problem.rates)
-        data = Data(problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0)
+        data = Data(
+            problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0, problem.unit_prices
+        )
         return cls(Dataset(data, 0.0), "a problem")
 
     def close(self) -> None:
@@ -123,15 +128,17 @@ class Foon:
         adding: Names = (),
         without: Names = (),
         rates: Mapping[str, Number] | None = None,
+        unit_prices: UnitPricesNamed | None = None,
     ) -> "Foon":
-        """Give the same data with another kitchen or other success rates.
+        """Give the same data with another kitchen, other success rates or other prices.
 
         ``kitchen`` is all that is at hand: names, or the path of a kitchen file as a :class:`~pathlib.Path`.
         Then what is named in ``adding`` comes in and what is named in ``without`` goes out, where a label
         stands for every item of the kitchen that has it. ``rates`` are new rates of some motions, above 0
-        and at most 1.
+        and at most 1; ``unit_prices`` new prices, from 0, of motions by name and of single units, which keep
+        theirs when that of their motion changes.
         """
-        varied = self._dataset.vary(kitchen, adding, without, rates)
+        varied = self._dataset.vary(kitchen, adding, without, rates, unit_prices)
         return self if varied is self._dataset else Foon(varied, self._name)
 
     @property
@@ -169,6 +176,11 @@ class Foon:
         """The success rates by motion, exact; ``None`` where none are known."""
         rates = self._dataset.rates
         return None if rates is None else dict(rates)
+
+    @property
+    def unit_prices(self) -> UnitPrices | None:
+        """The prices of units, by motion and of single ones; of a store, all of it is read."""
+        return self._dataset.data.unit_prices
 
     @property
     def utensils(self) -> frozenset[str]:

@@ -18,7 +18,7 @@ def handmade(problem: Problem, **values: Any) -> Content:
         "containers": str(problem.containers),
         "level": problem.network.level,
         "objective": ["units"],
-        "digests": verify.digests(problem.network, problem.kitchen, problem.rates, problem.utensils),
+        "digests": verify.digests(*_data(problem)),
         "forbidden": {"motions": [], "objects": []},
         "not_covered": [],
         "tree": None,
@@ -33,4 +33,13 @@ def handmade(problem: Problem, **values: Any) -> Content:
 
 def check(content: Any, problem: Problem) -> verify.Verified:
     """Verify a certificate against the data of a problem."""
-    return verify.verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
+    return verify.verify(content, *_data(problem))
+
+
+def older(problem: Problem) -> dict[str, str]:
+    """Give the digests that certificates had before there were prices."""
+    return {name: digest for name, digest in verify.digests(*_data(problem)).items() if name != "prices"}
+
+
+def _data(problem: Problem) -> tuple[Any, ...]:
+    return problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices

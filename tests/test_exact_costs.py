@@ -10,7 +10,7 @@ import pytest
 
 from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.problem import ContainerRule, Known, Objective, Problem, levels
 from foon_asp.problem.objective import Row
 from foon_asp.reduce import exact_costs
 from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
@@ -288,7 +288,7 @@ def test_coarse_costs_are_whole_and_below_what_they_guide_to() -> None:
     assert [CoarseCosts(replace(problem, rates=None, own_rates={}), UNITS)(a) for a in (0, 3, 4)] == [1, 1, 0]
 
 
-TRIES = made_up(Row("tries", "attempts", lambda unit: 1 / unit.rate, needs_rates=True, whole=False))
+TRIES = made_up(Row("tries", "attempts", lambda unit: 1 / unit.rate, needs=Known.RATES, whole=False))
 
 
 def test_fractions_are_counted_in_steps_that_are_whole() -> None:

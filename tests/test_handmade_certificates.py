@@ -10,11 +10,19 @@ from typing import Any
 
 import pytest
 
-from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source, network_at_level
+from foon_asp.network import (
+    FunctionalUnit,
+    Network,
+    NetworkBuilder,
+    ObjectNode,
+    Source,
+    UnitPrices,
+    network_at_level,
+)
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import verify
 from foon_asp.proof.verify import LimitError, RefusedError, digests, load_certificate, read_certificate
-from tests.handmade_certificate import Content, check, handmade
+from tests.handmade_certificate import Content, check, handmade, older
 
 
 def network(*units: tuple[str, list[ObjectNode], list[ObjectNode]]) -> Network:
@@ -108,7 +116,10 @@ def test_an_optimum_by_each_objective(
         len(cuts),
     )
     assert [str(cost) for cost in found.costs or ()] == [str(cost) for cost in costs]
-    assert accepted(PLAIN, **values, version=1) == found  # it says the same of strict containers
+    for version in (1, 2):  # which say the same of strict containers, and know no prices
+        assert accepted(PLAIN, **values, version=version, digests=older(PLAIN)) == found
+        said = "expected the keys network, kitchen, rates, utensils"
+        assert refusal(PLAIN, **values, version=version) == said
 
 
 @pytest.mark.parametrize(
@@ -390,11 +401,11 @@ NO_ID = "expected ids of the network"
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"version": 0}, "expected version 2 of the format"),
-        ({"version": 3}, "expected version 2 of the format"),
-        ({"version": True}, "expected version 2 of the format"),
-        ({"version": 2.0}, "expected version 2 of the format"),
-        ({"version": "2"}, "expected version 2 of the format"),
+        ({"version": 0}, "expected version 3 of the format"),
+        ({"version": 4}, "expected version 3 of the format"),
+        ({"version": True}, "expected version 3 of the format"),
+        ({"version": 2.0}, "expected version 3 of the format"),
+        ({"version": "2"}, "expected version 3 of the format"),
         ({"level": 2}, "not a claim about level 3"),
         ({"level": 3.0}, "not a claim about level 3"),
         ({"level": None}, "not a claim about level 3"),
@@ -633,7 +644,17 @@ def test_digests_are_those_of_canonical_json() -> None:
         "kitchen": sha("[0,2]"),
         "rates": sha('[["mix","3"],["pour","1/2"]]'),
         "utensils": sha('["bowl","cup"]'),
+        "prices": sha("null"),
     }
+    unit = FunctionalUnit("mix", (END,), (dish,))
+    elsewhere = FunctionalUnit("mix", (END,), (END,))
+    prices = UnitPrices(
+        {"pour": Fraction(1, 2), "mix": Fraction(3)}, {unit: Fraction(0), elsewhere: Fraction(1)}
+    )
+    with_prices = '[[["mix","3"],["pour","1/2"]],[[1,"0"]]]'
+    assert digests(small, (), None, (), prices)["prices"] == sha(with_prices)
+    assert digests(network_at_level(small, 1), (), None, (), prices)["prices"] == sha(with_prices)
+    assert digests(small, (), None, (), UnitPrices({}, {}))["prices"] == sha("[[],[]]")
     assert digests(small, (), None, ())["rates"] == sha("null")
     level_1 = network_at_level(small, 1)
     assert digests(level_1, (), {}, ())["network"] == sha(

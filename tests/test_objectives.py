@@ -22,6 +22,7 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.problem import (
     ContainerRule,
     Costs,
+    Known,
     Objective,
     Problem,
     Row,
@@ -57,7 +58,7 @@ NEW = {
         )
     ),
     "rounded": made_up(
-        Row("tries", "cost", lambda unit: 1 / unit.rate, needs_rates=True, is_fact=True, whole=False)
+        Row("tries", "cost", lambda unit: 1 / unit.rate, needs=Known.RATES, is_fact=True, whole=False)
     ),
 }
 
@@ -318,5 +319,5 @@ def test_rates_do_not_count_where_nothing_multiplies() -> None:
     problem = replace(two_ways(["0.5", "0.5"], ["0.2"]), rates=None)
     assert [multiplies(objective) for objective in Objective].count(True) == 1
     for objective in Objective:
-        if not objective.row.needs_rates:
+        if objective.row.needs is not Known.RATES:
             assert solve(problem, (objective,)).units == (2,)

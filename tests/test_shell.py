@@ -336,7 +336,7 @@ def test_help(shell: Cli) -> None:
 
 @pytest.fixture(scope="module")
 def session() -> ShellSession:
-    question = read_dataset(None, (), None, None, None, None, lenient=False, level=3)
+    question = read_dataset(None, (), None, None, None, None, None, lenient=False, level=3)
     session = ShellSession(question, lenient=False, level=3, encodings=None)
     session.run("constraint at_most_units max_units=9")
     return session

@@ -51,7 +51,7 @@ class Ranked:
         self._program = assemble(settings, (reporter or Reporter()).warning)
         self._holds = Postconditions(problem, self.levels, settings, self._program.own)
         self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
-        problem.require_rates_for(self.levels)
+        problem.require_known_for(self.levels)
         try:
             with self._deadline.watched("cutting the network"):
                 self._cut(problem)

@@ -116,6 +116,7 @@ class OpenProgram:
             and problem.containers is ours.containers
             and problem.rates == ours.rates
             and problem.own_rates == ours.own_rates
+            and problem.unit_prices == ours.unit_prices
             and problem.utensils == ours.utensils
         )
 

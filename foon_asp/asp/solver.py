@@ -101,7 +101,7 @@ class _Solver:
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
         self._best: tuple[Units, Costs] | None = None  # the best tree reported
         self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
-        problem.require_rates_for(self.levels)
+        problem.require_known_for(self.levels)
         self.program: Program = assemble(settings, reporter.warning)
         self.holds = Postconditions(problem, self.levels, settings, self.program.own)
         if settings.clingo_options:  # looked at now, since clingo may have nothing to do

@@ -11,7 +11,7 @@ from foon_asp.bounds import CheaperError, Cut, Cutter, Hopeless, Packing, Proof,
 from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.errors import BugError
-from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.problem import Costs, Known, Objective, Problem
 from foon_asp.proof import verify
 
 
@@ -71,7 +71,7 @@ def certify(
     the motions, and where nothing is found within the limits of ``verify``, as where products of rates are
     too close to be compared, or too long to be written.
     """
-    if any(objective.row.needs_rates for objective in objectives) and (
+    if any(objective.row.needs is Known.RATES for objective in objectives) and (
         problem.own_rates or not all(map(problem.rate, range(len(problem.network))))
     ):
         return None
@@ -154,7 +154,9 @@ def _write(
         "containers": str(problem.containers),
         "level": problem.network.level,
         "objective": [str(objective) for objective in arrays.objectives],
-        "digests": verify.digests(problem.network, problem.kitchen, problem.rates, problem.utensils),
+        "digests": verify.digests(
+            problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
+        ),
         "forbidden": {"motions": list(covered.motions), "objects": list(covered.labels)},
         "not_covered": list(covered.not_covered),
         "tree": None if units is None else list(units),
@@ -172,6 +174,7 @@ def _write(
             problem.kitchen,
             problem.rates,
             problem.utensils,
+            problem.unit_prices,
         )
     except verify.LimitError:
         return None

@@ -22,7 +22,7 @@ from foon_asp.questions.contract import Part, Question
 from foon_asp.questions.index import module_name, question_name
 from foon_asp.questions.result import Result
 
-_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals")
+_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
 
 
 def find_question(verb: str) -> Question[..., Result]:

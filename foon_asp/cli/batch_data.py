@@ -71,8 +71,7 @@ def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
     named = {key: value for key, value in named.items() if key not in {"level", "lenient"}}
     files = dataset_files(**named)
     found = hashlib.sha256()
-    beside = (files.kitchen, files.rates, files.utensils, files.goals)
-    for file in (*files.network, *(file for file in beside if file), *sorted(set(kitchens))):
+    for file in (*files.network, *filter(None, files[1:]), *sorted(set(kitchens))):
         if not file.is_file():
             raise UserError(f"{file}: expected a file, since every process reads it anew")
         with file.open("rb") as opened:

@@ -31,6 +31,7 @@ def command(
     rates: Path | None,
     utensils: Path | None,
     goals: Path | None,
+    unit_prices: Path | None,
     lenient: bool,
 ) -> ExitCode:
     """Merge networks into a store, for networks too large to read for each question.
@@ -40,12 +41,13 @@ def command(
     foon-asp import --data my_foon --store my.foon
     foon-asp solve --network my.foon --goal macaroni
 
-    The kitchen, rates, utensils and goals that are named here are kept in the store, and are what every verb
-    takes that is not given others. Every copy of a unit keeps its file, line and videos.
+    The kitchen, rates, utensils, goals and prices that are named here are kept in the store, and are what
+    every verb takes that is not given others. Every copy of a unit keeps its file, line and videos. Copies
+    with different prices are an error, unless a line of --unit-prices chooses one.
     """
     if folder is None and not paths and not network:
         raise UserError("name the networks to import, or a folder of data with --data")
-    files = find_data(folder, (*paths, *network), kitchen, rates, utensils, goals)
+    files = find_data(folder, (*paths, *network), kitchen, rates, utensils, goals, unit_prices)
     imported = import_files(files, store, lenient)
     for text in summarize(imported.warnings):
         click.echo(text, err=True)

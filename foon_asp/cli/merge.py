@@ -13,7 +13,7 @@ from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder
 from foon_asp.report.whole_file import utf_8, write_whole
-from foon_asp.text import FoonReader, network_files, summarize
+from foon_asp.text import FoonReader, network_files, read_unit_prices, summarize
 from foon_asp.text.merged_network import merged_text
 
 
@@ -26,9 +26,17 @@ from foon_asp.text.merged_network import merged_text
     metavar="FILE",
     help="Where to write the merged network; stdout, if not given.",
 )
+@click.option(
+    "--unit-prices",
+    type=click.Path(path_type=NamedPath),
+    metavar="FILE",
+    help="Prices of single units, which choose where copies of a unit have different ones.",
+)
 @click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning.")
 @options.debug_option
-def command(paths: tuple[Path, ...], output: Path | None, lenient: bool) -> ExitCode:
+def command(
+    paths: tuple[Path, ...], output: Path | None, unit_prices: Path | None, lenient: bool
+) -> ExitCode:
     """Merge FOONs into a universal FOON: every distinct functional unit once.
 
     \b
@@ -46,6 +54,9 @@ def command(paths: tuple[Path, ...], output: Path | None, lenient: bool) -> Exit
     answer on the merged network shows them. Of a folder the networks are its FOON.txt, or else its *.txt
     and *.json, without kitchen, goals and tables; a list of objects by another name has no units, which is
     said.
+
+    Prices of units (in JSON) are not written, since FOON text has no place for them; import keeps them.
+    Copies of a unit with different prices are an error, unless a line of --unit-prices chooses one.
 
     The summary goes to stderr. Exits with 0, or with 2 when something is not understood.
     """
@@ -66,6 +77,7 @@ def command(paths: tuple[Path, ...], output: Path | None, lenient: bool) -> Exit
     for warning in summarize(reader.diagnostics):
         click.echo(warning, err=True)
     reader.raise_errors()
+    reader.prices.settled(read_unit_prices(unit_prices).units if unit_prices else {})
     network = builder.build()
     if not len(network):
         raise UserError("there is no functional unit in these files")
@@ -75,16 +87,20 @@ def command(paths: tuple[Path, ...], output: Path | None, lenient: bool) -> Exit
         write_data(content)
     else:
         write_whole(output, content)
-    click.echo("\n".join(_summary(len(files), copies, network, reader.left_out)), err=True)
+    click.echo(
+        "\n".join(_summary(len(files), copies, network, len(reader.prices), reader.left_out)), err=True
+    )
     return ExitCode.DONE
 
 
-def _summary(files: int, copies: int, network: Network, left_out: int) -> Iterator[str]:
+def _summary(files: int, copies: int, network: Network, prices: int, left_out: int) -> Iterator[str]:
     yield f"{files:>8,}  {'file' if files == 1 else 'files'}"
     yield f"{copies:>8,}  units read"
     yield f"{copies - len(network):>8,}  of them duplicates"
     yield f"{len(network):>8,}  distinct units"
     yield f"{len(network.objects):>8,}  object nodes"
+    if prices:
+        yield f"{prices:>8,}  prices of units, which are not in the result"
     if left_out:
         yield f"{left_out:>8,}  lines that are in no unit"
 

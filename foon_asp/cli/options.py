@@ -33,6 +33,7 @@ _DATA_OPTIONS = (
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
     click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name, likewise."),
+    click.option("--unit-prices", type=_PATH, metavar="FILE", help="Prices of units, by motion or single."),
     click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
 )
 
@@ -111,6 +112,7 @@ def read_dataset(
     rates: Path | None,
     utensils: Path | None,
     goals: Path | None,
+    unit_prices: Path | None,
     lenient: bool,
     level: int,
     kitchen_expected: bool = True,
@@ -118,13 +120,14 @@ def read_dataset(
     """Read the data that the options name; warnings go to stderr. Within a session it is there already."""
     here = held()
     if here:
-        if any((folder, network, kitchen, rates, utensils, goals)) or (lenient, level) != here[1:3]:
+        named = (folder, network, kitchen, rates, utensils, goals, unit_prices)
+        if any(named) or (lenient, level) != here[1:3]:
             raise UserError(
                 "the data of a session is what it was started with; another kitchen is given by: kitchen FILE"
             )
         return here.dataset
     with reading():
-        files = dataset_files(folder, network, kitchen, rates, utensils, goals)
+        files = dataset_files(folder, network, kitchen, rates, utensils, goals, unit_prices)
         dataset = read_data(files, lenient, level)
     context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
     if context:

@@ -11,7 +11,7 @@ from foon_asp.errors import UserError
 
 # The parameters of verbs that name what is written, and those that name data.
 _WRITTEN = {"output", "file", "charts", "results", "results_file", "certificate_file"}
-_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals")
+_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
 
 
 def check_outputs() -> None:

@@ -94,7 +94,7 @@ class ShellKitchen:
         changed = self._added or self._removed
         self.dataset = self._read
         if changed:
-            self.dataset = self._read.varied(self._added, self._removed, None, self._read.rates)
+            self.dataset = self._read.varied(self._added, self._removed, None)
 
     def _sorted(self, ids: Iterable[int]) -> list[str]:
         nodes: list[ObjectNode] = [self.names.node(o) for o in ids]

@@ -122,6 +122,7 @@ def results_question(
         sorted(problem.kitchen),
         sorted(problem.utensils),
         sorted((motion, str(rate)) for motion, rate in (problem.rates or {}).items()),
+        *([list(map(str, problem.prices))] if problem.unit_prices else []),
     ):
         digest.update(json.dumps(part).encode())
     return {

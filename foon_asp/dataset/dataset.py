@@ -5,10 +5,19 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-from foon_asp.dataset.names import changed_rates, item_ids, listed, node_ids
+from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_ids
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, pattern_at_level
-from foon_asp.problem import Names, Number, Origin, Problem, container_rule
+from foon_asp.network import FunctionalUnit, UnitPrices, pattern_at_level
+from foon_asp.problem import (
+    Names,
+    Number,
+    Origin,
+    Problem,
+    UnitPricesNamed,
+    Unpriced,
+    container_rule,
+    count_unpriced,
+)
 from foon_asp.text import (
     Data,
     ListedObject,
@@ -32,6 +41,7 @@ def ask(data: Data, goals: Sequence[int], containers: str, origin: Origin | None
         data.utensils,
         container_rule(containers),
         origin=origin,
+        unit_prices=data.unit_prices,
     )
 
 
@@ -73,6 +83,11 @@ class Dataset:
     def rates(self) -> Mapping[str, Fraction] | None:
         """The success rates of motions, ``None`` where none are known."""
         return self.data.rates
+
+    @property
+    def unit_prices(self) -> UnitPrices | None:
+        """The prices of units, ``None`` where none are known."""
+        return self.data.unit_prices
 
     @property
     def utensils(self) -> frozenset[str]:
@@ -119,12 +134,10 @@ class Dataset:
         more: Collection[int],
         less: Collection[int],
         only: Collection[int] | None,
-        rates: Mapping[str, Fraction] | None,
     ) -> "Dataset":
         """Give the same data with these object nodes, by id, put into the kitchen and taken out of it.
 
-        ``only`` are all that is in the kitchen before that, where it is not ``None``; ``rates`` are those of
-        all motions.
+        ``only`` are all that is in the kitchen before that, where it is not ``None``.
         """
         kitchen = self._data.kitchen if only is None else only
         items = self._data.kitchen_items if only is None else ()
@@ -132,10 +145,19 @@ class Dataset:
             self._data._replace(
                 kitchen=frozenset(kitchen).union(more).difference(less),
                 kitchen_items=items,
-                rates=None if rates is None else dict(rates),
             ),
             self.read_seconds,
         )
+
+    def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
+        """Give the same data with some success rates and some prices changed."""
+        if rates is None and unit_prices is None:
+            return self
+        network = self._data.network
+        changed = changed_rates(self._data.rates, rates)
+        prices = changed_prices(self._data.unit_prices, unit_prices, self.motions, network)
+        data = self._data._replace(rates=None if changed is None else dict(changed), unit_prices=prices)
+        return Dataset(data, self.read_seconds)
 
     def vary(
         self,
@@ -143,15 +165,16 @@ class Dataset:
         adding: Names = (),
         without: Names = (),
         rates: Mapping[str, Number] | None = None,
+        unit_prices: UnitPricesNamed | None = None,
     ) -> "Dataset":
-        """Give the same data with another kitchen or other success rates; see :meth:`foon_asp.Foon.vary`."""
-        if kitchen is None and not adding and not without and rates is None:
-            return self
-        dataset = self
+        """Give the same data with another kitchen, other rates or prices; see :meth:`foon_asp.Foon.vary`."""
+        dataset = self.valued(rates, unit_prices)
+        if kitchen is None and not adding and not without:
+            return dataset
         only = None
         if isinstance(kitchen, Path):
             items = read_object_list(kitchen)
-            dataset = self.with_kitchen(items)
+            dataset = dataset.with_kitchen(items)
             names = dataset.names
             for item in items:
                 if not names.find(pattern_at_level(item.pattern, names.level)):
@@ -159,9 +182,9 @@ class Dataset:
         elif kitchen is not None:
             only = frozenset(node_ids(self, kitchen, "kitchen item"))
         more = frozenset(node_ids(self, adding, "kitchen item"))
-        with_more = dataset.varied(more, frozenset(), only, changed_rates(self.rates, rates))
+        with_more = dataset.varied(more, frozenset(), only)
         less = frozenset(o for name in listed(without) for o in item_ids(with_more, name))
-        return with_more.varied((), less, None, with_more.rates) if less else with_more
+        return with_more.varied((), less, None) if less else with_more
 
     def posed_anew(
         self,
@@ -173,9 +196,10 @@ class Dataset:
         adding: Names,
         without: Names,
         rates: Mapping[str, Number] | None,
+        unit_prices: UnitPricesNamed | None,
     ) -> Problem:
         """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
-        dataset = self.with_kitchen_of(problem).vary(kitchen, adding, without, rates)
+        dataset = self.with_kitchen_of(problem).vary(kitchen, adding, without, rates, unit_prices)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
         return _with_own_rates(dataset.problem(ids, containers or problem.containers), problem)
 
@@ -207,7 +231,7 @@ class Dataset:
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
         """Give the same data with the kitchen that a problem posed of it has."""
         more, less = self.kitchen_changes(problem)
-        return self.varied(more, less, None, self.rates) if more or less else self
+        return self.varied(more, less, None) if more or less else self
 
     def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
         """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
@@ -216,6 +240,16 @@ class Dataset:
         """
         ours, theirs = self.data.kitchen, problem.kitchen
         return (frozenset(), frozenset()) if ours is theirs else (theirs - ours, ours - theirs)
+
+    def unpriced(self) -> Sequence[Unpriced]:
+        """Give the units that have no price, by motion."""
+        network, prices = self.data.network, self.data.unit_prices
+        known = (None,) * len(network) if prices is None else prices.each(network)
+        return count_unpriced(
+            (network.motions[unit], network.sources[unit])
+            for unit, price in enumerate(known)
+            if price is None
+        )
 
     def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
         """Ask for goals, which are those of the problem in the same order, under a container rule.

@@ -1,12 +1,12 @@
 """Names that callers of Python write, looked up in data."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from typing import Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import ObjectNode, node_at_level
-from foon_asp.problem import Names, Number, success_rate
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitPrices, node_at_level
+from foon_asp.problem import Names, Number, UnitPricesNamed, success_rate, unit_price
 from foon_asp.text import GoalError, ListedObject, NodeNames, Wording, find_goal
 
 
@@ -23,6 +23,13 @@ class Named(Protocol):
 
     def at_hand(self, o: int) -> bool:
         """Whether the kitchen has an object node, by id."""
+
+
+class Units(Protocol):
+    """What units are looked up in."""
+
+    def unit_id(self, unit: FunctionalUnit) -> int | None:
+        """Give the id of a unit, or ``None`` where it is none of these."""
 
 
 def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
@@ -82,6 +89,35 @@ def changed_rates(
             raise UserError(f"no motion {motion!r} has a success rate{similar}")
         rates[motion] = rate
     return rates
+
+
+def changed_prices(
+    known: UnitPrices | None, changed: UnitPricesNamed | None, motions: Collection[str], names: Units
+) -> UnitPrices | None:
+    """Give prices of units with some of them changed; ``names`` has the units, and ``motions`` are theirs."""
+    if changed is None:
+        return known
+    by_motion = dict(known.motions) if known else {}
+    by_unit = dict(known.units) if known else {}
+    for named, given in changed.items():
+        price = unit_price(given, f"the price of {str(named)!r}")
+        if isinstance(named, FunctionalUnit):
+            number = names.unit_id(named)
+            if number is None:
+                raise UserError(f"no unit of the network is {str(named)!r}")
+            if isinstance(names, Network) and names.detailed is not None:
+                by_unit |= dict.fromkeys(map(names.detailed.unit, names.stands_for[number]), price)
+            else:
+                by_unit[named] = price
+        elif named in motions:
+            by_motion[named] = price
+        else:
+            import difflib  # noqa: PLC0415 (for a fault alone)
+
+            near = difflib.get_close_matches(named, motions, n=3, cutoff=0.6)
+            similar = f"; similar are {', '.join(map(repr, near))}" if near else ""
+            raise UserError(f"no unit has the motion {named!r}{similar}")
+    return UnitPrices(by_motion, by_unit)
 
 
 def listed(names: Names) -> list[str | ObjectNode]:

@@ -16,6 +16,7 @@ def dataset_files(
     rates: Path | None = None,
     utensils: Path | None = None,
     goals: Path | None = None,
+    unit_prices: Path | None = None,
 ) -> DataFiles:
     """Find the files of data as :func:`~foon_asp.text.find_data` does.
 
@@ -24,7 +25,7 @@ def dataset_files(
     """
     if folder is None and not network:
         folder = bundled_kitchen()
-    return find_data(folder, network, kitchen, rates, utensils, goals)
+    return find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
 
 
 def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dataset:

@@ -5,11 +5,13 @@ import time
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
+from typing import NamedTuple
 
 from foon_asp.dataset.dataset import Dataset, ask
+from foon_asp.dataset.names import changed_prices, changed_rates
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, network_at_level, pattern_at_level
-from foon_asp.problem import Problem, container_rule, require_rates
+from foon_asp.network import FunctionalUnit, Network, UnitPrices, network_at_level, pattern_at_level
+from foon_asp.problem import Number, Problem, UnitPricesNamed, Unpriced, container_rule, require_rates
 from foon_asp.store import Store
 from foon_asp.text import (
     Data,
@@ -22,7 +24,9 @@ from foon_asp.text import (
     read_labels,
     read_object_list,
     read_rates,
+    read_unit_prices,
     summarize,
+    unit_price_warning,
 )
 
 
@@ -49,16 +53,35 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         rates = read_rates(files.rates)
         require_rates(store.motion_sources(), rates)
     utensils = read_labels(files.utensils) if files.utensils else store.utensils
+    prices = _StoredPrices(store.motion_prices, {}, listed=True)
+    if files.unit_prices:
+        read = read_unit_prices(files.unit_prices)
+        units = {unit: price for unit, price in read.units.items() if store.unit_id(unit) is not None}
+        warnings += [
+            unit_price_warning(unit, read.sources[unit]) for unit in read.units.keys() - units.keys()
+        ]
+        prices = _StoredPrices(read.motions, units, listed=False)
     remarks = summarize(warnings)
     if store.left_out:
         lines = "1 line" if store.left_out == 1 else f"{store.left_out} lines"
         remarks.append(f"warning: {lines} left out when the store was made")
-    dataset = StoredDataset(store, kitchen, goals, rates, utensils, began, tuple(remarks))
+    dataset = StoredDataset(store, kitchen, goals, rates, utensils, prices, began, tuple(remarks))
     if level == 3:
         return dataset
     data = _at_level(dataset.data, level)
     dataset.close()
     return Dataset(data, time.perf_counter() - began, tuple(remarks), dataset.has_kitchen)
+
+
+class _StoredPrices(NamedTuple):
+    """The prices of units beside those in a store: by motion, and of single units that have others here.
+
+    ``listed`` says that those count which were imported with a file of prices.
+    """
+
+    motions: Mapping[str, Fraction] | None
+    units: Mapping[FunctionalUnit, Fraction]
+    listed: bool
 
 
 class StoredDataset(Dataset):
@@ -75,6 +98,7 @@ class StoredDataset(Dataset):
         goals: Sequence[ListedObject],
         rates: Mapping[str, Fraction] | None,
         utensils: frozenset[str],
+        prices: _StoredPrices,
         began: float,
         remarks: tuple[str, ...] = (),
     ) -> None:
@@ -83,6 +107,7 @@ class StoredDataset(Dataset):
         self._listed = goals
         self._rates = rates
         self._utensils = utensils
+        self._prices = prices
         self._at_hand: Callable[[int], bool] = store.in_kitchen
         if kitchen is not None:
             self._at_hand = {o for item in kitchen for o in store.find(item.pattern)}.__contains__
@@ -99,16 +124,17 @@ class StoredDataset(Dataset):
     def with_kitchen(self, items: Sequence[ListedObject]) -> Dataset:
         """Give the same store with the kitchen of another file."""
         began = time.perf_counter()
-        return StoredDataset(self._store, items, self._listed, self._rates, self._utensils, began)
+        return StoredDataset(
+            self._store, items, self._listed, self._rates, self._utensils, self._prices, began
+        )
 
     def varied(
         self,
         more: Collection[int],
         less: Collection[int],
         only: Collection[int] | None,
-        rates: Mapping[str, Fraction] | None,
     ) -> Dataset:
-        """Give the same store with another kitchen and other rates; nothing is read."""
+        """Give the same store with another kitchen; nothing is read."""
         before = self._at_hand if only is None else frozenset(only).__contains__
         other = copy.copy(self)
         for known in ("data", "kitchen"):
@@ -118,7 +144,19 @@ class StoredDataset(Dataset):
             (self.kitchen if only is None else frozenset(only)).union(more).difference(less)
         )
         other._kitchen = self._kitchen if only is None else ()
-        other._rates = rates
+        return other
+
+    def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> Dataset:
+        """Give the same store with some success rates and some prices changed; of units, ids are read."""
+        if rates is None and unit_prices is None:
+            return self
+        other = copy.copy(self)
+        other.__dict__.pop("data", None)
+        other._rates = changed_rates(self._rates, rates)
+        known = UnitPrices(self._prices.motions or {}, self._prices.units)
+        prices = changed_prices(known, unit_prices, self.motions, self._store)
+        if unit_prices is not None and prices is not None:
+            other._prices = self._prices._replace(motions=prices.motions, units=prices.units)
         return other
 
     @cached_property
@@ -139,6 +177,15 @@ class StoredDataset(Dataset):
     def rates(self) -> Mapping[str, Fraction] | None:
         """The success rates of motions, ``None`` where none are known."""
         return self._rates
+
+    @property
+    def unit_prices(self) -> UnitPrices | None:
+        """The prices of units, ``None`` where none are known; all of them are read."""
+        return self.data.unit_prices
+
+    def unpriced(self) -> Sequence[Unpriced]:
+        """Give the units that have no price, by motion."""
+        return self._store.unpriced(self._prices.motions or {}, self._prices.units, self._prices.listed)
 
     @property
     def utensils(self) -> frozenset[str]:
@@ -217,7 +264,16 @@ class StoredDataset(Dataset):
         goals = tuple(self._listed)
         left_out = self._store.left_out
         rates = None if self._rates is None else dict(self._rates)
-        return Data(network, kitchen, (), goals, rates, self._utensils, (), left_out)
+        return Data(
+            network, kitchen, (), goals, rates, self._utensils, (), left_out, self._prices_of(network)
+        )
+
+    def _prices_of(self, network: Network) -> UnitPrices | None:
+        """Give the prices of a part of the network, or of all of it."""
+        motions, units, listed = self._prices
+        if motions is None and not units and not self._store.has_unit_prices:
+            return None
+        return UnitPrices(motions or {}, self._store.unit_prices(network, listed) | dict(units))
 
 
 def _places(part: Network, goals: Sequence[int]) -> tuple[int, ...]:

@@ -13,6 +13,7 @@ from foon_asp.network.node_pattern import NodePattern
 from foon_asp.network.object_node import Contents, ObjectNode, Relation
 from foon_asp.network.source import Source
 from foon_asp.network.task_tree import TaskTree
+from foon_asp.network.unit_prices import UnitPrices
 
 __all__ = [
     "LEVELS",
@@ -25,6 +26,7 @@ __all__ = [
     "Relation",
     "Source",
     "TaskTree",
+    "UnitPrices",
     "network_at_level",
     "node_at_level",
     "pattern_at_level",

@@ -8,16 +8,25 @@ from foon_asp.problem.containers import (
     needed_inputs,
 )
 from foon_asp.problem.costs import Costs, tree_costs
-from foon_asp.problem.number import Number, exact, success_rate
-from foon_asp.problem.objective import Measured, Objective, Row, levels, multiplies, parse_objectives
+from foon_asp.problem.number import Number, exact, success_rate, unit_price
+from foon_asp.problem.objective import Known, Measured, Objective, Row, levels, multiplies, parse_objectives
 from foon_asp.problem.order import executable_order
-from foon_asp.problem.problem import Names, Origin, Problem, require_rates
+from foon_asp.problem.problem import (
+    Names,
+    Origin,
+    Problem,
+    UnitPricesNamed,
+    Unpriced,
+    count_unpriced,
+    require_rates,
+)
 from foon_asp.problem.relevance import Reached, backwards, first_tree, reach, relevant
 from foon_asp.problem.root import Root
 
 __all__ = [
     "ContainerRule",
     "Costs",
+    "Known",
     "Measured",
     "Names",
     "Number",
@@ -27,9 +36,12 @@ __all__ = [
     "Reached",
     "Root",
     "Row",
+    "UnitPricesNamed",
+    "Unpriced",
     "backwards",
     "conditions",
     "container_rule",
+    "count_unpriced",
     "exact",
     "executable_order",
     "first_tree",
@@ -43,4 +55,5 @@ __all__ = [
     "require_rates",
     "success_rate",
     "tree_costs",
+    "unit_price",
 ]

@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from foon_asp.problem.objective import Measured, Objective, multiplies
+from foon_asp.problem.objective import Known, Measured, Objective, multiplies
 
 _MEASURED = tuple(Objective)
 
@@ -55,7 +55,9 @@ class Costs:
         Raises ``ValueError`` for an objective that nothing is known for, as ``success`` without rates.
         """
         if objective not in self.measures:
-            raise ValueError(f"nothing is known for the objective {str(objective)!r}: no success rates")
+            raise ValueError(
+                f"nothing is known for the objective {str(objective)!r}: no {objective.row.needs}"
+            )
         return self.measures[objective]
 
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:
@@ -66,12 +68,12 @@ class Costs:
         )
 
 
-def tree_costs(units: Collection[Measured], items: int, rates_known: bool) -> Costs:
-    """Measure units that need a number of distinct kitchen items."""
+def tree_costs(units: Collection[Measured], items: int, known: Collection[Known]) -> Costs:
+    """Measure units that need a number of distinct kitchen items, by what is known of all of them."""
     measures: dict[Objective, int | Fraction] = {}
     for objective in _MEASURED:
         row = objective.row
-        if row.needs_rates and not rates_known:
+        if row.needs is not None and row.needs not in known:
             continue
         try:
             figures = list(map(row.unit, units))
@@ -80,5 +82,6 @@ def tree_costs(units: Collection[Measured], items: int, rates_known: bool) -> Co
         if row.multiplies:
             measures[objective] = math.prod(figures, start=Fraction(1))
         else:
-            measures[objective] = sum(figures) + items * row.item
+            start = 0 if row.whole else Fraction(0)
+            measures[objective] = sum(figures, start=start) + items * row.item
     return Costs(measures)

@@ -9,6 +9,13 @@ from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 
 
+class Known(StrEnum):
+    """What objectives look at that not all data have."""
+
+    RATES = "rates"
+    PRICES = "prices"
+
+
 class Measured(Protocol):
     """What an objective may look at in a unit."""
 
@@ -20,6 +27,10 @@ class Measured(Protocol):
     def rate(self) -> Fraction:
         """Its success rate, above 0 and at most 1; raises ``ValueError`` where it is not known."""
 
+    @property
+    def price(self) -> Fraction:
+        """Its price, from 0; raises ``ValueError`` where it is not known."""
+
 
 class Row(NamedTuple):
     """How an objective is measured.
@@ -28,7 +39,8 @@ class Row(NamedTuple):
     that the units need. What units cost is added up, and less is better; or, where it ``multiplies``, it is
     a factor, and more is better. ``term`` is the objective's name in the encodings, ``words`` are what a
     chart has on its axis. ``is_fact`` says that the encodings read what each unit costs from
-    ``cost/3``, since they have no other predicate for it. ``whole`` says that all costs are whole numbers.
+    ``cost/3``, since they have no other predicate for it. ``whole`` says that all costs are whole numbers,
+    and ``needs`` what has to be known for it.
     """
 
     term: str
@@ -36,7 +48,7 @@ class Row(NamedTuple):
     unit: Callable[[Measured], int | Fraction]
     item: int = 0
     multiplies: bool = False
-    needs_rates: bool = False
+    needs: Known | None = None
     is_fact: bool = False
     whole: bool = True
 
@@ -73,7 +85,12 @@ class Objective(StrEnum):
     SUCCESS = (
         "success",
         Row(
-            "success", "success rate", lambda unit: unit.rate, multiplies=True, needs_rates=True, whole=False
+            "success",
+            "success rate",
+            lambda unit: unit.rate,
+            multiplies=True,
+            needs=Known.RATES,
+            whole=False,
         ),
     )
     KITCHEN = "kitchen", Row("kitchen", "kitchen items", lambda _: 0, item=1)
@@ -83,7 +100,7 @@ class Objective(StrEnum):
             "attempts",
             "expected executions of units",
             lambda unit: 1 / unit.rate,
-            needs_rates=True,
+            needs=Known.RATES,
             is_fact=True,
             whole=False,
         ),

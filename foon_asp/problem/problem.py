@@ -1,6 +1,6 @@
-"""One question: a network, a kitchen, goals, rates and the container rule."""
+"""One question: a network, a kitchen, goals, rates, prices and the container rule."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree, UnitPrices
 from foon_asp.problem.containers import (
     ContainerRule,
     conditions,
@@ -18,10 +18,21 @@ from foon_asp.problem.containers import (
 )
 from foon_asp.problem.costs import Costs, tree_costs
 from foon_asp.problem.number import Number
-from foon_asp.problem.objective import Measured, Objective
+from foon_asp.problem.objective import Known, Measured, Objective
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
+
+UnitPricesNamed = Mapping[str | FunctionalUnit, Number]
+"""Prices of units, by motion and of single units."""
+
+
+class Unpriced(NamedTuple):
+    """Units of one motion that have no price: how many, and where the first was read."""
+
+    motion: str
+    units: int
+    source: Source
 
 
 class Origin(Protocol):
@@ -37,8 +48,12 @@ class Origin(Protocol):
         adding: Names,
         without: Names,
         rates: Mapping[str, Number] | None,
+        unit_prices: UnitPricesNamed | None,
     ) -> "Problem":
         """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
+
+    def unpriced(self) -> Sequence[Unpriced]:
+        """Give the units of the whole network that have no price."""
 
     def posed_whole(self, problem: "Problem") -> "Problem":
         """Pose a problem of these data over the whole network."""
@@ -55,7 +70,8 @@ class Problem:
     in ``network.objects``; all goals have to be made by one tree; a goal that is named again counts once.
     ``rates`` gives the success rate of every motion, or is ``None`` where none are known. ``utensils``
     are the labels that the rule ``implied`` looks at. ``own_rates`` gives, by id, the rates of units that
-    do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any. Of a store,
+    do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any.
+    ``unit_prices`` are the prices of units, ``None`` where none are known; ask :meth:`price`. Of a store,
     ``network`` is the part that can matter for the goals. ``origin`` is the data that it was posed of,
     ``None`` for a problem put together by hand. ``as_seen`` is the problem whose rates rules of the user's
     look at, where others count.
@@ -70,6 +86,7 @@ class Problem:
     own_rates: Mapping[int, Fraction] = field(default_factory=dict)
     origin: Origin | None = field(default=None, kw_only=True)
     as_seen: "Problem | None" = field(default=None, kw_only=True)
+    unit_prices: UnitPrices | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
@@ -118,18 +135,26 @@ class Problem:
         adding: Names = (),
         without: Names = (),
         rates: Mapping[str, Number] | None = None,
+        unit_prices: UnitPricesNamed | None = None,
     ) -> "Problem":
-        """Give the same problem with other goals, another container rule, kitchen or rates.
+        """Give the same problem with other goals, another container rule, kitchen, rates or prices.
 
         Nothing is read again, and nothing of the network is looked up anew; a store is read as far as the
-        new question goes beyond the old one. The kitchen varies as in :meth:`foon_asp.Foon.vary`. Raises
+        new question goes beyond the old one. What varies does as in :meth:`foon_asp.Foon.vary`. Raises
         :class:`UserError` for names that mean nothing or too much, and for a problem put together by hand,
         of which :func:`dataclasses.replace` makes another.
         """
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
         return self.origin.posed_anew(
-            self, goals, containers, kitchen=kitchen, adding=adding, without=without, rates=rates
+            self,
+            goals,
+            containers,
+            kitchen=kitchen,
+            adding=adding,
+            without=without,
+            rates=rates,
+            unit_prices=unit_prices,
         )
 
     def place(self, unit: FunctionalUnit) -> Source:
@@ -160,21 +185,30 @@ class Problem:
     def __repr__(self) -> str:
         return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"
 
-    def require_rates_for(self, objectives: Collection[Objective]) -> None:
-        """Raise :class:`UserError` where one of the objectives needs success rates and none are known.
+    def require_known_for(self, objectives: Collection[Objective]) -> None:
+        """Raise :class:`UserError` where one of the objectives needs what is not known: rates, or prices.
 
         So it does where one adds up what units cost by rates, and a rate is 0.
         """
-        sums = [str(each) for each in objectives if each.row.needs_rates and not each.row.multiplies]
+        by_rates = [each for each in objectives if each.row.needs is Known.RATES]
+        sums = [str(each) for each in by_rates if not each.row.multiplies]
         if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
             raise UserError(
                 f"a success rate is 0, by which the objective {sums[0]} has no number: leave it out"
             )
-        if self.rates is None and any(objective.row.needs_rates for objective in objectives):
+        if self.rates is None and by_rates:
             raise UserError(
                 "the objective success needs the success rates of the motions: "
                 "give a rates file, with --rates FILE or in Python load(..., rates=FILE)"
             )
+        by_prices = [str(each) for each in objectives if each.row.needs is Known.PRICES]
+        if by_prices and self.unit_prices is None:
+            raise UserError(
+                f"the objective {by_prices[0]} needs the prices of the units: "
+                "give a file of prices, with --unit-prices FILE or in Python load(..., unit_prices=FILE)"
+            )
+        if by_prices and self.unpriced:
+            raise UserError(_unpriced_text(self.unpriced))
 
     def rate(self, unit: int) -> Fraction:
         """Give the success rate of a unit: its own where it has one, else that of its motion.
@@ -186,6 +220,29 @@ class Problem:
         if unit in self.own_rates:
             return self.own_rates[unit]
         return self.rates[self.network.motions[unit]]
+
+    @cached_property
+    def prices(self) -> tuple[Fraction | None, ...]:
+        """The price of each unit, ``None`` where it has none."""
+        return (
+            (None,) * len(self.network) if self.unit_prices is None else self.unit_prices.each(self.network)
+        )
+
+    def price(self, unit: int) -> Fraction:
+        """Give the price of a unit; raises ``ValueError`` where none is known."""
+        price = self.prices[unit]
+        if price is None:
+            raise ValueError(f"no price of unit {unit} is known")
+        return price
+
+    @cached_property
+    def unpriced(self) -> Sequence[Unpriced]:
+        """The units that have no price, by motion: of a store, those of all of it."""
+        network = self.network
+        lacking = (unit for unit, price in enumerate(self.prices) if price is None)
+        found = count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
+        part = self.origin is not None and network.object_numbers
+        return (self.origin.unpriced() if self.origin is not None and part else ()) or found
 
     def different_rates(self, units: Iterable[int]) -> set[Fraction]:
         """Give the rates that some units have, each once; raises ``ValueError`` where none are known."""
@@ -202,7 +259,10 @@ class Problem:
         """Compute what a set of units costs; each unit counts once."""
         chosen = sorted(set(units))
         taken = {o for unit in chosen for o in self.needs[unit] if o in self.kitchen}
-        return tree_costs(list(map(self.measured, chosen)), len(taken), self.rates is not None)
+        known = {Known.RATES} if self.rates is not None else set()
+        if self.unit_prices is not None and all(self.prices[unit] is not None for unit in chosen):
+            known.add(Known.PRICES)
+        return tree_costs(list(map(self.measured, chosen)), len(taken), known)
 
     def measured(self, unit: int) -> Measured:
         """Give a unit as objectives look at it."""
@@ -211,7 +271,7 @@ class Problem:
     def figure(self, objective: Objective, unit: int) -> int | Fraction:
         """Give what a unit alone costs by an objective, which adds it up or multiplies it.
 
-        Raises ``ValueError`` where no rates are known that the objective needs.
+        Raises ``ValueError`` where no rate or price is known that the objective needs.
         """
         return objective.row.unit(_MeasuredUnit(self, unit))
 
@@ -232,6 +292,35 @@ class _MeasuredUnit(NamedTuple):
     def rate(self) -> Fraction:
         """Its success rate."""
         return self.problem.rate(self.unit)
+
+    @property
+    def price(self) -> Fraction:
+        """Its price."""
+        return self.problem.price(self.unit)
+
+
+def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
+    """Count units, of each the motion and the places of its copies, by motion."""
+    found: dict[str, Unpriced] = {}
+    for motion, sources in units:
+        before = found.get(motion) or Unpriced(motion, 0, sources[0] if sources else Source("-", 0))
+        found[motion] = before._replace(units=before.units + 1)
+    return list(found.values())
+
+
+def _unpriced_text(lacking: Sequence[Unpriced]) -> str:
+    """Say which units have no price, and what to do."""
+    lines = []
+    for motion, units, source in lacking[:10]:
+        more = "" if units == 1 else f", nor have {units - 1} more with this motion"
+        lines.append(f"{source}:1: error: the unit {motion!r} has no price{more}")
+    if len(lacking) > 10:
+        lines.append(f"... and units of {len(lacking) - 10} more motions")
+    lines.append(
+        "add a line with the motion, a tab and its price to the file of prices (unit_prices.txt), or one for "
+        "the single unit (docs/formats.md)"
+    )
+    return "\n".join(lines)
 
 
 def require_rates(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> None:

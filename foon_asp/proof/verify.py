@@ -25,10 +25,11 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
-from foon_asp.network import Network, node_at_level
+from foon_asp.network import Network, UnitPrices, node_at_level
 
 FORMAT = "foon-asp certificate"
-VERSION = 2
+VERSION = 3
+_WITH_PRICES = 3  # the first version with a digest of them
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts")
 
 _KEYS = {
@@ -127,6 +128,7 @@ def digests(
     kitchen: Iterable[int],
     rates: Mapping[str, Fraction] | None,
     utensils: Iterable[str],
+    prices: UnitPrices | None = None,
 ) -> dict[str, str]:
     """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's."""
     return {
@@ -134,6 +136,7 @@ def digests(
         "kitchen": _digest(sorted(kitchen)),
         "rates": _digest(rates and sorted([motion, str(rate)] for motion, rate in rates.items())),
         "utensils": _digest(sorted(utensils)),
+        "prices": _digest(prices and _stated(prices, network.detailed or network)),
     }
 
 
@@ -148,6 +151,7 @@ def verify(
     kitchen: frozenset[int],
     rates: Mapping[str, Fraction] | None,
     utensils: frozenset[str],
+    prices: UnitPrices | None = None,
 ) -> Verified:
     """Check a certificate against the data it speaks about; ``kitchen`` are object node ids.
 
@@ -160,15 +164,18 @@ def verify(
         _require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
         version = certificate.get("version")
         _require(
-            type(version) is int and version in (1, VERSION), f"expected version {VERSION} of the format"
+            type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format"
         )
         _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
         _require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
         _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
         level = certificate["level"]
         _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
-        stated = _object(certificate["digests"], ("network", "kitchen", "rates", "utensils"))
-        for name, digest in digests(network, kitchen, rates, utensils).items():
+        found = digests(network, kitchen, rates, utensils, prices)
+        if version < _WITH_PRICES:
+            del found["prices"]
+        stated = _object(certificate["digests"], tuple(found))
+        for name, digest in found.items():
             _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
         return _Check(certificate, network, kitchen, rates, utensils).claim()
     except RecursionError:
@@ -564,6 +571,13 @@ def _described(network: Network) -> list[Any]:
     ]
     below = [] if network.detailed is None else [_described(network.detailed), network.stands_for]
     return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
+
+
+def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
+    """List the prices by motion, and of the single units that there are by their id at level 3."""
+    ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
+    single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
+    return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
 
 
 def _digest(value: object) -> str:

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.dataset import Dataset
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, unit_at_level
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitPrices, unit_at_level
 from foon_asp.problem import (
     ContainerRule,
     Costs,
+    Known,
     container_rule,
     given_outputs,
     needed_inputs,
@@ -172,7 +173,8 @@ def _file_side(file: Path, dataset: Dataset, goals_named: Sequence[str], contain
     units = [(unit_at_level(unit, network.level), source) for unit, source in listed]
     kitchen = frozenset(objects[o] for o in data.kitchen)
     rule = container_rule(containers)
-    return side(str(file), units, goals, kitchen, rule, data.utensils, data.rates, network)
+    beside = data.utensils, data.rates, network
+    return side(str(file), units, goals, kitchen, rule, *beside, unit_prices=data.unit_prices)
 
 
 @question(
@@ -244,6 +246,7 @@ def _side(name: str, given: Answer | Tree | Side) -> Side:
         problem.rates,
         problem.network,
         ending,
+        problem.unit_prices,
     )
 
 
@@ -257,6 +260,7 @@ def side(
     rates: Mapping[str, Fraction] | None,
     network: Network | None = None,
     ending: Ending = Ending.DONE,
+    unit_prices: UnitPrices | None = None,
 ) -> Side:
     """Take a tree as one side of a difference; its units need not be those of any network.
 
@@ -266,9 +270,15 @@ def side(
     units = tuple(dict.fromkeys(unit for unit, _ in listed))
     needs = {unit: needed_inputs(unit, rule, utensils, network) for unit in units}
     gives = {unit: given_outputs(unit, rule, utensils, network) for unit in units}
-    known = rates is not None and all(unit.motion in rates for unit in units)
+    known = set()
+    if rates is not None and all(unit.motion in rates for unit in units):
+        known.add(Known.RATES)
+    priced = unit_prices or UnitPrices({}, {})
+    prices = {unit: priced.price(unit, network) for unit in units}
+    if unit_prices is not None and None not in prices.values():
+        known.add(Known.PRICES)
     taken = {node for needed in needs.values() for node in needed if node in kitchen}
-    costs = tree_costs([_ListedUnit(unit, rates) for unit in units], len(taken), known)
+    costs = tree_costs([_ListedUnit(unit, rates, prices[unit]) for unit in units], len(taken), known)
     return Side(name, units, places, needs, gives, tuple(goals), kitchen, costs, ending)
 
 
@@ -277,6 +287,7 @@ class _ListedUnit(NamedTuple):
 
     unit: FunctionalUnit
     rates: Mapping[str, Fraction] | None
+    known_price: Fraction | None
 
     @property
     def inputs(self) -> tuple[ObjectNode, ...]:
@@ -289,6 +300,13 @@ class _ListedUnit(NamedTuple):
         if self.rates is None:
             raise ValueError("no success rates are known")
         return self.rates[self.unit.motion]
+
+    @property
+    def price(self) -> Fraction:
+        """Its price."""
+        if self.known_price is None:
+            raise ValueError("no price is known")
+        return self.known_price
 
 
 def _way(tree: Side, goals: Sequence[ObjectNode]) -> dict[ObjectNode, None]:

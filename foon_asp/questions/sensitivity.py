@@ -208,7 +208,7 @@ def sensitivity(
     Constraints that look at success rates see those that are given, whatever rate is asked about. The limits
     are for all of it. Otherwise as :func:`foon_asp.solve`.
     """
-    problem.require_rates_for(_SUCCESS)
+    problem.require_known_for(_SUCCESS)
     for motion in sorted(set(problem.network.motions)):
         success_rate((problem.rates or {})[motion], f"the success rate of {motion!r}")
     for rate in problem.own_rates.values():

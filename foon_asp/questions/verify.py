@@ -94,5 +94,5 @@ def verify(data: Foon | Problem, certificate: "Certificate | str | PathLike[str]
     else:
         content = proof.read_certificate(certificate.text())
     read = (data if isinstance(data, Foon) else Foon.of(data)).dataset.data
-    verified = proof.verify(content, read.network, read.kitchen, read.rates, read.utensils)
+    verified = proof.verify(content, read.network, read.kitchen, read.rates, read.utensils, read.unit_prices)
     return VerifiedCertificate(verified, read.network, content)

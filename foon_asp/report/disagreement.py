@@ -3,7 +3,6 @@
 import json
 import platform
 import shlex
-from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from foon_asp.proof.verify import digests
 from foon_asp.report.answer import costs_json, outcome_dict
 from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import encodings_folder
-from foon_asp.text import write_units
+from foon_asp.text import decimal_text, write_unit_prices, write_units
 
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
 
@@ -39,7 +38,7 @@ def write_disagreement(asked: Asked, found: DisagreementError) -> str:
 def disagreement_name(outcome: Outcome) -> str:
     """Name the folder, by the data and the question."""
     problem = outcome.problem
-    marks = digests(problem.network, problem.kitchen, problem.rates, problem.utensils)
+    marks = digests(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     return f"foon-asp-disagreement-{marks['network'][:8]}-{'-'.join(map(str, problem.goals))}"
 
 
@@ -86,7 +85,7 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
         "bare_clingo": shlex.join(bare),
         "versions": {"python": platform.python_version()} | {name: _version(name) for name in _DISTRIBUTIONS},
         "platform": platform.platform(),
-        "digests": digests(network, problem.kitchen, problem.rates, problem.utensils),
+        "digests": digests(network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
         "kitchen": [str(node) for node in nodes],
         "forbidden_units": sorted(coverage(settings).forbids(network)),
         "answer": outcome_dict(outcome) | ({"penalty": asked.penalty} if asked.soft else {}),
@@ -106,7 +105,9 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
         "report.json": json.dumps(report, indent=2, ensure_ascii=False) + "\n",
     }
     if problem.rates is not None:
-        files["motion.txt"] = "".join(f"{motion}\t{_decimal(r)}\n" for motion, r in problem.rates.items())
+        files["motion.txt"] = "".join(f"{motion}\t{decimal_text(r)}\n" for motion, r in problem.rates.items())
+    if problem.unit_prices is not None:
+        files["unit_prices.txt"] = write_unit_prices(problem.unit_prices)
     return files
 
 
@@ -142,12 +143,3 @@ def _version(distribution: str) -> str | None:
         return version(distribution)
     except PackageNotFoundError:
         return None
-
-
-def _decimal(rate: Fraction) -> str:
-    """Write a rate as the decimal it was read from."""
-    places = 0
-    while (rate * 10**places).denominator != 1 and places < 1000:
-        places += 1
-    digits = f"{int(rate * 10**places):0{places + 1}d}"
-    return f"{digits[:-places]}.{digits[-places:]}" if places else digits

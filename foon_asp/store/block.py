@@ -7,7 +7,7 @@ from zlib import crc32
 from foon_asp.text.json_value import read_json
 
 APPLICATION_ID = 0x464F4F4E  # "FOON", in SQLite's header
-VERSION = 1  # of what is in the tables; SQLite's user_version
+VERSION = 2  # of what is in the tables; SQLite's user_version
 
 _CHECKSUM = 4  # bytes in front of every block
 
@@ -16,7 +16,7 @@ class Table(StrEnum):
     """The tables of a store. Each has the columns ``number`` (from 0) and ``content``, a block.
 
     ``about``: counts, and what stands beside the network. ``unit``, ``node``, ``producers``, ``motion``,
-    ``origin``, ``kitchen``: what belongs to the ids from ``number`` times :data:`SIZES` on.
+    ``origin``, ``kitchen``, ``price``: what belongs to the ids from ``number`` times :data:`SIZES` on.
     ``node_hash``: node ids by hash. ``label``: the labels in alphabetical order, with their first nodes.
     ``trigram``: places of labels by three letters of them.
     """
@@ -31,6 +31,7 @@ class Table(StrEnum):
     MOTION = "motion"
     ORIGIN = "origin"
     KITCHEN = "kitchen"
+    PRICE = "price"
 
 
 # How many values share a block: so many are read to get one, and each block costs a row.
@@ -44,6 +45,7 @@ SIZES = {
     Table.MOTION: 64,
     Table.ORIGIN: 64,
     Table.KITCHEN: 64,
+    Table.PRICE: 64,
 }
 
 _encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 from foon_asp.escapes import note_line_end
@@ -84,10 +85,19 @@ def _rates(value: Any) -> bool:
 
 def _rate(value: Any) -> bool:
     """A fraction from 0 to 1, 0 excluded, in digits."""
-    if type(value) is not str:
+    return _price(value) and 0 < Fraction(value) <= 1
+
+
+def _prices(value: Any) -> bool:
+    return type(value) is dict and all(map(_price, value.values()))
+
+
+def _price(value: Any) -> bool:
+    """A fraction from 0, in digits."""
+    if type(value) is not str or len(value) >= _DIGITS:
         return False
     found = _FRACTION.fullmatch(value)
-    return found is not None and len(value) < _DIGITS and 0 < int(found[1]) <= int(found[2] or "1")
+    return found is not None and int(found[2] or "1") > 0
 
 
 def _counts(value: Any) -> bool:
@@ -98,10 +108,10 @@ def _counts(value: Any) -> bool:
     )
 
 
-_DIGITS = 4000  # of a rate; Python turns no more than 4,300 into a number
+_DIGITS = 4000  # of a rate or price; Python turns no more than 4,300 into a number
 _FRACTION = re.compile("([0-9]+)(?:/([0-9]+))?")
 _COUNTS: dict[str, Shape] = {
-    **dict.fromkeys(("units", "objects", "labels", "motions", "origins", "left_out"), _number),
+    **dict.fromkeys(("units", "objects", "labels", "motions", "origins", "left_out", "prices"), _number),
     **dict.fromkeys(("hash_blocks", "trigram_blocks"), _positive),
     "kitchen": _maybe(_number),
 }
@@ -111,7 +121,14 @@ _relations = _list(_row(_text, _text))
 _node = _row(_flag, _text, _texts, _relations, _list(_row(_text, _texts)), least=2)
 _entry = _row(_text, _texts, _texts, _maybe(_text), _relations, _text, _number, _number)
 
-_ABOUT: tuple[Shape, ...] = (_counts, _maybe(_rates), _maybe(_texts), _list(_entry), _numbers)
+_ABOUT: tuple[Shape, ...] = (
+    _counts,
+    _maybe(_rates),
+    _maybe(_texts),
+    _list(_entry),
+    _numbers,
+    _maybe(_prices),
+)
 _SHAPES: dict[Table, Shape] = {
     Table.UNIT: _block(Table.UNIT, _row(_number, _numbers, _numbers, _in_groups(3, least=1))),
     Table.NODE: _block(Table.NODE, _node),
@@ -119,7 +136,8 @@ _SHAPES: dict[Table, Shape] = {
     Table.NODE_HASH: _in_groups(2),
     Table.LABEL: _block(Table.LABEL, _row(_text, _number, _numbers)),
     Table.TRIGRAM: _by_trigram,
-    Table.MOTION: _block(Table.MOTION, _row(_text, _text, _number, _number)),
+    Table.MOTION: _block(Table.MOTION, _row(_text, _text, *[_number] * 6)),
     Table.ORIGIN: _block(Table.ORIGIN, _row(_text, _texts)),
     Table.KITCHEN: _block(Table.KITCHEN, _entry),
+    Table.PRICE: _block(Table.PRICE, _maybe(_row(_maybe(_price), _maybe(_price)))),
 }

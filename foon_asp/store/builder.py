@@ -3,16 +3,16 @@
 import sqlite3
 from array import array
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import islice
 from typing import Any
 
-from foon_asp.network import ObjectNode, Source
+from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, table_statement, unseal
 from foon_asp.store.label_index import label_values, trigram_blocks
 from foon_asp.store.plain_values import entry_values, node_hashes, node_values, pattern_hash
-from foon_asp.text import ListedObject
+from foon_asp.text import ListedObject, UnitPriceList
 
 _LATER_COPIES = 100_000  # copies of units written before, kept back to be written together
 
@@ -111,11 +111,18 @@ class StoreBuilder:
         rates: Mapping[str, Fraction] | None,
         utensils: Iterable[str] | None,
         left_out: int,
+        stated: Mapping[FunctionalUnit, Fraction],
+        listed: UnitPriceList | None,
     ) -> None:
-        """Write what is left, and the indexes; ``left_out`` counts lines that were not understood."""
+        """Write what is left, and the indexes; ``left_out`` counts lines that were not understood.
+
+        ``stated`` are prices that networks have for their units, ``listed`` those of a file, if there is one.
+        """
         self._flush(Table.UNIT, self.units - 1, self._unit_block)
         self._flush(Table.NODE, len(self._nodes) - 1, self._node_block)
         self._write_later()
+        own, beside_own = (self._by_id(prices) for prices in (stated, listed.units if listed else {}))
+        lacking = [self._lacking(own.keys()), self._lacking(own.keys() | beside_own.keys())]
         self._units.clear()  # memory for what follows
         producers = _by_key(self._made, self._makers, len(self._nodes))
         self._write_values(Table.PRODUCERS, producers)
@@ -127,10 +134,16 @@ class StoreBuilder:
         self._write_values(Table.LABEL, label_values(self._labels))
         trigrams = trigram_blocks(self._labels)
         self._write_all(Table.TRIGRAM, trigrams)
-        motions = ([motion, *source[:3]] for motion, source in self.motion_sources())
+        motions = (
+            [motion, *source[:3], *lacking[0][number], *lacking[1][number]]
+            for number, (motion, source) in enumerate(self.motion_sources())
+        )
         self._write_values(Table.MOTION, motions)
         self._write_values(Table.ORIGIN, self._origins)
         self._write_values(Table.KITCHEN, map(entry_values, self._kitchen or ()))
+        priced = self.units if own or beside_own else 0
+        prices = ((own.get(unit), beside_own.get(unit)) for unit in range(priced))
+        self._write_values(Table.PRICE, (None if row == (None, None) else row for row in prices))
         counts: dict[str, object] = {
             "units": self.units,
             "objects": len(self._nodes),
@@ -141,6 +154,7 @@ class StoreBuilder:
             "trigram_blocks": len(trigrams),
             "kitchen": None if self._kitchen is None else len(self._kitchen),
             "left_out": left_out,
+            "prices": priced,
         }
         beside = [
             counts,
@@ -148,12 +162,36 @@ class StoreBuilder:
             None if utensils is None else sorted(utensils),
             [entry_values(entry) for entry in goals],
             self._without_outputs,
+            {motion: str(price) for motion, price in listed.motions.items()} if listed else None,
         ]
         self._write_all(Table.ABOUT, beside)
 
     def motion_sources(self) -> Iterator[tuple[str, Source]]:
         """Give every motion with the place of the first unit that has it."""
         return zip(self._motions, self._motion_sources, strict=True)
+
+    def unit_id(self, unit: FunctionalUnit) -> int | None:
+        """Give the id of a unit that was added, or ``None`` where it was not."""
+        motion = self._motions.get(unit.motion)
+        sides = [[self._nodes.get(node) for node in side] for side in (unit.inputs, unit.outputs)]
+        ins, outs = ([o for o in side if o is not None] for side in sides)
+        if motion is None or [ins, outs] != sides:
+            return None
+        return self._units.get((motion, *sorted(ins), -1, *sorted(outs)))
+
+    def _by_id(self, prices: Mapping[FunctionalUnit, Fraction]) -> dict[int, str]:
+        """Give prices of units that were added, by id."""
+        found = ((self.unit_id(unit), price) for unit, price in prices.items())
+        return {unit: str(price) for unit, price in found if unit is not None}
+
+    def _lacking(self, priced: Collection[int]) -> list[tuple[int, int]]:
+        """Give for each motion how many units with it are not among these, and the first of them, or 0."""
+        found = [(0, 0)] * len(self._motions)
+        for key, unit in self._units.items():
+            if unit not in priced:
+                count, first = found[key[0]]
+                found[key[0]] = (count + 1, first if count else unit)
+        return found
 
     def _new_node(self, node: ObjectNode, number: int) -> None:
         in_kitchen = False

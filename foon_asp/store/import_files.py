@@ -23,6 +23,8 @@ from foon_asp.text import (
     read_labels,
     read_object_list,
     read_rates,
+    read_unit_prices,
+    unit_price_warning,
 )
 
 
@@ -52,6 +54,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     goals = read_object_list(files.goals, warnings) if files.goals else []
     rates = read_rates(files.rates) if files.rates else None
     utensils = read_labels(files.utensils) if files.utensils else None
+    prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
     earlier = len(warnings)
     try:
         with _written(store) as database:
@@ -64,7 +67,11 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
             reader.raise_errors(earlier)
             if rates is not None:
                 require_rates(builder.motion_sources(), rates)
-            builder.finish(goals, rates, utensils, reader.left_out)
+            stated = reader.prices.settled(prices.units if prices else {})
+            for unit, source in prices.sources.items() if prices else ():
+                if builder.unit_id(unit) is None:
+                    warnings.append(unit_price_warning(unit, source))
+            builder.finish(goals, rates, utensils, reader.left_out, stated, prices)
     except sqlite3.Error as error:
         raise UserError(f"{store}: cannot be written: {error}") from None
     except OSError as error:

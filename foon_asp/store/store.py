@@ -1,6 +1,7 @@
 """A store, opened to ask questions: names, and the part of the network that a question is about."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -9,7 +10,7 @@ from typing import Any, Self
 
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
 from foon_asp.network.network import UnitKey
-from foon_asp.problem import ContainerRule, needed_inputs
+from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.block import Table
 from foon_asp.store.label_index import LabelIndex
 from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
@@ -58,6 +59,63 @@ class Store:
         return None if rates is None else {motion: Fraction(rate) for motion, rate in rates.items()}
 
     @cached_property
+    def motion_prices(self) -> dict[str, Fraction] | None:
+        """The prices of units by motion, or ``None`` when no file of prices was imported."""
+        prices = self._file.block(Table.ABOUT, 5)
+        return None if prices is None else {motion: Fraction(price) for motion, price in prices.items()}
+
+    @property
+    def has_unit_prices(self) -> bool:
+        """Whether single units have prices."""
+        return bool(self._counts["prices"])
+
+    def unit_prices(self, network: Network, listed: bool) -> dict[FunctionalUnit, Fraction]:
+        """Read the prices of single units of a part of the network, or of all of it.
+
+        They are those that the networks had which were imported, and where ``listed`` those of the file that
+        was imported beside them, which count before the others.
+        """
+        if not self.has_unit_prices:
+            return {}
+        rows: Iterable[Any]
+        if network.object_numbers:  # a part, be it one without units
+            rows = (self._at(Table.PRICE, unit) for unit in network.unit_numbers)
+        else:
+            rows = [row for block in self._file.blocks(Table.PRICE) for row in block]
+            if len(rows) != self.units:
+                self._file.damaged(f"{len(rows)} prices of {self.units} units")
+        prices = ((unit, _price(row, listed)) for unit, row in zip(range(len(network)), rows, strict=True))
+        return {network.unit(unit): Fraction(price) for unit, price in prices if price is not None}
+
+    def unpriced(
+        self, motions: Container[str], units: Iterable[FunctionalUnit], listed: bool
+    ) -> list[Unpriced]:
+        """Give the units that have no price, but for those with some motions, and for some others.
+
+        ``listed`` is as for :meth:`unit_prices`.
+        """
+        ids = {unit_id for unit in units if (unit_id := self.unit_id(unit)) is not None}
+        others = Counter(self._at(Table.UNIT, u)[0] for u in ids if self._stored_price(u, listed) is None)
+        found: dict[int, Unpriced] = {}
+        for number in range(self._counts["motions"]):
+            motion, *_, own, first_own, both, first_both = self._at(Table.MOTION, number)
+            count, first = (both, first_both) if listed else (own, first_own)
+            count -= others[number]
+            if motion in motions or count <= 0:
+                continue
+            while first in ids or not self._is_unpriced(first, number, listed):
+                first += 1
+            source = self._source(*self._at(Table.UNIT, first)[3][:3])
+            found[first] = Unpriced(motion, count, source)
+        return [found[first] for first in sorted(found)]
+
+    def _is_unpriced(self, unit: int, motion: int, listed: bool) -> bool:
+        return self._at(Table.UNIT, unit)[0] == motion and self._stored_price(unit, listed) is None
+
+    def _stored_price(self, unit: int, listed: bool) -> str | None:
+        return _price(self._at(Table.PRICE, unit), listed) if self.has_unit_prices else None
+
+    @cached_property
     def utensils(self) -> frozenset[str]:
         """The labels of utensils."""
         return frozenset(self._file.block(Table.ABOUT, 2) or ())
@@ -74,7 +132,7 @@ class Store:
     def motion_sources(self) -> list[tuple[str, Source]]:
         """Read every motion, with the place of the first unit that has it."""
         motions = range(self._counts["motions"])
-        return [(values[0], Source(*values[1:])) for values in (self._at(Table.MOTION, m) for m in motions)]
+        return [(values[0], Source(*values[1:4])) for values in (self._at(Table.MOTION, m) for m in motions)]
 
     def node(self, object_id: int) -> ObjectNode:
         """Give the node with that id."""
@@ -220,3 +278,9 @@ class Store:
 
     def _at(self, table: Table, number: int) -> Any:
         return self._file.value(table, number)
+
+
+def _price(row: list[str | None] | None, listed: bool) -> str | None:
+    """Give the price of a unit: its own, or where those of the file count, the file's if it has one."""
+    own, of_file = row or (None, None)
+    return of_file if listed and of_file is not None else own

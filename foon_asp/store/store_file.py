@@ -128,8 +128,13 @@ class StoreFile:
                 f"{file}: has version {version} of the store format, this foon-asp reads version {VERSION}: "
                 "it needs a newer foon-asp, or a new import of the files that it was made from"
             )
-        if version != VERSION:
+        if version < 1:
             self.damaged(f"version {version} of the store format never was")
+        if version != VERSION:
+            raise UserError(
+                f"{file}: has version {version} of the store format, this foon-asp reads version {VERSION}: "
+                "import the files again that it was made from"
+            )
         page = int.from_bytes(header[16:18])
         expected = (65536 if page == 1 else page) * int.from_bytes(header[28:32])
         if size != expected:

@@ -8,8 +8,11 @@ from foon_asp.text.data_folder import (
     kitchen_nodes,
     network_files,
     read_data,
+    unit_price_warning,
+    unit_prices,
 )
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
+from foon_asp.text.exact_price import decimal_text
 from foon_asp.text.goal_name import (
     GoalError,
     NodeNames,
@@ -26,6 +29,7 @@ from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store, read_plain_text
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
+from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices, write_unit_prices
 from foon_asp.text.writer import write_units
 
 __all__ = [
@@ -42,7 +46,9 @@ __all__ = [
     "NodeNames",
     "Severity",
     "SomeNames",
+    "UnitPriceList",
     "Wording",
+    "decimal_text",
     "excerpt_with_caret",
     "find_data",
     "find_goal",
@@ -59,6 +65,10 @@ __all__ = [
     "read_object_list",
     "read_plain_text",
     "read_rates",
+    "read_unit_prices",
     "summarize",
+    "unit_price_warning",
+    "unit_prices",
+    "write_unit_prices",
     "write_units",
 ]

@@ -166,9 +166,10 @@ class Converter:
                 self._cannot_hold(problem, unit.motion_source)
                 continue
             if self.target.is_json:
-                units.append(written_unit(inputs, motion[0], outputs, level))
+                units.append(written_unit(inputs, motion[0], outputs, unit.price, level))
             else:
                 units.append("".join((*inputs, *motion, *outputs, "//\n")))
+                lost.add([Loss.PRICES] if unit.price else [], unit.motion_source)
         if self.target is Dialect.JSON:
             return written_network(videos, units)
         if self.target is Dialect.JSON_LIST:

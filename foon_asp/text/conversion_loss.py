@@ -20,6 +20,7 @@ class Loss(StrEnum):
     FIELDS = "further fields"
     TIMES = "times"
     RATES = "entities and their success rates"
+    PRICES = "prices of units"
     COMPOSITE = "composite marks *"
     RELATION_WORDS = "relation words: read back as in [...] or any place"
     RELATIONS = "further relations of an object"

@@ -7,19 +7,28 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.network import Network, network_at_level, pattern_at_level
+from foon_asp.network import (
+    FunctionalUnit,
+    Network,
+    Source,
+    UnitPrices,
+    network_at_level,
+    pattern_at_level,
+)
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import read_content
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
+from foon_asp.text.stated_prices import StatedPrices
+from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices
 
-_RATES, _UTENSILS = "motion.txt", "utensils.txt"
+_RATES, _UTENSILS, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt"
 # In JSON or as FOON text, the first that is there.
 _KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
 _OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
-_SIDE_TABLES = {_RATES, _UTENSILS, *_KITCHENS, *_GOALS}
+_SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, *_KITCHENS, *_GOALS}
 
 
 class DataFiles(NamedTuple):
@@ -30,13 +39,14 @@ class DataFiles(NamedTuple):
     rates: Path | None = None
     utensils: Path | None = None
     goals: Path | None = None
+    unit_prices: Path | None = None
 
 
 class Data(NamedTuple):
     """Everything read: the merged network and what stands beside it.
 
     ``kitchen`` are the ids of the object nodes that ``kitchen_items`` stand for. ``rates`` is ``None`` where
-    there is no rates file.
+    there is no rates file, ``unit_prices`` where there is no file of prices and no unit has one.
     ``warnings`` lists what was assumed while reading; ``left_out`` counts the lines dropped.
     """
 
@@ -48,6 +58,7 @@ class Data(NamedTuple):
     utensils: frozenset[str]
     warnings: tuple[Diagnostic, ...]
     left_out: int
+    unit_prices: UnitPrices | None = None
 
 
 def find_data(
@@ -57,20 +68,22 @@ def find_data(
     rates: Path | None = None,
     utensils: Path | None = None,
     goals: Path | None = None,
+    unit_prices: Path | None = None,
 ) -> DataFiles:
     """Find the files of a question: the pieces given on their own, and the folder's for all others.
 
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt`` and ``*.json`` files, and may
-    have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``, and ``goal_nodes.json`` or
-    ``goal_nodes.txt``. Raises :class:`UserError` where something named does not exist.
+    have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``, ``unit_prices.txt``, and
+    ``goal_nodes.json`` or ``goal_nodes.txt``. Raises :class:`UserError` where something named does not exist.
     """
-    for path in (folder, kitchen, rates, utensils, goals, *network):
+    beside_it = (kitchen, rates, utensils, goals, unit_prices)
+    for path in (folder, *beside_it, *network):
         if path is not None and not path.exists():
             raise UserError(f"{path}: no such file or folder")
     if folder is not None and not folder.is_dir():
         raise UserError(f"{folder}: expected a folder; a single network is given with --network")
     sources = network or ([folder] if folder else [])
-    tables = {path.resolve() for path in (kitchen, rates, utensils, goals) if path is not None}
+    tables = {path.resolve() for path in beside_it if path is not None}
     files = tuple(
         file
         for source in sources
@@ -91,6 +104,7 @@ def find_data(
         beside(rates, _RATES),
         beside(utensils, _UTENSILS),
         beside(goals, *_GOALS),
+        beside(unit_prices, _UNIT_PRICES),
     )
 
 
@@ -124,7 +138,8 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     are the same as it there.
     """
     reader = FoonReader(lenient)
-    network = network_at_level(reader.read_network(files.network), level)
+    whole = reader.read_network(files.network)
+    network = network_at_level(whole, level)
     warnings = reader.diagnostics
     items = tuple(read_object_list(files.kitchen, warnings)) if files.kitchen else ()
     kitchen: set[int] = set()
@@ -137,6 +152,11 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         entry._replace(pattern=pattern_at_level(entry.pattern, level))
         for entry in (read_object_list(files.goals, warnings) if files.goals else ())
     )
+    listed = read_unit_prices(files.unit_prices) if files.unit_prices else None
+    if listed:
+        warnings += (
+            unit_price_warning(*each) for each in listed.sources.items() if whole.unit_id(each[0]) is None
+        )
     return Data(
         network,
         frozenset(kitchen),
@@ -146,12 +166,29 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         read_labels(files.utensils) if files.utensils else frozenset(),
         tuple(warnings),
         reader.left_out,
+        unit_prices(reader.prices, listed),
     )
 
 
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
     """Give the object nodes that kitchen items stand for, at the level of the network."""
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
+
+
+def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
+    """Put the prices of a file beside those that networks state of their units, which the file's replace.
+
+    Raises :class:`InputError` for copies of a unit that disagree, where the file has no price for it.
+    """
+    chosen = listed.units if listed else {}
+    settled = stated.settled(chosen)
+    return UnitPrices(listed.motions if listed else {}, settled | chosen) if listed or settled else None
+
+
+def unit_price_warning(unit: FunctionalUnit, source: Source) -> Diagnostic:
+    """Say that the price of a single unit is of no use."""
+    message = f"the unit {str(unit)!r} is none of the network"
+    return Diagnostic(Severity.WARNING, "unit-price", message, source)
 
 
 def kitchen_item_warning(item: ListedObject) -> Diagnostic:

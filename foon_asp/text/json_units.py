@@ -10,13 +10,15 @@ from pathlib import Path
 
 from foon_asp.network import Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.text.exact_price import read_price
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import check_keys, number, optional_name, read_object
 from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
 
-_KEYS = {"input_nodes", "motion_node", "output_nodes"}
+_NEEDED = {"input_nodes", "motion_node", "output_nodes"}
+_KEYS = {*_NEEDED, "price"}
 _LABELS = {"label", "object_label"}
 _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_type", "weight_success"}
 
@@ -65,7 +67,7 @@ def read_json_units(
 
 
 def _is_object(value: object) -> bool:
-    return isinstance(value, dict) and not value.keys() & _KEYS and bool(value.keys() & _LABELS)
+    return isinstance(value, dict) and not value.keys() & _NEEDED and bool(value.keys() & _LABELS)
 
 
 def _videos(value: object) -> tuple[str, ...]:
@@ -77,14 +79,29 @@ def _videos(value: object) -> tuple[str, ...]:
 def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, list[str]]:
     """Read a unit; what of it had to be left out or assumed is said in words beside it."""
     value, source = element
-    if not isinstance(value, dict) or not value.keys() >= _KEYS:
-        raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_KEYS))}")
+    if not isinstance(value, dict) or not value.keys() >= _NEEDED:
+        raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_NEEDED))}")
     check_keys(value, _KEYS)
     remarks: list[str] = []
     inputs, outputs = (_side(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
     motion = _motion(value["motion_node"], remarks)
-    unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source)
+    price = _price(value.get("price"))
+    unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source, price)
     return unit, list(dict.fromkeys(remarks))
+
+
+def _price(value: object) -> str:
+    """Give the price of a unit as it is written, a number or text; empty where there is none."""
+    if value is None:
+        return ""
+    written = value.text if isinstance(value, JsonNumber) else value
+    if not isinstance(written, str):
+        raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
+    try:
+        read_price(written)
+    except ValueError as error:
+        raise ValueError(f'in "price": {error}') from None
+    return written
 
 
 def _side(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:

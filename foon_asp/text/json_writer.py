@@ -91,15 +91,16 @@ def list_motion(line: MotionLine) -> str:
     return _text(line.motion)
 
 
-def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], level: int) -> str:
+def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
     """Put a unit together from the texts of its parts, laid out for a unit that stands at that level.
 
-    Its motion then stands one level deeper, and its objects two.
+    Its motion then stands one level deeper, and its objects two. ``price`` is empty where it has none.
     """
     key = "\n" + STEP * (level + 1)
     sides = (written_list(side, level + 1) for side in (inputs, outputs))
-    return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}}}'.format(
-        key, *sides, motion, "\n" + STEP * level
+    last = f',{key}"price": {_text(_number(price))}' if price else ""
+    return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}{5}}}'.format(
+        key, *sides, motion, last, "\n" + STEP * level
     )
 
 

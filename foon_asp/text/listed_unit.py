@@ -29,7 +29,8 @@ class ListedUnit(NamedTuple):
     """One copy of a functional unit with its lines as read, nodes in the order listed.
 
     ``sources`` has one entry, unless a merged file says from which copies the unit came;
-    ``motion_source`` is the place of its motion.
+    ``motion_source`` is the place of its motion. ``price`` is that of this copy as written,
+    empty where it has none.
     """
 
     motion: MotionLine
@@ -37,6 +38,7 @@ class ListedUnit(NamedTuple):
     outputs: tuple[ObjectBlock, ...]
     sources: tuple[Source, ...]
     motion_source: Source
+    price: str = ""
 
 
 def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:

@@ -7,6 +7,7 @@ from typing import NamedTuple, cast
 
 from foon_asp.network import Contents, FunctionalUnit, Network, NetworkBuilder, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.exact_price import read_price
 from foon_asp.text.json_units import is_json, read_json_units
 from foon_asp.text.line import (
     Line,
@@ -20,6 +21,7 @@ from foon_asp.text.line import (
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, node_of
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.provenance import is_video, read_copy, read_video
+from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.writer import write_line
 
 _AHEAD = 65_536  # letters looked ahead for new lines, so that they go to the parser together
@@ -49,13 +51,15 @@ class FoonReader:
 
     With ``lenient``, what cannot be understood is left out with a warning, and everything else is kept;
     otherwise it is an error. Diagnostics of all files read so far are in ``diagnostics``; ``left_out``
-    counts the lines that are in no unit because they were not understood or make none.
+    counts the lines that are in no unit because they were not understood or make none; ``prices`` are those
+    that copies of units have.
     """
 
     def __init__(self, lenient: bool = False) -> None:
         self.lenient = lenient
         self.diagnostics: list[Diagnostic] = []
         self.left_out = 0
+        self.prices = StatedPrices()
         # By text without the first letter, and only what there is no remark on.
         self.nodes: dict[str, ObjectNode] = {}
         self.motions: dict[str, str] = {}
@@ -127,7 +131,10 @@ class FoonReader:
         return _FileReading(self, text, file).object_blocks()
 
     def _json_units(self, text: str, file: str) -> Iterator[ListedUnit]:
-        return read_json_units(text, file, self.diagnostics, self.lenient)
+        for unit in read_json_units(text, file, self.diagnostics, self.lenient):
+            if unit.price:
+                self.prices.add(_of(unit), read_price(unit.price), unit.motion_source)
+            yield unit
 
     def parse_new(self, lines: Iterable[str]) -> None:
         """Parse the lines not met before together, which is faster than each in its turn."""
@@ -158,6 +165,11 @@ class FoonReader:
                 parsed = error
             self._lines[line] = parsed
         return parsed
+
+
+def _of(unit: ListedUnit) -> FunctionalUnit:
+    inputs, outputs = ([block.node for block in side] for side in (unit.inputs, unit.outputs))
+    return FunctionalUnit.of(unit.motion.motion, inputs, outputs)
 
 
 def _identity(unit: ListedUnit) -> ReadUnit:

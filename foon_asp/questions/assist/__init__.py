@@ -178,7 +178,7 @@ def assist(
 
 def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict[str, Fraction] | None:
     """Read the rates of a person, beside which those of the robot have to be known, and above 0."""
-    problem.require_rates_for([Objective.SUCCESS])
+    problem.require_known_for([Objective.SUCCESS])
     assert problem.rates is not None
     for motion, rate in problem.rates.items():
         success_rate(rate, f"the success rate of {motion!r}")

@@ -1,0 +1,89 @@
+"""Prices of units: ``unit_prices.txt``, a motion or a single unit and its price on each line."""
+
+from fractions import Fraction
+from pathlib import Path
+from typing import NamedTuple
+
+from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices
+from foon_asp.text.exact_price import PriceError, decimal_text, read_price
+from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.table_rows import read_rows
+
+_ARROWS = ("→", "->")
+
+
+class UnitPriceList(NamedTuple):
+    """The prices of a file, and where each of its single units was read."""
+
+    motions: dict[str, Fraction]
+    units: dict[FunctionalUnit, Fraction]
+    sources: dict[FunctionalUnit, Source]
+
+
+def read_unit_prices(file: Path) -> UnitPriceList:
+    """Read ``motion⇥price`` lines, and ``motion⇥input⇥...⇥→⇥output⇥...⇥price`` for single units.
+
+    Nodes are in one-line notation; ``->`` is an arrow, too. Blank lines and ``#`` comments are passed over.
+    Raises :class:`InputError` for a line of another form, and for a motion or a unit with two different
+    prices.
+    """
+    found = UnitPriceList({}, {}, {})
+
+    def read(name: str, value: str, source: Source) -> None:
+        motion = name.strip()
+        *fields, written = value.split("\t")
+        column = len(name) + 2 + len(value) - len(written)
+        if not motion:
+            raise LineError(1, "a price", ("the motion before it",))
+        try:
+            price = read_price(written.strip())
+        except PriceError as error:
+            raise LineError(column, error.found, (error.expected,)) from None
+        if not fields:
+            if found.motions.setdefault(motion, price) != price:
+                raise LineError(column, f"a second price for {motion!r}", ("one",))
+            return
+        unit = _unit(motion, fields, len(name) + 2)
+        if found.units.setdefault(unit, price) != price:
+            raise LineError(column, "a second price for this unit", ("one",))
+        found.sources.setdefault(unit, source)
+
+    read_rows(file, "unit-price", "a price", read)
+    return found
+
+
+def write_unit_prices(prices: UnitPrices) -> str:
+    """Give the text of a file of prices."""
+    lines = [f"{motion}\t{decimal_text(price)}\n" for motion, price in prices.motions.items()]
+    for unit, price in prices.units.items():
+        fields = [
+            unit.motion,
+            *map(str, unit.inputs),
+            _ARROWS[0],
+            *map(str, unit.outputs),
+            decimal_text(price),
+        ]
+        lines.append("\t".join(fields) + "\n")
+    return "".join(lines)
+
+
+def _unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
+    """Read a unit from its inputs, an arrow and its outputs, which begin in a column."""
+    sides: list[list[ObjectNode]] = [[]]
+    for field in fields:
+        if field.strip() in _ARROWS:
+            if len(sides) > 1:
+                raise LineError(column, "a second arrow", ("an object node", "the price"))
+            if not sides[0]:
+                raise LineError(column, "an arrow", ("an input before it",))
+            sides.append([])
+        else:
+            try:
+                sides[-1].append(parse_node(field.strip()))
+            except LineError as error:
+                before = len(field) - len(field.lstrip())
+                raise LineError(column + before + error.column - 1, error.found, error.expected) from None
+        column += len(field) + 1
+    if len(sides) == 1:
+        raise LineError(column, "the price of a unit", ("an arrow (-> between two tabs) before it",))
+    return FunctionalUnit.of(motion, *sides)
