@@ -19,7 +19,15 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.exact_success import rate_scale
 from foon_asp.asp.soft import solve_soft
-from foon_asp.engines import Asked, Check, DisagreementError, NotCheckedError, bare_clingo, cross_check
+from foon_asp.engines import (
+    Asked,
+    Check,
+    DisagreementError,
+    Engine,
+    NotCheckedError,
+    bare_clingo,
+    cross_check,
+)
 from foon_asp.engines.bare_clingo import check_with_bare_clingo, greatest_weight
 from foon_asp.problem import ContainerRule, Objective, Problem
 from tests import oracle
@@ -465,7 +473,7 @@ def test_a_tree_that_is_denied_is_our_bug(cli: Cli, tmp_path: Path, monkeypatch:
 def test_what_is_found_is_said_where_no_file_can_be_written(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def wrong(asked: Asked) -> list[Check]:
+    def wrong(asked: Asked, engines: tuple[Engine, ...]) -> list[Check]:
         check_with_bare_clingo(asked._replace(outcome=without_tree(asked.outcome)), PATIENCE)
         return []
 
