@@ -35,7 +35,7 @@ def answer_row(asker: Asker, asked: Asked, memory_limit: int | None = None) -> R
     return row
 
 
-def failed_row(asked: Asked, error: str) -> Row:
+def failed_row(asked: Asked, error: str | None) -> Row:
     """Give the row of a question without an answer."""
     return {
         **asked.shown(),
@@ -51,10 +51,10 @@ def failed_row(asked: Asked, error: str) -> Row:
 
 def _answered(asked: Asked, outcome: Outcome) -> Row:
     network = outcome.problem.network
+    error = None if outcome.units or not outcome.stopped else f"stopped at {outcome.stopped}"
     return {
-        **asked.shown(),
+        **failed_row(asked, error),
         "status": str(outcome.status),
-        "error": None if outcome.units or not outcome.stopped else f"stopped at {outcome.stopped}",
         "proof": None if outcome.proof is None else str(outcome.proof),
         "costs": costs_json(outcome.costs, outcome.objectives),
         "lower_bound": bounds_json(outcome),

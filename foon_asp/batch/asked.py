@@ -1,7 +1,7 @@
 """One of many questions, and who turns it into a problem."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -47,11 +47,5 @@ class Asker(Protocol):
         """Pose a question; raises :class:`UserError` where a goal or a kitchen is not there."""
 
 
-class Opener(Protocol):
-    """Opens the data, once in each worker: it has to pickle, and equal ones open the same."""
-
-    def __call__(self) -> Asker:
-        """Open the data."""
-
-    def __hash__(self) -> int:
-        """Be a key."""
+Opener = Callable[[], Asker]
+"""Opens the data, once in each worker: it has to pickle and to have a hash, and equal ones open the same."""

@@ -2,6 +2,7 @@
 
 import functools
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from foon_asp.batch.answer_row import Row, answer_row, failed_row
@@ -42,7 +43,7 @@ def answer_on_cluster(
             return future
 
         running = as_completed()
-        for asked in _some(waiting, _AHEAD * max(1, _threads(client))):
+        for asked in islice(waiting, _AHEAD * max(1, _threads(client))):
             running.add(submit(asked))
         for future in running:
             asked = asked_of.pop(future.key)
@@ -50,17 +51,9 @@ def answer_on_cluster(
                 row = future.result()
             else:
                 row = failed_row(asked, f"on the cluster: {future.exception()}")
-            for following in _some(waiting, 1):
+            for following in islice(waiting, 1):
                 running.add(submit(following))
             yield asked, row
-
-
-def _some(waiting: Iterator[Asked], count: int) -> Iterator[Asked]:
-    for _ in range(count):
-        asked = next(waiting, None)
-        if asked is None:
-            return
-        yield asked
 
 
 def _threads(client: "Client") -> int:

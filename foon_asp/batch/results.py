@@ -4,7 +4,7 @@ import contextlib
 import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from foon_asp.asp import Status
 from foon_asp.batch.answer_row import Row
@@ -22,20 +22,7 @@ _QUESTION, _WAITING = "_question.jsonl", "_waiting.jsonl"
 _PART = re.compile(r"part-(\d{6,18})\.parquet", re.ASCII)
 
 
-class Results(Protocol):
-    """Where rows go. ``done`` has the keys of the questions that have one, with the status in it."""
-
-    done: dict[str, str]
-
-    def add(self, asked: Asked, row: Row) -> None:
-        """Keep a row; it is on the disk when this returns."""
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(self, *_: object) -> None: ...
-
-
-def open_results(path: Path, question: dict[str, object]) -> Results:
+def open_results(path: Path, question: dict[str, object]) -> "Results":
     """Open results to be gone on with, or begin new ones: a folder for ``.parquet``, else JSON Lines.
 
     ``question`` says what all rows have in common. Raises :class:`UserError` where the results were begun
@@ -76,7 +63,7 @@ class JsonLines(RowsFile[_Kept]):
         self.done = {kept.key: kept.status for kept in self.found}
 
     def add(self, asked: Asked, row: Row) -> None:
-        """Keep a row."""
+        """Keep a row; it is on the disk when this returns."""
         self.write(row)
         self.done[asked.key] = str(row["status"])
 
@@ -114,7 +101,7 @@ class ParquetFolder:
         self.done |= {kept.key: kept.status for kept in self._rows.found}
 
     def add(self, asked: Asked, row: Row) -> None:
-        """Keep a row."""
+        """Keep a row; it is on the disk when this returns."""
         self._rows.write(row)
         self._waiting.append(dict(row))
         self.done[asked.key] = str(row["status"])
@@ -151,6 +138,10 @@ class ParquetFolder:
         self._parts += 1
         self._waiting = []
         self._open()
+
+
+Results = JsonLines | ParquetFolder
+"""Where rows go. ``done`` has the keys of the questions that have one, with the status in it."""
 
 
 def _parts(folder: Path) -> list[tuple[int, Path]]:

@@ -49,14 +49,20 @@ class Dataset:
     """Data that was read, and how many seconds that took.
 
     Whoever asks it for goals and problems leaves the rest to it; ``data`` is everything, for those that need
-    it. ``remarks`` are what was assumed while reading, in words; ``has_kitchen`` says that a kitchen was
-    given, be it an empty one.
+    it. ``listed`` are the entries of the goals file, ``names`` what goals are looked up in, ``rates`` the
+    success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
+    rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words;
+    ``has_kitchen`` says that a kitchen was given, be it an empty one.
     """
 
     def __init__(
         self, data: Data, read_seconds: float, remarks: tuple[str, ...] = (), has_kitchen: bool = True
     ) -> None:
         self._data = data
+        self.listed: Sequence[ListedObject] = data.goals
+        self.names: NodeNames = data.network
+        self.rates: Mapping[str, Fraction] | None = data.rates
+        self.utensils = data.utensils
         self.read_seconds = read_seconds
         self.remarks = remarks
         self.has_kitchen = has_kitchen
@@ -70,29 +76,9 @@ class Dataset:
         return self._data
 
     @property
-    def listed(self) -> Sequence[ListedObject]:
-        """The entries of the goals file."""
-        return self.data.goals
-
-    @property
-    def names(self) -> NodeNames:
-        """What goals are looked up in."""
-        return self.data.network
-
-    @property
-    def rates(self) -> Mapping[str, Fraction] | None:
-        """The success rates of motions, ``None`` where none are known."""
-        return self.data.rates
-
-    @property
     def unit_prices(self) -> UnitPrices | None:
         """The prices of units, ``None`` where none are known."""
         return self.data.unit_prices
-
-    @property
-    def utensils(self) -> frozenset[str]:
-        """The labels that the container rule ``implied`` looks at."""
-        return self.data.utensils
 
     @property
     def motions(self) -> list[str]:

@@ -18,7 +18,6 @@ from foon_asp.text import (
     DataFiles,
     Diagnostic,
     ListedObject,
-    NodeNames,
     kitchen_item_warning,
     kitchen_nodes,
     read_labels,
@@ -103,10 +102,11 @@ class StoredDataset(Dataset):
         remarks: tuple[str, ...] = (),
     ) -> None:
         self._store = store
+        self.names = store
         self._kitchen = kitchen
-        self._listed = goals
-        self._rates = rates
-        self._utensils = utensils
+        self.listed = goals
+        self.rates = rates
+        self.utensils = utensils
         self._prices = prices
         self._at_hand: Callable[[int], bool] = store.in_kitchen
         if kitchen is not None:
@@ -124,9 +124,7 @@ class StoredDataset(Dataset):
     def with_kitchen(self, items: Sequence[ListedObject]) -> Dataset:
         """Give the same store with the kitchen of another file."""
         began = time.perf_counter()
-        return StoredDataset(
-            self._store, items, self._listed, self._rates, self._utensils, self._prices, began
-        )
+        return StoredDataset(self._store, items, self.listed, self.rates, self.utensils, self._prices, began)
 
     def varied(
         self,
@@ -152,7 +150,7 @@ class StoredDataset(Dataset):
             return self
         other = copy.copy(self)
         other.__dict__.pop("data", None)
-        other._rates = changed_rates(self._rates, rates)
+        other.rates = changed_rates(self.rates, rates)
         known = UnitPrices(self._prices.motions or {}, self._prices.units)
         prices = changed_prices(known, unit_prices, self.motions, self._store)
         if unit_prices is not None and prices is not None:
@@ -174,11 +172,6 @@ class StoredDataset(Dataset):
         return data
 
     @property
-    def rates(self) -> Mapping[str, Fraction] | None:
-        """The success rates of motions, ``None`` where none are known."""
-        return self._rates
-
-    @property
     def unit_prices(self) -> UnitPrices | None:
         """The prices of units, ``None`` where none are known; all of them are read."""
         return self.data.unit_prices
@@ -186,11 +179,6 @@ class StoredDataset(Dataset):
     def unpriced(self) -> Sequence[Unpriced]:
         """Give the units that have no price, by motion."""
         return self._store.unpriced(self._prices.motions or {}, self._prices.units, self._prices.listed)
-
-    @property
-    def utensils(self) -> frozenset[str]:
-        """The labels that the container rule ``implied`` looks at."""
-        return self._utensils
 
     @property
     def motions(self) -> list[str]:
@@ -210,16 +198,6 @@ class StoredDataset(Dataset):
         """Whether the kitchen has an object node, by id."""
         return self._at_hand(o)
 
-    @property
-    def listed(self) -> Sequence[ListedObject]:
-        """The entries of the goals file."""
-        return self._listed
-
-    @property
-    def names(self) -> NodeNames:
-        """What goals are looked up in: the indexes of the store."""
-        return self._store
-
     def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
         """Give what a problem posed of this data has in its kitchen beyond it, and what it lacks.
 
@@ -236,7 +214,7 @@ class StoredDataset(Dataset):
         if everything:
             return ask(self.data, goals, containers, self)
         began = time.perf_counter()
-        cone = self._store.cone(goals, container_rule(containers), self._utensils, self._at_hand)
+        cone = self._store.cone(goals, container_rule(containers), self.utensils, self._at_hand)
         problem = ask(self._part(cone), _places(cone, goals), containers, self)
         self.read_seconds += time.perf_counter() - began
         return problem
@@ -261,12 +239,10 @@ class StoredDataset(Dataset):
         return self._with(network, frozenset(at_hand))
 
     def _with(self, network: Network, kitchen: frozenset[int]) -> Data:
-        goals = tuple(self._listed)
+        goals = tuple(self.listed)
         left_out = self._store.left_out
-        rates = None if self._rates is None else dict(self._rates)
-        return Data(
-            network, kitchen, (), goals, rates, self._utensils, (), left_out, self._prices_of(network)
-        )
+        rates = None if self.rates is None else dict(self.rates)
+        return Data(network, kitchen, (), goals, rates, self.utensils, (), left_out, self._prices_of(network))
 
     def _prices_of(self, network: Network) -> UnitPrices | None:
         """Give the prices of a part of the network, or of all of it."""

@@ -77,10 +77,9 @@ class GroundProgram:
                 faults.append(error)
             return not faults
 
-        def unsat(lower: Sequence[int]) -> None:
-            on_bound(list(lower))
-
-        with self._control.solve(async_=True, on_model=model, on_unsat=unsat) as handle:
+        with self._control.solve(
+            async_=True, on_model=model, on_unsat=lambda lower: on_bound(list(lower))
+        ) as handle:
             if self.deadline:
                 _wait(handle, self.deadline)
             ended = handle.get()

@@ -16,7 +16,7 @@ from typing import Any
 from foon_asp.errors import UserError
 from foon_asp.grounding.ground_program import GroundProgram
 from foon_asp.grounding.pipe import OUT_OF_MEMORY, receive, send
-from foon_asp.grounding.run import Heard, ProgramError
+from foon_asp.grounding.run import ProgramError
 
 
 def serve() -> None:
@@ -49,14 +49,8 @@ def serve() -> None:
             program.assign(*given)
             return None
         assert command == "search"
-
-        def tree(heard: Heard) -> None:
-            send(answers, ("tree", heard))
-
-        def bound(lower: list[int]) -> None:
-            send(answers, ("bound", lower))
-
         opt_mode, predicates = given
+        tree, bound = (lambda said, kind=kind: send(answers, (kind, said)) for kind in ("tree", "bound"))
         return program.search(opt_mode, predicates, tree, bound)
 
     while True:

@@ -17,21 +17,13 @@ def goal_findings(files: LintedFiles) -> Iterator[Diagnostic]:
     A unit makes what is among its outputs and not among its inputs. Without units, nothing is said of lists.
     """
     network = files.network
-    made = made_nodes(network)
+    sides = zip(network.inputs, network.outputs, strict=True)
+    made = {node for inputs, outputs in sides for node in set(outputs).difference(inputs)}
     for sheet in files.sheets:
         if sheet.entries is None:
             yield from _tagged(sheet, network, made)
         elif len(network):
             yield from _listed(sheet, network, made)
-
-
-def made_nodes(network: Network) -> set[int]:
-    """Give the object nodes that a unit makes."""
-    made: set[int] = set()
-    for inputs, outputs in zip(network.inputs, network.outputs, strict=True):
-        needed = set(inputs)
-        made.update(node for node in outputs if node not in needed)
-    return made
 
 
 def _tagged(sheet: Sheet, network: Network, made: set[int]) -> Iterator[Diagnostic]:

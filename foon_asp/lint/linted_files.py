@@ -14,7 +14,7 @@ from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
 from foon_asp.text.json_units import is_json
 from foon_asp.text.line import Line
-from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
+from foon_asp.text.listed_unit import ListedUnit
 from foon_asp.text.plain_file import split_lines
 from foon_asp.text.writer import write_line
 
@@ -94,7 +94,8 @@ class LintedFiles:
             return
         for unit in self.reader.listed_units(text, str(file)):
             self._add(unit, len(lines))
-            new = [*_lines(unit.inputs), unit.motion, *_lines(unit.outputs)]
+            inputs = [line for block in unit.inputs for line in block.lines]
+            new = [*inputs, unit.motion, *(line for block in unit.outputs for line in block.lines)]
             lines += [*map(_written, new), "//"]
             places += [unit.motion_source] * (len(new) + 1)
 
@@ -107,7 +108,7 @@ class LintedFiles:
                 for message in left_out
             ]
             entries.append(Entry(block.pattern(container), len(lines)))
-            written = [*map(_written, _lines([block]))]
+            written = [*map(_written, block.lines)]
             written += [f"S\tin\t[{container}]"] if container is not None else []
             lines += written
             places += [block.source] * len(written)
@@ -130,10 +131,3 @@ class LintedFiles:
 def _written(line: Line) -> str:
     """Write a line of JSON as one; names there may hold anything."""
     return _LINE_BREAK.sub(" ", write_line(line))
-
-
-def _lines(blocks: Iterable[ObjectBlock]) -> list[Line]:
-    lines: list[Line] = []
-    for block in blocks:
-        lines += (block.object, *block.states)
-    return lines

@@ -27,7 +27,7 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
     (``in [bowl]``, ``on [bowl]``) are one edit apart too.
     """
     loose = isinstance(other, NodePattern) and not other.relations
-    here, there = _parts(node, loose), _parts(other, loose)
+    here, there = list(_parts(node, loose)), list(_parts(other, loose))
     for part in list(here):
         if part in there:
             here.remove(part)
@@ -58,11 +58,7 @@ def nearest(node: ObjectNode, others: Iterable[ObjectNode], most: int) -> list[O
     return [other for _, _, other in ranked[:most]]
 
 
-def _parts(node: ObjectNode | NodePattern, loose: bool) -> list[_Part]:
-    return list(_named(node, loose))
-
-
-def _named(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_Part]:
+def _parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_Part]:
     yield "label", node.label
     yield from (("state", state) for state in sorted(node.states))
     yield from (("ingredient", ingredient) for ingredient in node.ingredients)

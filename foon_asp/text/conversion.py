@@ -86,10 +86,8 @@ class Converter:
             for unit in () if blocks else reader.listed_units(text, ""):
                 blocks += unit.inputs + unit.outputs
                 self._numbering.learn(unit.motion)
-            for block in blocks:
-                self._numbering.learn(block.object)
-                for state in block.states:
-                    self._numbering.learn(state)
+            for line in (line for block in blocks for line in block.lines):
+                self._numbering.learn(line)
             return
         lines = dict.fromkeys(split_lines(text))
         self._reader.parse_new(lines)
@@ -212,7 +210,7 @@ class Converter:
                 losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)
                 part = lay_out(text, level), losses
             else:
-                lines = [self._line_part(line), *map(self._line_part, states)]
+                lines = list(map(self._line_part, block.lines))
                 part = "".join(text for text, _ in lines), [loss for _, found in lines for loss in found]
             self._parts[key] = part
         return part

@@ -248,8 +248,7 @@ class _LineBuilder(Transformer[Token, object]):
         _blank_end(tokens, remarks)
         return _bracketed(*_tabbed(tokens, remarks), id_, remarks)
 
-    def holding(self, tokens: list[Token]) -> StateLine:
-        return self.related(tokens)
+    holding = related
 
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
         label, *notes = (part for part in parts if not isinstance(part, Token) or part.type == "NAME")

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple, cast
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text.line import MotionLine, ObjectLine, StateLine
+from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
 
 
 class ObjectBlock(NamedTuple):
@@ -18,6 +18,11 @@ class ObjectBlock(NamedTuple):
     def node(self) -> ObjectNode:
         """The object node that is mentioned; order, ids and fields are no part of it."""
         return node_of(self.object.label, (state.attribute for state in self.states))
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """Its lines, in order."""
+        return self.object, *self.states
 
     def pattern(self, container: str | None = None) -> NodePattern:
         """Give what it stands for in a list of objects; ``container`` is one that is named without a word."""

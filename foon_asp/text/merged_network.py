@@ -42,12 +42,10 @@ def _check_names(nodes: tuple[ObjectNode, ...], blocks: list[str], motions: dict
     for node, block in zip(nodes, blocks, strict=True):
         first, *rest = map(reader.parse, block[:-1].split("\n"))
         said: list[str | Relation | Contents] = [s.attribute for s in rest if isinstance(s, StateLine)]
-        whole = isinstance(first, ObjectLine) and len(said) == len(rest)
-        if (
-            not whole
-            or not _is_utf8(block)
-            or node_of(first.label if isinstance(first, ObjectLine) else "", said) != node
-        ):
+        back = (
+            node_of(first.label, said) if isinstance(first, ObjectLine) and len(said) == len(rest) else None
+        )
+        if back != node or not _is_utf8(block):
             raise UserError(f"the object node {str(node)!r} has a name that FOON text cannot hold")
     for motion, line in motions.items():
         parsed = reader.parse(line[:-1])

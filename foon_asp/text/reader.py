@@ -93,13 +93,6 @@ class FoonReader:
         self.raise_errors(earlier)
         return units
 
-    def read_listed(self, file: Path) -> list[ListedUnit]:
-        """Read one file as units with their lines as written, copies kept; raises :class:`InputError`."""
-        earlier = len(self.diagnostics)
-        units = list(self.listed_units(self.text(file), str(file)))
-        self.raise_errors(earlier)
-        return units
-
     def text(self, file: Path) -> str:
         """Give the text of a file; one that is no text is noted as an error, and is empty."""
         try:

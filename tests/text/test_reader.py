@@ -871,12 +871,13 @@ def test_the_lines_of_a_unit_are_kept_as_written() -> None:
     assert [block.source.line for block in (*unit.inputs, *unit.outputs)] == [1, 3, 5, 8]
 
 
-def test_listed_units_of_a_file_with_errors_are_refused(tmp_path: Path) -> None:
-    file = tmp_path / "f.txt"
-    file.write_text(MIX + "?\n" + MIX)
+def test_listed_units_of_a_text_with_errors_are_refused() -> None:
+    strict, lenient = FoonReader(), FoonReader(lenient=True)
+    texts = MIX + "?\n" + MIX, "f.txt"
+    assert [len(list(reader.listed_units(*texts))) for reader in (strict, lenient)] == [2, 2]
     with pytest.raises(InputError, match=r"f\.txt:5:1: error: found '\?'"):
-        FoonReader().read_listed(file)
-    assert len(FoonReader(lenient=True).read_listed(file)) == 2
+        strict.raise_errors()
+    lenient.raise_errors()
 
 
 # --- any network
