@@ -44,6 +44,7 @@ from generate import Family, generate
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.compare import makeable
+from foon_asp.deadline import Deadline
 from foon_asp.engines import EngineAnswer, agree
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, executable_order, levels
 from foon_asp.proof import Verdict, simulate_for
@@ -167,7 +168,7 @@ def our_work(question: Question, limit: float) -> Work:
         clingo_ready()
         unshare(question.problem)
         start()
-        outcome = solve(question.problem, (question.objective,), Settings(time_limit=limit))
+        outcome = solve(question.problem, (question.objective,), Settings(deadline=Deadline(limit)))
         return {
             "units": outcome.units,
             "status": outcome.status,

@@ -22,6 +22,7 @@ from pathlib import Path
 from statistics import median
 
 from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.deadline import Deadline
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.reduce import ALL, NONE, reduce
 from foon_asp.text import find_data, listed_nodes, read_data
@@ -128,12 +129,12 @@ def _solve_one(
 ) -> None:
     cone = len(reduce(problem, levels((objective,)), NONE).units)
     began = time.perf_counter()
-    outcome = solve(problem, (objective,), Settings(time_limit=arguments.limit, reductions=ALL))
+    outcome = solve(problem, (objective,), Settings(deadline=Deadline(arguments.limit), reductions=ALL))
     spent = time.perf_counter() - began
     note, plain = "", 0.0
     if arguments.plain:
         began = time.perf_counter()
-        other = solve(problem, (objective,), Settings(time_limit=arguments.plain, reductions=NONE))
+        other = solve(problem, (objective,), Settings(deadline=Deadline(arguments.plain), reductions=NONE))
         plain = time.perf_counter() - began
         note = f"{plain:.3f}"
         if other.status is Status.FEASIBLE:

@@ -30,6 +30,7 @@ from contest.plot import draw_growth
 from generate import Family, generate
 
 from foon_asp.asp import Settings, Status, solve
+from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach, relevant
 from foon_asp.store import import_files
 from foon_asp.text import find_data, find_goal, read_data
@@ -60,7 +61,7 @@ def measure(folder: Path, objective: Objective, limit: float) -> dict[str, float
         start = time.perf_counter()
         relevant(problem, reach(problem))
         cut = time.perf_counter()
-        outcome = solve(problem, (objective,), Settings(time_limit=limit))
+        outcome = solve(problem, (objective,), Settings(deadline=Deadline(limit)))
         whole = time.perf_counter() - cut
         unproved += outcome.status is not Status.OPTIMAL
         steps["cone"].append(cut - start)

@@ -1,5 +1,6 @@
 """Where the encodings and the bundled kitchen are: in the installed package, or beside it in a checkout."""
 
+from functools import cache
 from pathlib import Path
 
 from foon_asp.errors import BugError
@@ -7,6 +8,7 @@ from foon_asp.errors import BugError
 _PACKAGE = Path(__file__).resolve().parent
 
 
+@cache
 def _folder(name: str, witness: str) -> Path:
     for parent in (_PACKAGE, _PACKAGE.parent):
         if (parent / name / witness).is_file():

@@ -13,6 +13,7 @@ import pytest
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -335,7 +336,7 @@ def test_a_stop_while_trees_are_looked_at_one_by_one(monkeypatch: pytest.MonkeyP
         def __init__(
             self, problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
         ) -> None:
-            super().__init__(problem, objectives, settings._replace(time_limit=0), reporter)
+            super().__init__(problem, objectives, settings._replace(deadline=Deadline(0)), reporter)
 
     seeds = range(5000, 5060, 3)
     asked = [(ways(seed, ContainerRule.STRICT), table(seed)) for seed in seeds]

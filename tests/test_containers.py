@@ -15,7 +15,8 @@ import pytest
 
 import foon_asp
 from foon_asp import why_not
-from foon_asp.asp import Settings, Status, program_facts, solve
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.bare_program import program_facts
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify, certify_infeasible
 from foon_asp.engines.highs import solve_with_highs

@@ -17,7 +17,8 @@ from clingo import Control, Model, Number
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 from clingo.symbol import SymbolType
 
-from foon_asp.asp import Settings, program_facts
+from foon_asp.asp import Settings
+from foon_asp.asp.bare_program import program_facts
 from foon_asp.asp.facts import FACT_PREDICATES
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen

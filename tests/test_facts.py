@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.asp import Settings, program_facts
+from foon_asp.asp import Settings
+from foon_asp.asp.bare_program import program_facts
 from foon_asp.asp.facts import write_product
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source

@@ -205,7 +205,7 @@ def test_limits_and_ctrl_c_while_cutting(large: Path) -> None:
         for limit in (0.2, 1, 3):
             problem = question.problem((goal,), "strict")
             with within(0, limit + 1 + LATE):
-                outcome = solve(problem, (objective,), Settings(time_limit=limit))
+                outcome = solve(problem, (objective,), Settings(deadline=Deadline(limit)))
             if outcome.units is not None:
                 verdict = simulate_for(problem, problem.tree(outcome.units)).verdict
                 assert verdict is Verdict.AS_LISTED
@@ -244,7 +244,7 @@ def test_what_is_kept_in_a_session_outlives_a_stop(endless: Path) -> None:
     mine.write_text(':- use(U), motion(U,"fry").\n')
     kept = Settings(constraints=(mine,), session=session)
     first = solve(problem, settings=kept)
-    stopped = solve(problem, settings=kept._replace(constraints=(endless,), time_limit=0.5))
+    stopped = solve(problem, settings=kept._replace(constraints=(endless,), deadline=Deadline(0.5)))
     assert stopped.status is Status.UNKNOWN
     again = solve(problem, settings=kept)
     assert (again.status, again.costs) == (first.status, first.costs) == (Status.OPTIMAL, first.costs)
@@ -399,7 +399,7 @@ def test_soft_constraints_tell_what_the_tree_known_by_then_breaks(tmp_path: Path
     file.write_text(":- use(U), inputs(U,N), N > 1.\n")
     problem = hard_problem()
     with within(0, 3 + LATE):
-        found = solve_soft(problem, (Objective.UNITS,), Settings(time_limit=3), {file: 1})
+        found = solve_soft(problem, (Objective.UNITS,), Settings(deadline=Deadline(3)), {file: 1})
     assert found.outcome.status is Status.FEASIBLE
     assert found.outcome.units is not None
     broken = sum(len(problem.network.inputs[unit]) > 1 for unit in found.outcome.units)

@@ -39,7 +39,7 @@ class Recorder(Reporter):
 def test_time_limit(objective: Objective, seconds: float) -> None:
     problem, recorder = hard_problem(), Recorder()
     began = time.monotonic()
-    outcome = solve(problem, (objective,), Settings(time_limit=seconds), recorder)
+    outcome = solve(problem, (objective,), Settings(deadline=Deadline(seconds)), recorder)
     assert time.monotonic() - began < seconds + 3
     assert outcome.status is Status.FEASIBLE
     assert outcome.units is not None
@@ -53,7 +53,9 @@ def test_time_limit(objective: Objective, seconds: float) -> None:
 
 
 def test_a_limit_before_any_tree_is_unknown() -> None:
-    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=200",), time_limit=0)
+    settings = Settings(
+        constraints=(Path("at_most_units"),), constants=("max_units=200",), deadline=Deadline(0)
+    )
     outcome = solve(hard_problem(), (Objective.UNITS,), settings)
     assert outcome.status is Status.UNKNOWN
     assert outcome.units is None
@@ -140,7 +142,7 @@ def test_grounding_without_an_end_is_stopped(tmp_path: Path) -> None:
     rules = tmp_path / "endless.lp"
     rules.write_text(ENDLESS)
     began = time.monotonic()
-    outcome = solve(hard_problem(3, 3, 2, 2), settings=Settings(constraints=(rules,), time_limit=1))
+    outcome = solve(hard_problem(3, 3, 2, 2), settings=Settings(constraints=(rules,), deadline=Deadline(1)))
     assert time.monotonic() - began < 2.5
     assert outcome.status is Status.UNKNOWN
 

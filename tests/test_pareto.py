@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import pytest
 
 from foon_asp.asp import Outcome, Reporter, Settings, exact_success, solve
+from foon_asp.deadline import Deadline
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.questions.pareto import Front, pareto
@@ -201,7 +202,7 @@ def test_what_was_found_before_a_limit_is_on_the_front(
                 return solve(problem, objectives, settings, reporter)
             if interrupted:
                 raise KeyboardInterrupt
-            return solve(problem, objectives, settings._replace(time_limit=0.0), reporter)
+            return solve(problem, objectives, settings._replace(deadline=Deadline(0.0)), reporter)
 
         monkeypatch.setattr("foon_asp.questions.pareto.solve", stopping)
         front = pareto(problem, objectives)

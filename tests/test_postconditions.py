@@ -41,7 +41,7 @@ def outcome_of(problem: Problem, objectives: str = "units", **how: Any) -> Outco
 
 def break_wanted_product(patch: pytest.MonkeyPatch) -> None:
     """Let the search for what comes after success forget which product it was to keep."""
-    patch.setattr("foon_asp.asp.solver.write_wanted", lambda _: "")
+    patch.setattr("foon_asp.asp.facts.write_wanted", lambda _: "")
 
 
 def break_models(patch: pytest.MonkeyPatch) -> None:
@@ -75,7 +75,7 @@ def break_cuts(patch: pytest.MonkeyPatch) -> None:
         assert found.tree == frozenset({2})
         return found._replace(tree=frozenset({0, 1}), settled=True)
 
-    patch.setattr("foon_asp.asp.solver.reduce", settled)
+    patch.setattr("foon_asp.asp.prepared.reduce", settled)
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def test_other_objectives_in_our_own_encodings_are_a_bug(
 
 def test_no_tree_is_not_said_where_there_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = two_ways(*TWO)
-    monkeypatch.setattr("foon_asp.asp.solver.reduce", lambda *_: Reduced(None, (), False, None, 0, None))
+    monkeypatch.setattr("foon_asp.asp.prepared.reduce", lambda *_: Reduced(None, (), False, None, 0, None))
     with pytest.raises(BugError, match="the goals can be made"):
         outcome_of(problem)
 

@@ -19,6 +19,7 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.exact_success import rate_scale
 from foon_asp.asp.soft import solve_soft
+from foon_asp.deadline import Deadline
 from foon_asp.engines import (
     Asked,
     Check,
@@ -360,7 +361,8 @@ def test_memory_that_runs_out_is_not_checked(tmp_path: Path) -> None:
         pytest.skip("only Linux limits the memory of another process")
     mine = tmp_path / "mine.lp"
     mine.write_text(ENDLESS)
-    settings = Settings((mine,), memory_limit=2**27)  # less than these tests have by then, which is no matter
+    # less memory than these tests have by then, which is no matter
+    settings = Settings((mine,), deadline=Deadline(memory=2**27))
     outcome = solve(gap_problem(2, 4), (Objective.UNITS,))
     (check,) = cross_check(Asked(outcome, settings), PATIENCE, ())
     assert check.reason is not None

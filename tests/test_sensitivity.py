@@ -11,6 +11,7 @@ import pytest
 
 import foon_asp
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
+from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Root
@@ -409,7 +410,7 @@ def test_what_was_found_before_a_limit_is_said(interrupted: bool, monkeypatch: p
                 return solve(problem, objectives, settings, reporter)
             if interrupted and problem.as_seen is not None:
                 raise KeyboardInterrupt
-            return solve(problem, objectives, settings._replace(time_limit=0.0), reporter)
+            return solve(problem, objectives, settings._replace(deadline=Deadline(0.0)), reporter)
 
         monkeypatch.setattr("foon_asp.questions.sensitivity.solve", stopping)
         result = sensitivity(problem)

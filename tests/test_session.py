@@ -10,6 +10,7 @@ import pytest
 from foon_asp.asp import Outcome, Settings, Status, exact_success, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.session import OpenProgram, Session
+from foon_asp.deadline import Deadline
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from tests import oracle
 from tests.hard_problem import hard_problem
@@ -198,11 +199,14 @@ def test_a_kept_program_counts_the_items_of_the_kitchen_asked_about() -> None:
 def test_after_a_limit_the_session_goes_on() -> None:
     problem, session = hard_problem(12, 8, 3, 3), Session()
     settings = Settings(
-        constraints=(Path("at_most_units"),), constants=("max_units=99",), time_limit=0, session=session
+        constraints=(Path("at_most_units"),),
+        constants=("max_units=99",),
+        deadline=Deadline(0),
+        session=session,
     )
     assert solve(problem, (Objective.UNITS,), settings).status in {Status.UNKNOWN, Status.FEASIBLE}
     assert not session._programs  # a search that was stopped is not gone on with
-    in_time = settings._replace(time_limit=None)
+    in_time = settings._replace(deadline=None)
     kept = solve(problem, (Objective.UNITS,), in_time)
     assert measured(kept) == measured(solve(problem, (Objective.UNITS,), in_time._replace(session=None)))
     assert kept.status is Status.OPTIMAL

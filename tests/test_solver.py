@@ -13,9 +13,9 @@ import pytest
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import at_most, better_than
+from foon_asp.asp.bare_program import program_facts
 from foon_asp.asp.scales import Scales
 from foon_asp.asp.session import Session
-from foon_asp.asp.solver import program_facts
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.grounded import Grounded
@@ -108,7 +108,7 @@ def leave(
         bound = sum(map(costs, bounded_like))
     left = Reduced(frozenset(tree), tuple(range(len(problem.network))), False, costs, bound, None)
     left = left._replace(**parts)
-    monkeypatch.setattr("foon_asp.asp.solver.reduce", lambda *_: left)
+    monkeypatch.setattr("foon_asp.asp.prepared.reduce", lambda *_: left)
 
 
 def numbers(problem: Problem, *units: int) -> frozenset[int]:
@@ -428,7 +428,7 @@ def test_without_time_there_is_a_tree_and_nothing_is_proved(
     heard = Heard()
     problem = ways(["0.5"], ["0.5", "0.5"])
     monkeypatch.delattr("foon_asp.asp.search.ground")
-    outcome = solve(problem, objectives, SEARCHED._replace(time_limit=0), heard)
+    outcome = solve(problem, objectives, SEARCHED._replace(deadline=Deadline(0)), heard)
     assert outcome.status is Status.FEASIBLE
     assert outcome.bounds == bounds
     assert outcome.stopped == "the time limit of 0 s while cutting the network"
@@ -576,7 +576,7 @@ def test_trees_and_bounds_are_heard_as_they_get_better(monkeypatch: pytest.Monke
         listener.bound(found.costs, found.bound)
         return found
 
-    monkeypatch.setattr("foon_asp.asp.solver.reduce", tells)
+    monkeypatch.setattr("foon_asp.asp.prepared.reduce", tells)
     assert solve(problem, (UNITS,), Settings(), heard).proof is Proof.CUTS
     assert heard.trees == [problem.costs(tree) for tree in ((0, 1, 2), (3, 4), (5,))]
     assert heard.bounds == [(UNITS, 1)]

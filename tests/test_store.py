@@ -17,7 +17,8 @@ from typing import Any
 
 import pytest
 
-from foon_asp.asp import Settings, program_facts, solve
+from foon_asp.asp import Settings, solve
+from foon_asp.asp.bare_program import program_facts
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Objective, Problem

@@ -2,6 +2,6 @@
 
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.settings import Settings
-from foon_asp.asp.solver import Reporter, program_facts, solve
+from foon_asp.asp.solver import Reporter, solve
 
-__all__ = ["Outcome", "Proof", "Reporter", "Settings", "Status", "program_facts", "solve"]
+__all__ = ["Outcome", "Proof", "Reporter", "Settings", "Status", "solve"]

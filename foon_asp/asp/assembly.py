@@ -2,16 +2,12 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from foon_asp.asp.own_encodings import ENCODING_FILES, exact_success, is_own
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
 from foon_asp.resources import encodings_folder
-
-if TYPE_CHECKING:  # clingo, which often is not needed
-    pass
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
@@ -65,8 +61,10 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     constants: list[str] = []
     looked_at: frozenset[tuple[str, int]] = frozenset()
     text, is_open = "", False
-    endless = not all(map(is_own, (*base, *added)))
-    if added or settings.replaced or settings.constants:
+    replaced = not all(map(is_own, base))
+    endless = replaced or not all(map(is_own, added))
+    encodings = folder if settings.encodings is None and replaced else settings.encodings
+    if added or encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
         from foon_asp.asp import encoding  # noqa: PLC0415
 
@@ -86,18 +84,23 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         looked_at = frozenset(signature for each in extra for signature in each.used)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))
         is_open = (
-            settings.replaced is None
+            encodings is None
             and relaxed is None
             and bounded is None
             and _OF_ONE_SEARCH not in looked_at
             and not any(each.assigns for each in extra)
         )
+    arguments = (*constants, *_clingo_options(settings.clingo_options))
+    if settings.clingo_options:  # looked at now, since clingo may have nothing to do
+        from foon_asp.asp.search import check  # noqa: PLC0415
+
+        check(arguments)
     return Program(
         (*base, *loaded, *questions),
         exact_success(),
-        (*constants, *_clingo_options(settings.clingo_options)),
-        replaced=not all(map(is_own, base)),
-        own=not added and settings.replaced is None,
+        arguments,
+        replaced=replaced,
+        own=not added and encodings is None,
         rules=rules,
         bounded=bounded is not None,
         looked_at=looked_at,
@@ -105,6 +108,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         open=is_open,
         endless=endless,
         constants=tuple(constants),
+        encodings=encodings,
     )
 
 

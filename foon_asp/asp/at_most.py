@@ -1,11 +1,9 @@
 """Bounds from above on what a tree costs by objectives that count."""
 
 from collections.abc import Iterable, Mapping
-from fractions import Fraction
 
 from foon_asp.asp.facts import write_at_most
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.scales import Scales
 from foon_asp.asp.settings import Bounded
 from foon_asp.problem import Costs, Objective
 
@@ -32,14 +30,6 @@ def better_than(known: Iterable[Costs], objectives: Iterable[Objective]) -> Boun
         return _bounded({o: int(costs.measure(o)) - 1 for o in by} for costs in known)
     below = tuple({o: costs.measure(o) for o in by} for costs in known)
     return Bounded("", (question_encoding("at_most.lp"),), below)
-
-
-def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Write bounds on objectives that are fractions; raises :class:`UserError` for one that is rounded."""
-    return "".join(
-        write_at_most(number, {o: scales.cost_weight(o, cost) - 1 for o, cost in costs.items()})
-        for number, costs in enumerate(below)
-    )
 
 
 def _bounded(bounds: Iterable[Mapping[Objective, int]]) -> Bounded:

@@ -1,14 +1,16 @@
 """A question as bare clingo is asked: which files, which constants, and the text of ``foon-asp facts``."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.facts import write_least_penalty
+from foon_asp.asp.facts import write_least_penalty, write_objectives
+from foon_asp.asp.prepared import prepare
+from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
-from foon_asp.asp.solver import program_facts
-from foon_asp.problem import Objective, Problem, levels
+from foon_asp.problem import Objective, Problem, levels, reach, relevant
 
 
 class BareProgram(NamedTuple):
@@ -34,7 +36,7 @@ def bare_program(
     """
     penalty = ""
     # how long and how we would search is nothing to bare clingo
-    settings = settings._replace(time_limit=None, memory_limit=None, deadline=None, session=None)
+    settings = settings._replace(deadline=None, session=None)
     if soft:
         from foon_asp.asp.soft import soft_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -43,5 +45,23 @@ def bare_program(
         penalty = write_least_penalty(len(levels(tuple(objectives))) + 1)
     program = assemble(settings, lambda _: None)
     return BareProgram(
-        program.files, program.constants, program_facts(problem, objectives, settings) + penalty
+        program.files, program.constants, _facts(problem, objectives, settings, program) + penalty
     )
+
+
+def program_facts(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> str:
+    """Give the facts that :func:`foon_asp.asp.solve` without reductions hands to clingo first, as text.
+
+    With them, bare clingo finds the same optimum. Where a goal cannot be made, units that cannot run are
+    there, too: bare clingo is to see that for itself.
+    """
+    return _facts(problem, objectives, settings, assemble(settings, lambda _: None))
+
+
+def _facts(problem: Problem, objectives: Sequence[Objective], settings: Settings, program: Program) -> str:
+    first = prepare(problem, objectives, settings, program)
+    if first.tree is None:
+        everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
+        units = relevant(problem, everything) if program.own else everything.units
+        first = replace(first, units=units)
+    return first.facts + program.rules + write_objectives(first.levels)

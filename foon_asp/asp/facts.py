@@ -275,6 +275,17 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
     )
 
 
+def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
+    """Bound costs by objectives that are fractions, each set of them from above by one of it at least.
+
+    Raises :class:`UserError` for an objective that is rounded.
+    """
+    return "".join(
+        write_at_most(number, {o: scales.cost_weight(o, cost) - 1 for o, cost in costs.items()})
+        for number, costs in enumerate(below)
+    )
+
+
 def write_assisted(twins: Mapping[int, int], most: int) -> str:
     """Say which units are a person's, each with the robot's unit that it is, and bound how many are used."""
     facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]

@@ -17,7 +17,8 @@ _DIGESTS = "SHA256SUMS"
 
 def is_own(file: Path) -> bool:
     """Whether an encoding is one of ours, and says what it said when it was released."""
-    known = _digests().get(file.resolve())
+    digests = _digests()
+    known = digests.get(file) or digests.get(file.resolve())
     return known is not None and known == digest(file)
 
 

@@ -219,7 +219,7 @@ class Postconditions:
             "bounds": f"{how.bounded.rules} {how.bounded.below or ''}".replace("\n", " ").strip()
             if how.bounded
             else "",
-            "time limit": "" if how.time_limit is None else f"{how.time_limit} s",
+            "time limit": "" if how.begun.seconds is None else f"{how.begun.seconds} s",
             "session": "yes" if how.session is not None else "",
         }
         return "\n".join(

@@ -14,7 +14,7 @@ class Program(NamedTuple):
     not be one. ``looked_at`` are the predicates, by name and arity, that rules of the user's look at.
     ``text`` is all that the files said when they were looked over. ``open`` says that the program means the
     same when facts are left open (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether
-    its grounding comes to an end.
+    its grounding comes to an end. ``encodings`` is the folder whose encodings are used in place of ours.
     """
 
     files: tuple[Path, ...]
@@ -29,3 +29,4 @@ class Program(NamedTuple):
     open: bool = False
     endless: bool = False
     constants: tuple[str, ...] = ()
+    encodings: Path | None = None

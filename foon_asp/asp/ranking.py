@@ -6,16 +6,14 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.facts import write_avoided, write_facts, write_objectives
+from foon_asp.asp.facts import write_avoided, write_objectives
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.scales import Scales
-from foon_asp.asp.search import run
+from foon_asp.asp.prepared import prepare
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import Reporter
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem
 
 Rounded = tuple[int, ...]  # costs as clingo adds them up
 
@@ -43,29 +41,13 @@ class Ranked:
         settings: Settings,
         reporter: Reporter | None = None,
     ) -> None:
-        self.problem = problem
-        self.levels = levels(tuple(objectives))
-        self.complete = False
-        self.known: list[tuple[tuple[int, ...], Costs]] = []
-        self._deadline = settings.begun
         self._program = assemble(settings, (reporter or Reporter()).warning)
-        self._holds = Postconditions(problem, self.levels, settings, self._program.own)
+        self._first = prepare(problem, objectives, settings, self._program)
+        self._holds = self._first.holds
         self._given: tuple[int | Fraction, ...] = ()  # what the tree given last costs
-        problem.require_known_for(self.levels)
-        try:
-            with self._deadline.watched("cutting the network"):
-                self._cut(problem)
-        except KeyboardInterrupt:
-            self._deadline.interrupt()
-
-    def _cut(self, problem: Problem) -> None:
-        reached = reach(problem)
-        if all(reached.available[goal] for goal in problem.goals):
-            own = self._program.own
-            self._units: tuple[int, ...] = relevant(problem, reached) if own else tuple(sorted(reached.units))
-            self._scales = Scales(problem, self._units, self.levels)
-        else:
-            self.complete = True
+        self.problem, self.levels = problem, self._first.levels
+        self.complete = self._first.tree is None and not self._first.stopped
+        self.known: list[tuple[tuple[int, ...], Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
         """Give tree after tree.
@@ -74,13 +56,14 @@ class Ranked:
         still find can come before it: where costs are rounded, one may whose weight is higher by less than
         there are units that weigh less than they cost (docs/exact-success.md).
         """
-        if self.complete:
+        if self.complete or self._first.stopped:
             return
         waiting: list[_Tree] = []
         known: list[_Tree] = []
         avoided = ""
         while True:
-            ended = self._next(avoided)
+            more = write_objectives(self.levels) + avoided
+            ended = self._first.run(more, encodings=(question_encoding("other_trees.lp"),))
             if ended.units is None:
                 break
             tree = self._tree(ended.units)
@@ -101,22 +84,6 @@ class Ranked:
         while waiting:
             yield self._next_in_order(waiting)
 
-    def _next(self, avoided: str) -> Run:
-        try:
-            with self._deadline.watched("writing facts"):
-                facts = write_facts(self.problem, self._units, self._scales, not self._program.own)
-        except KeyboardInterrupt:
-            self._deadline.interrupt()
-            return Run()
-        files = (*self._program.files, question_encoding("other_trees.lp"))
-        return run(
-            files,
-            facts + self._program.rules + write_objectives(self.levels) + avoided,
-            self._program.arguments,
-            self._deadline,
-            endless=self._program.endless,
-        )
-
     def _tree(self, numbers: frozenset[int]) -> _Tree:
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]
@@ -124,9 +91,9 @@ class Ranked:
         if len(known) < len(units):
             raise UserError("a tree was found with units that the network has not: check the encodings")
         order = self._holds.tree(known)
-        costs = self.problem.costs(order)
+        costs, scales = self.problem.costs(order), self._first.scales
         rounded = (
-            int(costs.measure(objective)) if objective.row.whole else self._scales.weight(objective, order)
+            int(costs.measure(objective)) if objective.row.whole else scales.weight(objective, order)
             for objective in self.levels
         )
         return _Tree(order, costs, tuple(rounded))
@@ -167,10 +134,10 @@ class Ranked:
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
         """Whether all trees from these rounded costs on come after a tree, or are as good as it."""
-        by = self._scales.rounded
+        by = self._first.scales.rounded
         if by is None:
             return True
         place = self.levels.index(by)
         if last[:place] > tree.rounded:  # where they begin alike it is less
             return True
-        return last[place] >= tree.rounded[place] + self._scales.doubt(tree.units)
+        return last[place] >= tree.rounded[place] + self._first.scales.doubt(tree.units)

@@ -48,28 +48,21 @@ class Settings(NamedTuple):
 
     ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
-    ``time_limit`` is in seconds, for everything from the cut to the last proof. ``reductions`` come before
-    the search, unless there are constraints, bounds or other encodings. ``relaxed`` are constraints in other
-    words. Trees keep to what is ``bounded``. ``session`` keeps ground programs for the next question.
-    ``memory_limit`` is in bytes, for this process together with the one that grounds. ``deadline`` is that of
-    a question of which this one is a part, and has begun.
+    ``reductions`` come before the search, unless there are constraints, bounds or other encodings.
+    ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``session`` keeps ground
+    programs for the next question. ``deadline`` is for everything from the cut to the last proof, and has
+    begun.
     """
 
     constraints: tuple[Path, ...] = ()
     encodings: Path | None = None
     constants: tuple[str, ...] = ()
     clingo_options: tuple[str, ...] = ()
-    time_limit: float | None = None
     reductions: frozenset[Reduction] = ALL
     relaxed: Relaxed | None = None
     bounded: Bounded | None = None
     session: "Session | None" = None
-    memory_limit: int | None = None
     deadline: Deadline | None = None
-
-    def limited(self) -> "Settings":
-        """Give the same settings with a deadline that has begun: now, if it had not."""
-        return self._replace(deadline=self.begun, time_limit=None, memory_limit=None)
 
     @property
     def replaced(self) -> Path | None:
@@ -81,7 +74,5 @@ class Settings(NamedTuple):
 
     @property
     def begun(self) -> Deadline:
-        """The deadline that has begun, and within it one that begins now where there are limits."""
-        if self.deadline is not None and self.time_limit is None and self.memory_limit is None:
-            return self.deadline
-        return Deadline(self.time_limit, self.memory_limit, within=self.deadline)
+        """The deadline that has begun, or one without limits that begins now."""
+        return self.deadline or Deadline()

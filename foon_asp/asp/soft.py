@@ -5,24 +5,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble, find_constraint
-from foon_asp.asp.facts import (
-    write_facts,
-    write_greatest_penalty,
-    write_least_penalty,
-    write_soft,
-    write_tree,
-)
-from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
+from foon_asp.asp.facts import write_greatest_penalty, write_least_penalty, write_soft, write_tree
+from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.outcome import Outcome, Status
-from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.scales import Scales
-from foon_asp.asp.search import run
+from foon_asp.asp.prepared import prepare
 from foon_asp.asp.settings import Relaxed, Settings
-from foon_asp.asp.solver import Reporter, solve
-from foon_asp.deadline import Deadline
+from foon_asp.asp.solver import Reporter, solve_prepared
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
-from foon_asp.problem import Objective, Problem, levels, reach
+from foon_asp.problem import Objective, Problem
 
 
 class Broken(NamedTuple):
@@ -75,50 +66,32 @@ def solve_soft(
     are hard. Each way in which a constraint is broken, by other values of the variables that it has as a
     whole, costs its weight. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
-    reporter = reporter or Reporter()
-    settings = settings.limited()
-    deadline = settings.begun
+    settings = settings._replace(deadline=settings.begun)
     constraints, by_number, relaxed = soft_rules(settings, weights)
     settings = settings._replace(relaxed=relaxed)
-    program = assemble(settings, reporter.warning)
-    holds = Postconditions(problem, levels(tuple(objectives)), settings, program.own)
+    program = assemble(settings, (reporter or Reporter()).warning)
+    first = prepare(problem, objectives, settings, program)
+    holds = first.holds
     spent: dict[str, float] = {}
     least: int | None = None
     proved = True
     ended = Run()
-    try:
-        facts = _all_facts(problem, deadline)
-    except KeyboardInterrupt:
-        deadline.interrupt()
-        facts = ""
 
-    all_said = (facts or "") + program.rules
-
-    def ask(more: str, opt_mode: str) -> Run:
-        with placed(relaxed, all_said):
-            return run(
-                program.files,
-                all_said + more,
-                program.arguments,
-                deadline,
-                opt_mode,
-                predicates=[("_broken", 2)],
-                endless=program.endless,
-            )
+    def ask(more: str) -> Run:
+        return first.run(more + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def told(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
         found = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
         return SoftOutcome(outcome, sum(each.weight * each.ways for each in found), found)
 
-    if facts is not None:
-        ended = ask(write_least_penalty(1), "opt")
+    if first.tree is not None:
+        ended = ask("")
         proved = ended.exhausted
         spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
             least = sum(by_number[number] * ways for number, ways in ended.atoms["_broken"].items())
     bound = "" if least is None else write_greatest_penalty(least)
-    hard = settings._replace(relaxed=relaxed._replace(rules=relaxed.rules + bound))
-    outcome = solve(problem, objectives, hard, Reporter())
+    outcome = solve_prepared(first, objectives, bound)
     holds.require(
         least is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
     )
@@ -127,7 +100,7 @@ def solve_soft(
     outcome.seconds.update(spent)
     if outcome.units is not None:
         # helpers of the user's may be free to break more or less with one tree: what counts is the least
-        given = ask(write_tree(outcome.units) + write_least_penalty(1), "opt")
+        given = ask(write_tree(outcome.units))
         if given.exhausted:
             holds.require(
                 given.units == frozenset(outcome.units),
@@ -146,13 +119,3 @@ def solve_soft(
         known = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
         return told(known, ended.atoms["_broken"])
     return SoftOutcome(outcome, None, ())
-
-
-def _all_facts(problem: Problem, deadline: Deadline) -> str | None:
-    """Write the facts about all that can be made; ``None`` where the goals cannot."""
-    with deadline.watched("cutting the network"):
-        reached = reach(problem)
-        if not all(reached.available[goal] for goal in problem.goals):
-            return None
-        units = tuple(sorted(reached.units))
-        return write_facts(problem, units, Scales(problem, units), with_sources=True)

@@ -4,31 +4,21 @@ import itertools
 import time
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.facts import (
-    write_exponents,
-    write_facts,
-    write_objectives,
-    write_product,
-    write_seen,
-    write_wanted,
-)
 from foon_asp.asp.outcome import Outcome, Proof, Status
-from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.program import Program
-from foon_asp.asp.scales import Scales
+from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
-from foon_asp.grounding.run import Run
-from foon_asp.problem import Costs, Objective, Problem, first_tree, levels, multiplies, reach, relevant
-from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
+from foon_asp.reduce import ExactCosts, Listener, Reduction
 
-if TYPE_CHECKING:  # clingo, which often is not needed
+if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
+    from foon_asp.asp.scales import Scales
     from foon_asp.asp.session import OpenProgram
     from foon_asp.grounding.grounded import Grounded
+    from foon_asp.grounding.run import Run
 
 Units = frozenset[int]
 
@@ -61,53 +51,61 @@ def solve(
     ctrl-C with the best tree so far. Raises :class:`UserError` for faults in constraints, encodings and
     options, and where ``success`` is asked for and no rates are known.
     """
-    return _Solver(problem, tuple(objectives), settings or Settings(), reporter or Reporter()).solve()
+    settings, reporter = settings or Settings(), reporter or Reporter()
+    program = assemble(settings, reporter.warning)
+    began = time.perf_counter()
+    heard = _Heard(problem, objectives, reporter)
+    first = prepare(problem, objectives, settings, program, heard)
+    return _Solver(first, objectives, heard, {"cut": time.perf_counter() - began}).solve()
 
 
-def program_facts(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> str:
-    """Give the facts that :func:`solve` without reductions hands to clingo first, as text.
+def solve_prepared(first: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
+    """Find the best task tree of a question that was made ready, under some rules more, and prove it."""
+    return _Solver(first, objectives, _Heard(first.problem, objectives, Reporter()), {}, rules).solve()
 
-    With them, bare clingo finds the same optimum; :mod:`foon_asp.asp.bare_program` says from which files.
-    Where a goal cannot be made, units that cannot run are there, too: bare clingo is to see that for itself.
-    """
-    solver = _Solver(problem, tuple(objectives), settings, Reporter())
-    reached = reach(problem)
-    if not all(reached.available[goal] for goal in problem.goals):
-        reached = reached._replace(units=tuple(range(len(problem.network))))
-    solver.units = relevant(problem, reached) if solver.program.own else tuple(sorted(reached.units))
-    return solver.facts + solver.program.rules + write_objectives(solver.levels)
+
+class _Heard(Listener):
+    """Hears of trees and bounds, keeps the best tree and passes on what is better."""
+
+    def __init__(self, problem: Problem, objectives: Sequence[Objective], reporter: Reporter) -> None:
+        self.problem, self.levels, self.reporter = problem, levels(tuple(objectives)), reporter
+        self.best: tuple[Units, Costs] | None = None
+        self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
+
+    def tree(self, units: Units) -> None:
+        costs = self.costs(units)
+        if self.best is None or costs.key(self.levels) < self.best[1].key(self.levels):
+            self.best = units, costs
+            self.reporter.tree(costs)
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        self.reporter.bound(self.levels[0], costs.first(bound))
+
+    def costs(self, units: Units) -> Costs:
+        """Give what units cost, worked out once for a tree in hand."""
+        if self._costed is None or self._costed[0] != units:
+            self._costed = units, self.problem.costs(units)
+        return self._costed[1]
 
 
 class _Solver:
-    """One question on its way to its outcome.
-
-    ``units`` is what is left of the network after the cut, ``levels`` the objectives as optimized.
-    """
+    """A question that was made ready, on its way to its outcome."""
 
     def __init__(
-        self, problem: Problem, objectives: tuple[Objective, ...], settings: Settings, reporter: Reporter
+        self,
+        first: Prepared,
+        objectives: Sequence[Objective],
+        heard: _Heard,
+        seconds: dict[str, float],
+        rules: str = "",
     ) -> None:
-        self.problem = problem
-        self.objectives = objectives
-        self.levels = levels(objectives)
-        self.settings = settings
-        self.reporter = reporter
-        self.deadline = settings.begun
-        self.units: tuple[int, ...] = ()
-        self.reduced: Reduced | None = None
-        self.scales: Scales | None = None
-        self.seconds: dict[str, float] = {}
+        self.first, self.objectives, self.heard, self.seconds = first, tuple(objectives), heard, seconds
+        self.rules = first.program.rules + rules
+        self.problem, self.levels, self.deadline = first.problem, first.levels, first.deadline
+        self.program, self.holds = first.program, first.holds
+        self._scales: Scales | None = None  # before clingo is asked anything
         self._open: OpenProgram | None = None
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
-        self._best: tuple[Units, Costs] | None = None  # the best tree reported
-        self._costed: tuple[Units, Costs] | None = None  # the tree whose costs were asked for last
-        problem.require_known_for(self.levels)
-        self.program: Program = assemble(settings, reporter.warning)
-        self.holds = Postconditions(problem, self.levels, settings, self.program.own)
-        if settings.clingo_options:  # looked at now, since clingo may have nothing to do
-            from foon_asp.asp.search import check  # noqa: PLC0415
-
-            check(self.program.arguments)
 
     def solve(self) -> Outcome:
         try:
@@ -117,23 +115,21 @@ class _Solver:
                 self._ground[1].close()
 
     def _solve(self) -> Outcome:
-        try:
-            first = self.cut()
-        except KeyboardInterrupt:
-            self.deadline.interrupt()
+        first = self.first
+        if first.stopped:
             return self._outcome(Status.UNKNOWN, None, {})
-        if first is None:
+        if first.tree is None:
             self.holds.no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
         if self.program.own and not self.program.bounded:
-            incumbent = first
+            incumbent = first.tree
         else:  # the user's rules or the bounds decide what a tree is: let them find the first one
             some = self._run(self.levels, opt_mode="ignore")
             if some.units is None:
                 return self._outcome(Status.INFEASIBLE if some.exhausted else Status.UNKNOWN, None, {})
             incumbent = some.units
-        self._report_tree(incumbent)
-        if self.reduced and self.reduced.settled:
+        self.heard.tree(incumbent)
+        if first.reduced and first.reduced.settled:
             return self._optimal(incumbent)
         return self._search(incumbent)
 
@@ -153,39 +149,8 @@ class _Solver:
 
     def _in_hand(self, units: Units) -> Units:
         """Give the best tree that was heard of; of replaced encodings nobody knows, and these units count."""
-        assert self._best is not None
-        return units if self.program.replaced else self._best[0]
-
-    def cut(self) -> Units | None:
-        """Cut the network down to what can matter; give some tree, or ``None`` when there is none.
-
-        Without constraints of the user's, that is what the goals can need, less what the reductions leave
-        out; with them, all that can be made, since a constraint may ask for units that no goal does. The
-        reductions leave out what only trees have that are no better than another, which may be the only one
-        within bounds: then there are none.
-        """
-        began = time.perf_counter()
-        first: Units | None
-        if self.program.own:
-            self.reduced = reduce(
-                self.problem,
-                self.levels,
-                NONE if self.program.bounded else self.settings.reductions,
-                lambda: self.deadline.passed,
-                _Heard(self),
-                lambda: self.deadline.watched("cutting the network", late=True),
-            )
-            if self.reduced.interrupted:
-                self.deadline.interrupt()
-            self.units, first = self.reduced.units, self.reduced.tree
-        else:
-            with self.deadline.watched("cutting the network"):
-                reached = reach(self.problem)
-                some = first_tree(self.problem, reached)
-            first = None if some is None else Units(some)
-            self.units = tuple(sorted(reached.units))
-        self._spent("cut", began)
-        return first
+        assert self.heard.best is not None
+        return units if self.program.replaced else self.heard.best[0]
 
     def _wanted(self, incumbent: Units) -> tuple[str, bool]:
         """Give clasp's mode of search, and whether it leaves out trees that are only as good as this one.
@@ -194,7 +159,8 @@ class _Solver:
         multiply, rounded weights cannot tell what is better: then what weighs the same is left in. No bound
         is below 0, which not every strategy of clasp takes for what it says.
         """
-        if self.reduced is None or self.program.bounded or Reduction.BOUNDS not in self.settings.reductions:
+        first = self.first
+        if not first.reduced or self.program.bounded or Reduction.BOUNDS not in first.settings.reductions:
             return "opt", False
         scales = self._scaled()
         level = len(self.levels) if scales.rounded is None else self.levels.index(scales.rounded)
@@ -209,27 +175,13 @@ class _Solver:
         return ",".join(["opt", *map(str, figures)]), True
 
     def _optimal(self, units: Units) -> Outcome:
-        costs = self._costs(units)
+        costs = self.heard.costs(units)
         return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
 
     def _limited(self, units: Units, lower: Sequence[int]) -> Outcome:
         """State what is known at a limit; nobody knows what replaced encodings have bounds on."""
         bounds = {} if self.program.replaced else self._bounds(lower)
         return self._outcome(Status.FEASIBLE, self._in_hand(units), bounds)
-
-    @cached_property
-    def facts(self) -> str:
-        """Give what the problem is, as text, without what is asked of it."""
-        began = time.perf_counter()
-        with self.deadline.watched("writing facts"):
-            with_sources = not self.program.own
-            facts = write_facts(self.problem, self.units, self._scaled(), with_sources)
-            if self.settings.bounded is not None and self.settings.bounded.below:
-                from foon_asp.asp.at_most import write_below  # noqa: PLC0415 (for few questions)
-
-                facts += write_below(self.settings.bounded.below, self._scaled())
-        self._spent("facts", began)
-        return facts
 
     def _run(
         self,
@@ -238,7 +190,7 @@ class _Solver:
         wanted: int | None = None,
         opt_mode: str = "opt",
         bounds: bool = False,
-    ) -> Run:
+    ) -> "Run":
         """Ask clingo for the best tree by some of the levels.
 
         ``products`` of rates, by exponents, are ruled out; with ``wanted`` the one of that number is asked
@@ -247,10 +199,10 @@ class _Solver:
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
         def on_tree(units: Units) -> None:
-            self._report_tree(self._ids(units))
+            self.heard.tree(self._ids(units))
 
         try:
-            if self.settings.session is not None and self.program.open and self._kept:
+            if self.first.settings.session is not None and self.program.open and self._kept:
                 ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
             else:
                 ended = self._grounded(objectives, products, wanted).search(
@@ -258,6 +210,8 @@ class _Solver:
                 )
         except KeyboardInterrupt:  # before it came to a search
             self.deadline.interrupt()
+            from foon_asp.grounding.run import Run  # noqa: PLC0415
+
             ended = Run()
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + ended.solve_seconds
         if ended.units is not None:
@@ -274,40 +228,39 @@ class _Solver:
             if before == asked:
                 return program
             program.close()
-        facts = self.facts + self.program.rules + write_objectives(objectives)
-        from foon_asp.asp.search import ground  # noqa: PLC0415 (slow to import, often there is nothing left)
+        from foon_asp.asp import facts  # noqa: PLC0415 (often there is nothing left to ask)
 
+        began = time.perf_counter()
+        text = self.first.facts + self.rules + facts.write_objectives(objectives)
+        self._spent("facts", began)
         files = self.program.files
         if products:
             files = (*files, self.program.exact_success)
-            facts += self._exponents
-            facts += "".join(itertools.starmap(write_product, enumerate(products)))
-            facts += write_seen(range(len(products))) if wanted is None else write_wanted(wanted)
+            text += facts.write_exponents(self.problem, self._scaled())
+            text += "".join(itertools.starmap(facts.write_product, enumerate(products)))
+            text += facts.write_seen(range(len(products))) if wanted is None else facts.write_wanted(wanted)
+        from foon_asp.asp.search import ground  # noqa: PLC0415 (slow to import)
+
         began = time.perf_counter()
         try:
             program = ground(
-                files, facts, self.program.arguments, self.deadline, len(products), self.program.endless
+                files, text, self.program.arguments, self.deadline, len(products), self.program.endless
             )
         finally:
             self._spent("ground", began)
         self._ground = asked, program
         return program
 
-    def _scaled(self) -> Scales:
+    def _scaled(self) -> "Scales":
         """Give how what is left of the network is measured in clingo."""
-        if self.scales is None:
-            self.scales = Scales(self.problem, self.units, self.levels)
-        return self.scales
+        if self._scales is None:
+            self._scales = self.first.scales
+        return self._scales
 
     @property
     def _kept(self) -> bool:
         """Whether programs are kept for questions of this kind: one program settles one objective only."""
         return all(objective.row.whole or multiplies(objective) for objective in self.levels)
-
-    @cached_property
-    def _exponents(self) -> str:
-        """Give the facts that are there beside the usual ones wherever products of rates are compared."""
-        return write_exponents(self.problem, self._scaled())
 
     def _run_open(
         self,
@@ -317,19 +270,21 @@ class _Solver:
         opt_mode: str,
         on_tree: Callable[[Units], None] | None,
         on_bound: Callable[[list[int]], None] | None,
-    ) -> Run:
+    ) -> "Run":
         """Ask a program that is kept from question to question."""
-        session = self.settings.session
+        session = self.first.settings.session
         assert session is not None
         began = time.perf_counter()
         if self._open is None:
-            self._open = session.program(self.program, self.problem, self.units, self.levels, self.deadline)
-            self.scales = self._open.scales.of(self.problem)
+            self._open = session.program(
+                self.program, self.problem, self.first.units, self.levels, self.deadline
+            )
+            self._scales = self._open.scales.of(self.problem)
         self._spent("ground", began)
         try:
             ended = self._open.run(
                 self.problem,
-                self.units,
+                self.first.units,
                 self.levels,
                 objectives,
                 products,
@@ -387,7 +342,7 @@ class _Solver:
                 break
             rival = ended.units
             self._require_measures(self._measures_agree(rival, ended.cost, by))
-            ours, theirs = (self._costs(tree).key(by) for tree in (chosen, rival))
+            ours, theirs = (self.heard.costs(tree).key(by) for tree in (chosen, rival))
             if theirs < ours:
                 chosen, wanted = rival, []
             if theirs <= ours:
@@ -415,7 +370,7 @@ class _Solver:
         A replaced objectives.lp may measure something else: then the optimum is the one it defines. A program
         that is kept measures all levels, and what was not asked for as nothing.
         """
-        scales, costs = self._scaled(), self._costs(units)
+        scales, costs = self._scaled(), self.heard.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}
         self.holds.require(
             all(scales.allows(o, weight, costs.measure(o)) for o, weight in weights.items()),
@@ -432,7 +387,7 @@ class _Solver:
             lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {ours}",
         )
         if not agree:
-            self.reporter.warning(
+            self.heard.reporter.warning(
                 f"{self.program.files[1]} does not measure what the objectives "
                 f"{', '.join(self.levels)} measure here: the tree is optimal in its sense, and the costs "
                 "shown are the usual ones"
@@ -447,12 +402,6 @@ class _Solver:
                 "and others not: they cannot be compared"
             )
 
-    def _costs(self, units: Units) -> Costs:
-        """Give what units cost, worked out once for a tree in hand."""
-        if self._costed is None or self._costed[0] != units:
-            self._costed = units, self.problem.costs(units)
-        return self._costed[1]
-
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
 
@@ -463,92 +412,63 @@ class _Solver:
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
-            scales = self.scales  # None where nothing was asked yet
+            scales = self._scales
             bounds[objective] = (
                 scales.bound(objective, max(0, value)) if scales else int(multiplies(objective))
             )
             if scales and objective is scales.rounded:
                 break
-        reduced = self.reduced
+        reduced = self.first.reduced
         if reduced is None or reduced.costs is None:
             return bounds
         first, proved = self.levels[0], reduced.costs.first(reduced.bound)
         if multiplies(first):
             return {first: min(bounds[first], proved)}
-        assert self._best is not None
-        _, best = self._best
+        assert self.heard.best is not None
+        _, best = self.heard.best
         bounds[first] = max(bounds[first], proved)
         for objective, bound in bounds.items():
             if not multiplies(objective):
                 bounds[objective] = min(bound, best.measure(objective))
         return bounds if bounds[first] == best.measure(first) else {first: bounds[first]}
 
-    def _report_tree(self, units: Units) -> None:
-        costs = self._costs(units)
-        if self._best is None or costs.key(self.levels) < self._best[1].key(self.levels):
-            self._best = units, costs
-            self.reporter.tree(costs)
-
     def _report_bound(self, lower: Sequence[int]) -> None:
-        self.reporter.bound(*list(self._bounds(lower).items())[-1])
+        self.heard.reporter.bound(*list(self._bounds(lower).items())[-1])
 
     def _outcome(
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
     ) -> Outcome:
         """State the outcome, once it holds."""
+        first, reduced = self.first, self.first.reduced
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
-        if status is Status.OPTIMAL and self.reduced and self.reduced.settled:
+        if status is Status.OPTIMAL and reduced and reduced.settled:
             proof = Proof.CUTS
-        left = 0 if proof is Proof.CUTS else len(self.units)
-        stopped = self.deadline.stopped if proof is None else None
-        if units is None:
-            return Outcome(
-                self.problem,
-                self.objectives,
-                status,
-                None,
-                None,
-                bounds,
-                self.seconds,
-                self.settings.replaced,
-                proof,
-                stopped=stopped,
-            )
-        began = time.perf_counter()
-        listed = self.holds.tree(units)
-        cuts = self.reduced.cuts.cuts if self.reduced and self.reduced.cuts else ()
         outcome = Outcome(
             self.problem,
             self.objectives,
             status,
-            listed,
-            self._costs(units),
+            None,
+            None,
             bounds,
             self.seconds,
-            self.settings.replaced,
+            self.program.encodings,
             proof,
-            left=left,
-            cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
-            stopped=stopped,
+            stopped=self.deadline.stopped if proof is None else None,
         )
-        assert self._best is not None
-        self.holds.outcome(outcome, None if self.program.replaced else self._best[1], self.reduced)
+        if units is None:
+            return outcome
+        began = time.perf_counter()
+        cuts = reduced.cuts.cuts if reduced and reduced.cuts else ()
+        outcome = outcome._replace(
+            units=self.holds.tree(units),
+            costs=self.heard.costs(units),
+            left=0 if proof is Proof.CUTS else len(first.units),
+            cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
+        )
+        assert self.heard.best is not None
+        self.holds.outcome(outcome, None if self.program.replaced else self.heard.best[1], reduced)
         self._spent("check", began)
         return outcome
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
-
-
-class _Heard(Listener):
-    """Passes on what the reductions find."""
-
-    def __init__(self, solver: _Solver) -> None:
-        self._solver = solver
-
-    def tree(self, units: Units) -> None:
-        self._solver._report_tree(units)
-
-    def bound(self, costs: ExactCosts, bound: int) -> None:
-        solver = self._solver
-        solver.reporter.bound(solver.levels[0], costs.first(bound))

@@ -5,6 +5,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
+from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
 from foon_asp.problem import ContainerRule, Objective, Problem, conditions, multiplies
 from foon_asp.proof import Verdict, simulate_for
@@ -82,9 +83,8 @@ def compare(
     for objective in MEASURED:
         if multiplies(objective) and problem.rates is None:
             continue
-        outcome = solve(
-            problem, (objective,), Settings(time_limit=time_limit, memory_limit=settings.memory_limit)
-        )
+        how = Settings(deadline=Deadline(time_limit, settings.memory_limit))
+        outcome = solve(problem, (objective,), how)
         value = None if outcome.costs is None else Fraction(outcome.costs.measure(objective))
         optima[objective] = Optimum(str(outcome.status), value)
     comparison = Comparison(

@@ -67,18 +67,15 @@ def cross_check(
 ) -> list[Check]:
     """Ask every engine what an answer says, each for at most so many seconds.
 
-    Without ``seconds``, each has the time limit of the question, or a minute; where the question has a
-    deadline, its part of what is left.
+    Without ``seconds``, each has its part of what is left to the question, or a minute.
     Bare clingo is asked under whatever rules there are; ``engines`` where all rules are ours, or rule units
     out one by one. From ctrl-C on nothing else is checked. Raises :class:`DisagreementError` at the first
     that says otherwise. An engine of another package that does so is wrong, which our tree shows, or its own
     that is none; only where its tree shows that we are wrong is it raised, too.
     """
     if seconds is None:
-        limit = asked.settings.time_limit
-        if asked.settings.deadline is not None and asked.settings.deadline.left is not None:
-            limit = asked.settings.deadline.left / (1 + len(engines))  # bare clingo is one more
-        seconds = PATIENCE if limit is None else limit
+        left = asked.settings.begun.left
+        seconds = PATIENCE if left is None else left / (1 + len(engines))  # bare clingo is one more
     checks: list[Check] = []
     interrupted = False
     for name, package, ask in _engines(asked, seconds, engines):

@@ -193,7 +193,7 @@ def alternatives(
     worse = Fraction(at_least(within, 0, "within"), 100)
     at_least(limit, 1, "limit")
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     problem = asked_with(problem, how)
     if best is not None:
         return replace(_ranked(problem, chosen, how, at_least(best, 1, "best"), None), wanted=best)

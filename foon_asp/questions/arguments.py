@@ -7,7 +7,7 @@ from pathlib import Path
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import GREATEST_WEIGHT, find_constraint
 from foon_asp.dataset.paths import File, Files, files
-from foon_asp.deadline import memory_size, seconds
+from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, parse_objectives
 from foon_asp.questions.caller import caller
@@ -33,20 +33,33 @@ def settings(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Settings:
-    """Put together how to solve; ``time_limit`` is in seconds, ``memory_limit`` in bytes or as ``"2G"``."""
+    """Put together how to solve, within limits that begin now."""
     given = constants or ()
     if isinstance(given, Mapping):
         given = [f"{name}={value}" for name, value in given.items()]
-    who = caller()
     return Settings(
         files(constraints),
         None if encodings is None else Path(encodings),
         tuple(given),
-        time_limit=None if time_limit is None else seconds(time_limit),
-        memory_limit=None if memory_limit is None else memory_size(memory_limit),
-        session=who.session,
-        deadline=who.deadline,
+        session=caller().session,
+        deadline=begin(time_limit, memory_limit),
     )
+
+
+def limits(time_limit: float | None, memory_limit: int | str | None) -> tuple[float | None, int | None]:
+    """Read limits, in seconds and in bytes or as ``"2G"``."""
+    return (
+        None if time_limit is None else seconds(time_limit),
+        None if memory_limit is None else memory_size(memory_limit),
+    )
+
+
+def begin(time_limit: float | None, memory_limit: int | str | None) -> Deadline:
+    """Let limits begin, within those of the command that asks."""
+    within = caller().deadline
+    if time_limit is None and memory_limit is None and within is not None:
+        return within
+    return Deadline(*limits(time_limit, memory_limit), within=within)
 
 
 def asked_with(problem: Problem, how: Settings) -> Problem:

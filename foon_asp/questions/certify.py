@@ -118,11 +118,12 @@ class Proof(Result):
 
 def certified(problem: Problem, objectives: Sequence[Objective], how: Settings) -> Certified:
     """Solve a problem, and look for a certificate; at a limit and at ctrl-C the answer stands without."""
-    how = how.limited()
+    deadline = how.begun
+    how = how._replace(deadline=deadline)
     answer = answered(whole(problem), objectives, how)
     certificate = None
-    with contextlib.suppress(KeyboardInterrupt), how.begun.watched("looking for a certificate"):
-        outcome, certificate = certify_outcome(answer, how, lambda: how.begun.passed)
+    with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
+        outcome, certificate = certify_outcome(answer, how, lambda: deadline.passed)
         answer = Answer._make(outcome)
     return Certified(answer, certificate)
 
@@ -141,7 +142,7 @@ def certify_and_write(
 ) -> Proof:
     """Certify as ``foon-asp certify`` does: the optimum or a given ``tree``, into a file or to be shown."""
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if tree is not None:
         found = certify_tree(problem, chosen, Path(tree), how)
     else:

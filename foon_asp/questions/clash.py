@@ -4,16 +4,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.asp import Settings, Status
 from foon_asp.asp.assembly import CLINGO_OPTIONS, assemble, find_constraint
-from foon_asp.asp.facts import write_constraints, write_corrections, write_facts
-from foon_asp.asp.integrity import IntegrityConstraint, placed, relax
+from foon_asp.asp.facts import write_constraints, write_corrections
+from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.scales import Scales
+from foon_asp.asp.prepared import prepare
 from foon_asp.asp.search import run
+from foon_asp.asp.solver import solve_prepared
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import BugError, UserError
-from foon_asp.problem import Objective, Problem, reach
+from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import (
     Constants,
@@ -208,8 +209,8 @@ def find_clash(
     Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction
     known so far, until it is a clash itself.
     """
-    how = how.limited()
     deadline = how.begun
+    how = how._replace(deadline=deadline)
     constraints, relaxed = relax(how.constraints, how.constants, soft=False, deadline=deadline)
     by_number = {constraint.number: constraint for constraint in constraints}
     of_file = {find_constraint(path): weight for path, weight in (file_weights or {}).items()}
@@ -222,31 +223,16 @@ def find_clash(
     def those(numbers: Iterable[int]) -> tuple[IntegrityConstraint, ...]:
         return tuple(by_number[number] for number in sorted(numbers))
 
-    try:
-        with deadline.watched("cutting the network"):
-            reached = reach(problem)
-            known = replace(known, makeable=all(reached.available[goal] for goal in problem.goals))
-            units = tuple(sorted(reached.units))
-            facts = write_facts(problem, units, Scales(problem, units), with_sources=True) + relaxed.rules
-    except KeyboardInterrupt:
-        deadline.interrupt()
+    first = prepare(problem, objectives, how, program)
+    if first.stopped:
         return replace(known, complete=False)
-    if not known.makeable:
-        return replace(known, tree_exists=False)
+    if first.tree is None:
+        return replace(known, makeable=False, tree_exists=False)
     dropping = "optimize(_dropping,1).\n"
     corrections: list[tuple[int, ...]] = []
     blamed: tuple[int, ...] = ()
     while True:
-        asked = facts + dropping + write_constraints(weights, blamed)
-        with placed(relaxed, asked):
-            ended = run(
-                program.files,
-                asked,
-                program.arguments,
-                deadline,
-                predicates=[("_dropped", 1)],
-                endless=program.endless,
-            )
+        ended = first.run(dropping + write_constraints(weights, blamed), predicates=[("_dropped", 1)])
         if ended.units is None or not ended.exhausted:
             break
         corrections.append(tuple(sorted(ended.atoms["_dropped"])))
@@ -263,8 +249,7 @@ def find_clash(
         return replace(known, tree_exists=not clashes, dropped=those(some), complete=clashes)
     dropped = corrections[0]
     kept = write_constraints(weights, set(weights).difference(dropped))
-    less = how._replace(relaxed=relaxed._replace(rules=relaxed.rules + kept))
-    outcome = Answer._make(solve(problem, objectives, less, Reporter()))
+    outcome = Answer._make(solve_prepared(first, objectives, kept))
     if outcome.status is Status.INFEASIBLE:
         raise BugError("dropping the constraints does not leave a tree")
     smallest = those(blamed) if clashes else ()

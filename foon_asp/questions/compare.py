@@ -18,7 +18,7 @@ from foon_asp.compare import (
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.questions.arguments import at_least, settings
+from foon_asp.questions.arguments import at_least, limits
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS
@@ -232,8 +232,7 @@ def compare_searches(
     :func:`foon_asp.retrieve`.
     """
     chosen = searched(searches)
-    limits = settings(time_limit=time_limit, memory_limit=memory_limit)
-    how = search_settings(ties, count, depth_limit, published, limits.time_limit, limits.memory_limit)
+    how = search_settings(ties, count, depth_limit, published, *limits(time_limit, memory_limit))
     at_least(jobs, 1, "jobs")
     if all_makeable or results is not None:  # results are kept with a digest of all the data
         problem = problem.whole

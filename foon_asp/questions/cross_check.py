@@ -16,6 +16,7 @@ from foon_asp.questions.arguments import (
     Objectives,
     chosen_objectives,
     file_weights,
+    limits,
     settings,
     whole,
 )
@@ -123,7 +124,8 @@ def cross_check(
     engines = find_engines()
     answer = softly_answered(problem, chosen, how, weights) if weights else answered(problem, chosen, how)
     try:
-        return CrossChecked(answer, tuple(ask_engines(_asked(answer, how, weights), engines=engines)))
+        patience, _ = limits(time_limit, None)
+        return CrossChecked(answer, tuple(ask_engines(_asked(answer, how, weights), patience, engines)))
     except DisagreementError as found:
         raise BugError(str(found)) from None
 

@@ -109,7 +109,7 @@ def menu(
     if len(problem.goals) < 2:
         raise UserError("a menu has several goals: name two or more")
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     problem = asked_with(problem, how)
     together = solve(problem, chosen, how, caller().reporter)
     separate = [solve(replace(problem, goals=(goal,)), chosen, how, Reporter()) for goal in problem.goals]

@@ -7,7 +7,7 @@ from foon_asp.asp import solve as find
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.arguments import chosen_objectives, settings
+from foon_asp.questions.arguments import chosen_objectives, limits, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, OBJECTIVES
@@ -75,7 +75,10 @@ def optima(
     texts = [objectives] if isinstance(objectives, str) else objectives
     lists = [chosen_objectives(problem, text) for text in texts]
     # limits are for each answer, ctrl-C is for all of them
-    how = settings(time_limit=time_limit, memory_limit=memory_limit)._replace(deadline=Deadline())
-    alone = [replace(problem, goals=(goal,)) for goal in problem.goals]
-    outcomes = (find(each, chosen, how, caller().reporter) for each in alone for chosen in lists)
-    return Optima(tuple(Answer._make(outcome) for outcome in outcomes))
+    how, each_limits, whole = settings(), limits(time_limit, memory_limit), Deadline()
+    outcomes = []
+    for goal in problem.goals:
+        for chosen in lists:
+            within = how._replace(deadline=Deadline(*each_limits, within=whole))
+            outcomes.append(find(replace(problem, goals=(goal,)), chosen, within, caller().reporter))
+    return Optima(tuple(map(Answer._make, outcomes)))

@@ -193,7 +193,7 @@ def pareto(
             f"found {counted(len(asked), 'objective')}, "
             f"expected {_FEWEST} or {_MOST} to trade against each other"
         )
-    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     problem = asked_with(problem, how)
     reporter = caller().reporter
     later = _Silent(reporter)

@@ -139,7 +139,7 @@ def regret(
     Otherwise as :func:`foon_asp.solve`.
     """
     chosen = chosen_objectives(problem, objectives)
-    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     more = tuple(units)
     problem = whole(problem) if more else asked_with(problem, how)
     found = [problem.network.unit_of_number(number) for number in more]

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof import Simulation, Verdict, simulate_for
-from foon_asp.questions.arguments import settings
+from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS
 from foon_asp.questions.result import Ending, Result
@@ -170,8 +170,8 @@ def retrieve(
     and where a search of another package raises or gives what is no tree.
     """
     (wanted,) = searched([search])
-    limits = settings(time_limit=time_limit, memory_limit=memory_limit).begun
-    how = search_settings(ties, count, depth_limit, published, limits.left, limits.memory)
+    deadline = begin(time_limit, memory_limit)
+    how = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
     found = wanted.run(problem, how)
     simulation = None
     if found.ending is Searched.TREE:

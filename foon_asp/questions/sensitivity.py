@@ -213,7 +213,7 @@ def sensitivity(
         success_rate((problem.rates or {})[motion], f"the success rate of {motion!r}")
     for rate in problem.own_rates.values():
         success_rate(rate, "the success rate of a unit")
-    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     how = how._replace(session=None)  # at other rates programs weigh otherwise
     program = assemble(how, lambda _: None)
     if program.replaced:

@@ -11,16 +11,13 @@ from typing import NamedTuple
 
 from foon_asp.asp import Status, solve
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.facts import write_facts, write_for_sale, write_list
+from foon_asp.asp.facts import write_for_sale, write_list
 from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.program import Program
-from foon_asp.asp.scales import Scales
-from foon_asp.asp.search import run
+from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source
-from foon_asp.problem import Number, Problem, exact, reach, relevant
+from foon_asp.problem import Number, Problem, exact
 from foon_asp.problem.dead_ends import Cause, dead_ends
 from foon_asp.problem.shop import Shop
 from foon_asp.questions.answer import Answer
@@ -214,7 +211,6 @@ def shopping_list(
     if prices is not None:
         listed = read_prices(Path(prices)) if isinstance(prices, str | PathLike) else _given(prices)
         by_id = _priced(problem, listed)
-    how = how.limited()
     deadline, reporter = how.begun, caller().reporter
     program = assemble(how, reporter.warning)
     found: list[ShoppingList] = []
@@ -230,7 +226,8 @@ def shopping_list(
             if following is None:
                 break
             offer, wares = following
-            found, complete = _lists(problem, shop, wares, program, deadline, most)
+            first = prepare(problem, chosen, how, program, for_sale=wares)
+            found, complete = _lists(first, shop, wares, most)
     except KeyboardInterrupt:
         deadline.interrupt()
         complete = False
@@ -300,41 +297,28 @@ def _offers(
 
 
 def _lists(
-    problem: Problem,
-    shop: Shop,
-    wares: Mapping[int, Fraction],
-    program: Program,
-    deadline: Deadline,
-    most: int,
+    first: Prepared, shop: Shop, wares: Mapping[int, Fraction], most: int
 ) -> tuple[list[ShoppingList], bool]:
     """Find the cheapest lists from some wares, one run each; say whether there are no others."""
-    with deadline.watched("cutting the network"):
-        stocked = replace(problem, kitchen=problem.kitchen.union(wares))
-        reached = reach(stocked)
-        if not all(reached.available[goal] for goal in problem.goals):
-            return [], True
-        # backwards with the kitchen as it is: what is for sale may also be made
-        units = relevant(problem, reached) if program.own else tuple(sorted(reached.units))
-        met = {*problem.goals, *(o for unit in units for o in problem.needs[unit])}
-        scale = math.lcm(*(price.denominator for price in wares.values()))
-        scales = None if program.own else Scales(problem, units)
-        sold = {o: price for o, price in wares.items() if o in met}
-        if any(price * scale >= 2**31 for price in sold.values()):
-            raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
-        facts = write_facts(problem, units, scales, with_sources=not program.own) + write_for_sale(
-            {o: int(price * scale) for o, price in sold.items()}, filter(shop.is_second_choice, sold)
-        )
-    files = (*program.files, question_encoding("shopping_list.lp"))
+    if first.tree is None:
+        return [], not first.stopped
+    problem = first.problem
+    met = {*problem.goals, *(o for unit in first.units for o in problem.needs[unit])}
+    scale = math.lcm(*(price.denominator for price in wares.values()))
+    sold = {o: price for o, price in wares.items() if o in met}
+    if any(price * scale >= 2**31 for price in sold.values()):
+        raise UserError("prices this far apart do not fit clingo, whose numbers have 32 bits")
+    prices = {o: int(price * scale) for o, price in sold.items()}
+    more = write_for_sale(prices, filter(shop.is_second_choice, sold))
+    encoding = question_encoding("shopping_list.lp")
     lists: list[ShoppingList] = []
     while len(lists) < most:
-        ended = run(
-            files, facts, program.arguments, deadline, predicates=[("_buy", 1)], endless=program.endless
-        )
+        ended = first.run(more, encodings=(encoding,), predicates=[("_buy", 1)])
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((wares[o] for o in items), Fraction(0))
             lists.append(ShoppingList(items, price, ended.exhausted))
-            facts += write_list(len(lists), items)
+            more += write_list(len(lists), items)
         if ended.units is None or not ended.exhausted:
             return lists, ended.exhausted
         if not items:

@@ -7,7 +7,7 @@ from tests.mutation.operators import mutants
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("proof", "reduce", "bounds", "certificate")
-FILES = ("asp/solver.py", "asp/ranking.py", "asp/exact_success.py", "asp/scales.py")
+FILES = ("asp/prepared.py", "asp/solver.py", "asp/ranking.py", "asp/exact_success.py", "asp/scales.py")
 
 
 def texts() -> dict[str, str]:

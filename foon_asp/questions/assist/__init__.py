@@ -166,7 +166,7 @@ def assist(
     The question is that of the weighted FOON, a tree with M human-assisted motions (Paulius, Dong and Sun,
     Task planning with a weighted functional object-oriented network, 2021), answered for all trees.
     """
-    how = settings(constraints, constants, encodings, time_limit, memory_limit).limited()
+    how = settings(constraints, constants, encodings, time_limit, memory_limit)
     how = how._replace(session=None)  # every number of units has programs that no other question can use
     wanted = None if reach is None else success_rate(reach, "the success to reach")
     limit = None if most is None else at_least(most, 0, "most")

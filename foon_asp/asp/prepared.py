@@ -1,0 +1,142 @@
+"""The first half of every question: what is left of its network, how it is measured, by which program."""
+
+from collections.abc import Collection, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.asp.program import Program
+from foon_asp.asp.settings import Settings
+from foon_asp.deadline import Deadline
+from foon_asp.problem import Objective, Problem, first_tree, levels, reach, relevant
+from foon_asp.reduce import NONE, Listener, Reduced, reduce
+
+if TYPE_CHECKING:  # often there is nothing left to ask clingo
+    from foon_asp.asp.scales import Scales
+    from foon_asp.grounding.run import Run
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A question made ready to be searched.
+
+    ``levels`` are the objectives as optimized and ``units`` what is left of the network after the cut, where
+    ``tree`` is some tree: ``None`` where nothing makes the goals. ``reduced`` is what the reductions made of
+    the question, where they were asked. ``stopped`` says that a limit or ctrl-C came in the middle of the
+    cut, and that nothing is known.
+    """
+
+    problem: Problem
+    levels: tuple[Objective, ...]
+    settings: Settings
+    deadline: Deadline
+    program: Program
+    units: tuple[int, ...] = ()
+    tree: frozenset[int] | None = None
+    reduced: Reduced | None = None
+    stopped: bool = False
+
+    @cached_property
+    def holds(self) -> Postconditions:
+        """What the answers are held against."""
+        return Postconditions(self.problem, self.levels, self.settings, self.program.own)
+
+    @cached_property
+    def scales(self) -> "Scales":
+        """How the units that are left are measured in clingo; raises like :class:`Scales`."""
+        from foon_asp.asp.scales import Scales  # noqa: PLC0415
+
+        return Scales(self.problem, self.units, self.levels)
+
+    @cached_property
+    def facts(self) -> str:
+        """What the problem is, as text, without what is asked of it.
+
+        Raises ``KeyboardInterrupt`` at a limit.
+        """
+        from foon_asp.asp.facts import write_below, write_facts  # noqa: PLC0415
+
+        with self.deadline.watched("writing facts"):
+            facts = write_facts(self.problem, self.units, self.scales, with_sources=not self.program.own)
+            bounded = self.settings.bounded
+            return facts + (write_below(bounded.below, self.scales) if bounded else "")
+
+    def run(
+        self,
+        more: str,
+        opt_mode: str = "opt",
+        encodings: Sequence[Path] = (),
+        predicates: Sequence[tuple[str, int]] = (),
+    ) -> "Run":
+        """Ask clingo with more facts, and with encodings beside those of the program.
+
+        As :func:`foon_asp.asp.search.run` does; nothing is known where a limit comes before.
+        """
+        from foon_asp.asp.integrity import placed  # noqa: PLC0415 (all of it takes clingo along)
+        from foon_asp.asp.search import run  # noqa: PLC0415
+        from foon_asp.grounding.run import Run  # noqa: PLC0415
+
+        program, relaxed = self.program, self.settings.relaxed
+        try:
+            text = self.facts + program.rules + more
+        except KeyboardInterrupt:
+            self.deadline.interrupt()
+            return Run()
+        with nullcontext() if relaxed is None else placed(relaxed, text):
+            return run(
+                (*program.files, *encodings),
+                text,
+                program.arguments,
+                self.deadline,
+                opt_mode,
+                predicates=predicates,
+                endless=program.endless,
+            )
+
+
+def prepare(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    settings: Settings,
+    program: Program,
+    listener: Listener | None = None,
+    for_sale: Collection[int] = (),
+) -> Prepared:
+    """Cut a network down to what can matter.
+
+    Where all rules are ours, that is what the goals can need; with others it is all that can be made, since a
+    constraint may ask for units that no goal does. With a ``listener``, who hears of trees and bounds, it is
+    less what the reductions leave out: what only trees have that are no better than another, which may be the
+    only one within bounds, so then they leave out nothing. ``for_sale`` are object nodes that may come to
+    those in the kitchen. Raises :class:`UserError` where an objective needs rates that are not known.
+    """
+    asked = levels(tuple(objectives))
+    problem.require_known_for(asked)
+    deadline = settings.begun
+    first = Prepared(problem, asked, settings, deadline, program)
+    try:
+        if program.own and listener is not None:
+            reduced = reduce(
+                problem,
+                asked,
+                NONE if program.bounded else settings.reductions,
+                lambda: deadline.passed,
+                listener,
+                lambda: deadline.watched("cutting the network", late=True),
+            )
+            if reduced.interrupted:
+                deadline.interrupt()
+            return replace(first, units=reduced.units, tree=reduced.tree, reduced=reduced)
+        with deadline.watched("cutting the network"):
+            stocked = replace(problem, kitchen=problem.kitchen.union(for_sale)) if for_sale else problem
+            reached = reach(stocked)
+            tree = first_tree(stocked, reached)
+            # backwards with the kitchen as it is: what is for sale may also be made
+            units = relevant(problem, reached) if program.own else tuple(sorted(reached.units))
+        return replace(first, units=units, tree=None if tree is None else frozenset(tree))
+    except KeyboardInterrupt:
+        deadline.interrupt()
+        return replace(first, stopped=True)
