@@ -6,13 +6,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Self
 
-from foon_asp.dataset import Dataset, dataset_files, read_dataset
+from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.names import in_python
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, UnitPrices
 from foon_asp.problem import Names, Number, Problem, UnitPricesNamed
-from foon_asp.text import Data, GoalError
+from foon_asp.text import Data, GoalError, find_data
 from foon_asp.warning import warn
 
 
@@ -46,7 +46,7 @@ def load(
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
-    dataset = read_dataset(dataset_files(folder, () if folder else paths, *beside), lenient, level)
+    dataset = read_dataset(find_data(folder, () if folder else paths, *beside), lenient, level)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
     for remark in foon.warnings:

@@ -18,7 +18,6 @@ import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.session import Session
 from foon_asp.asp.soft import solve_soft
-from foon_asp.dataset import dataset_files
 from foon_asp.dataset.reading import read_dataset
 from foon_asp.deadline import Deadline, LimitError, memory_size, seconds, size_text
 from foon_asp.errors import UserError
@@ -27,6 +26,7 @@ from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.questions.alternatives import alternatives
+from foon_asp.text import find_data
 from tests.conftest import Cli
 from tests.hard_problem import hard_problem
 
@@ -199,7 +199,7 @@ def test_limits_and_ctrl_c_while_reading(large: Path) -> None:
 
 @pytest.mark.slow
 def test_limits_and_ctrl_c_while_cutting(large: Path) -> None:
-    question = read_dataset(dataset_files(large))
+    question = read_dataset(find_data(large))
     goal = question.each_goal(())[-1]
     for objective in (Objective.UNITS, Objective.SUCCESS):
         for limit in (0.2, 1, 3):

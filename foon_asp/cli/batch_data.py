@@ -11,11 +11,11 @@ from typing import Any
 from foon_asp.batch import Asked
 from foon_asp.cli import options
 from foon_asp.compare import makeable
-from foon_asp.dataset import Dataset, dataset_files
+from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
-from foon_asp.text import read_object_list
+from foon_asp.text import find_data, read_object_list
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class BatchData:
 def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
     """Give a digest of everything in the files that the options name, and of kitchens beside them."""
     named = {key: value for key, value in named.items() if key not in {"level", "lenient"}}
-    files = dataset_files(**named)
+    files = find_data(**named)
     found = hashlib.sha256()
     for file in (*files.network, *filter(None, files[1:]), *sorted(set(kitchens))):
         if not file.is_file():

@@ -10,11 +10,12 @@ from foon_asp.cli.click_option import Command, click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.held import held
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.dataset import Dataset, dataset_files
+from foon_asp.dataset import Dataset
 from foon_asp.dataset.reading import read_dataset as read_data
 from foon_asp.deadline import Deadline, LimitError, Watch
 from foon_asp.errors import UserError
 from foon_asp.questions.options import LIMITS
+from foon_asp.text import find_data
 
 _DEADLINE = "foon_asp.deadline"
 _PATH = click.Path(path_type=NamedPath)
@@ -127,7 +128,7 @@ def read_dataset(
             )
         return here.dataset
     with reading():
-        files = dataset_files(folder, network, kitchen, rates, utensils, goals, unit_prices)
+        files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
         dataset = read_data(files, lenient, level)
     context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
     if context:

@@ -6,8 +6,8 @@ from pathlib import Path
 import click
 
 from foon_asp.cli.held import held
-from foon_asp.dataset import dataset_files
 from foon_asp.errors import UserError
+from foon_asp.text import find_data
 
 # The parameters of verbs that name what is written, and those that name data.
 _WRITTEN = {"output", "file", "charts", "results", "results_file", "certificate_file"}
@@ -39,7 +39,7 @@ def read_files() -> Iterator[Path]:
             yield from _paths(value)
     data = {name: parameters.get(name) or None for name in _DATA}
     if "network" in parameters and any(data.values()):
-        files = dataset_files(**(data | {"network": data["network"] or ()}))
+        files = find_data(**(data | {"network": data["network"] or ()}))
         yield from files.network
         yield from filter(None, files[1:])
 

@@ -1,6 +1,6 @@
 """Data that was named and read, from text or from a store, and the problems that are posed of it."""
 
 from foon_asp.dataset.dataset import Dataset, ask
-from foon_asp.dataset.reading import dataset_files, read_dataset
+from foon_asp.dataset.reading import read_dataset
 
-__all__ = ["Dataset", "ask", "dataset_files", "read_dataset"]
+__all__ = ["Dataset", "ask", "read_dataset"]

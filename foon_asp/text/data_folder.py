@@ -15,6 +15,7 @@ from foon_asp.network import (
     network_at_level,
     pattern_at_level,
 )
+from foon_asp.resources import bundled_kitchen
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -62,7 +63,7 @@ class Data(NamedTuple):
 
 
 def find_data(
-    folder: Path | None,
+    folder: Path | None = None,
     network: Sequence[Path] = (),
     kitchen: Path | None = None,
     rates: Path | None = None,
@@ -72,10 +73,14 @@ def find_data(
 ) -> DataFiles:
     """Find the files of a question: the pieces given on their own, and the folder's for all others.
 
+    Without folder and network it is the bundled kitchen. A network of its own does not get the bundled
+    kitchen and rates, which are made for another one.
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt`` and ``*.json`` files, and may
     have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``, ``unit_prices.txt``, and
     ``goal_nodes.json`` or ``goal_nodes.txt``. Raises :class:`UserError` where something named does not exist.
     """
+    if folder is None and not network:
+        folder = bundled_kitchen()
     beside_it = (kitchen, rates, utensils, goals, unit_prices)
     for path in (folder, *beside_it, *network):
         if path is not None and not path.exists():

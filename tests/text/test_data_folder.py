@@ -7,6 +7,7 @@ import pytest
 
 from foon_asp.errors import UserError
 from foon_asp.network import Source
+from foon_asp.resources import bundled_kitchen
 from foon_asp.text import (
     Data,
     DataFiles,
@@ -183,9 +184,16 @@ def test_a_folder_without_networks_is_an_error(folder: Path) -> None:
     assert "FOON.txt" in str(caught.value)
 
 
-def test_no_network_at_all_is_an_error(folder: Path) -> None:
+def test_no_network_at_all_is_an_error(tmp_path: Path) -> None:
+    kitchen = tmp_path / "mine.txt"
+    kitchen.write_text("O\tice\n")
     with pytest.raises(UserError, match="no network is given"):
-        find_data(None, kitchen=folder / "kitchen.json")
+        find_data(tmp_path, kitchen=kitchen)
+
+
+def test_without_a_network_it_is_the_bundled_kitchen(folder: Path) -> None:
+    kitchen = folder / "kitchen.json"
+    assert find_data(None, kitchen=kitchen) == find_data(bundled_kitchen())._replace(kitchen=kitchen)
 
 
 # --- reading
