@@ -71,14 +71,23 @@ def measure(problem: Problem, tree: tuple[FunctionalUnit, ...], objective: str) 
         at_hand = {objects[o] for o in problem.kitchen}
         used = {n for unit in tree for n in needed(unit, problem.containers, problem.utensils)}
         return Fraction(len(used & at_hand))
+    if objective in {"attempts", "price"}:
+        return sum((_cost(problem, unit, objective) for unit in tree), start=Fraction(0))
     assert problem.rates is not None
-    if objective == "attempts":
-        return sum((1 / problem.rates[unit.motion] for unit in tree), start=Fraction(0))
     assert objective == "success"
     product = Fraction(1)
     for unit in tree:
         product *= problem.rates[unit.motion]
     return -product
+
+
+def _cost(problem: Problem, unit: FunctionalUnit, objective: str) -> Fraction:
+    if objective == "attempts":
+        assert problem.rates is not None
+        return 1 / problem.rates[unit.motion]
+    assert problem.unit_prices is not None
+    motions, units = problem.unit_prices
+    return units[unit] if unit in units else motions[unit.motion]
 
 
 def key(problem: Problem, tree: tuple[FunctionalUnit, ...], objectives: list[str]) -> tuple[Fraction, ...]:

@@ -1,11 +1,11 @@
-"""Small random problems, seeded: cycles, skipped utensils that are put out, rates whose products collide."""
+"""Small random problems, seeded: cycles, skipped utensils that are put out, costs that collide."""
 
 import random
 from fractions import Fraction
 
 import pytest
 
-from foon_asp.network import NetworkBuilder, ObjectNode, Source
+from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 
 UTENSILS = frozenset({"bowl", "cup"})
@@ -20,6 +20,13 @@ RATES = ("0.3", "0.09", "0.1", "0.9", "0.5", "0.18", "0.300000001", "0.090000001
 NEAR_1 = ("0.999999999", "0.99999999999", "0." + "9" * 30, "0." + "9" * 29 + "8", "1", "0.999999991")
 NEAR_0 = ("0." + "0" * 330 + "3", "0." + "0" * 330 + "2", "0.000000001", "0." + "9" * 30, "1", "0.5")
 POWERS = ("0.7", "0.49", "0.343", "0.2401", "1", "0.7")
+
+# Sums of the first collide exactly (0.1 + 0.2 = 0.3) or nearly; others do not fit 32 bits, together or alone.
+PRICES = ("0", "0.1", "0.2", "0.3", "0.30000000000000004", "1", "2.5", "12")
+FREE = ("0", "0", "0", "1")
+TINY = ("0." + "0" * 29 + "1", "0." + "0" * 29 + "2", "0." + "0" * 29 + "3", "0", "0.1")
+HUGE = ("2147483647", "2147483648", "4294967295.5", "1" + "0" * 40, "1" + "0" * 39 + "1.1", "0.1")
+LONG = ("0." + "12" * 20, "0." + "34" * 20, "0." + "46" * 20, "0." + "46" * 19 + "45", "1." + "0" * 39 + "1")
 
 # Utensils that hold each other: a unit with both as inputs needs neither under ``implied``.
 EACH_OTHER = (
@@ -108,7 +115,8 @@ def random_problem(seed: int, rule: ContainerRule, units: int = 8, readable: boo
     if odd.random() < 0.4:
         family = odd.choice((NEAR_1, NEAR_1, NEAR_0, POWERS, POWERS))
         rates = {motion: Fraction(odd.choice(family)) for motion in MOTIONS}
-    return Problem(network, kitchen, goals, rates, UTENSILS, rule)
+    prices = random_prices(network, seed)
+    return Problem(network, kitchen, goals, rates, UTENSILS, rule, unit_prices=prices)
 
 
 def random_steps(seed: int, rule: ContainerRule, units: int = 9) -> Problem:
@@ -146,7 +154,17 @@ def random_steps(seed: int, rule: ContainerRule, units: int = 9) -> Problem:
     goals = goals[: rng.choice((1, 1, 1, 2))]
     family = rng.choice((RATES, RATES, NEAR_1, NEAR_0, POWERS))
     rates = {motion: Fraction(rng.choice(family)) for motion in MOTIONS}
-    return Problem(network, frozenset(start), tuple(goals), rates, UTENSILS, rule)
+    prices = random_prices(network, seed)
+    return Problem(network, frozenset(start), tuple(goals), rates, UTENSILS, rule, unit_prices=prices)
+
+
+def random_prices(network: Network, seed: int) -> UnitPrices:
+    """Give all motions a price, and some of the units one of their own."""
+    rng = random.Random(f"prices {seed}")
+    family = rng.choice((PRICES, PRICES, PRICES, FREE, TINY, HUGE, LONG))
+    motions = {motion: Fraction(rng.choice(family)) for motion in MOTIONS}
+    chosen = [unit for unit in range(len(network)) if rng.random() < 0.4]
+    return UnitPrices(motions, {network.unit(unit): Fraction(rng.choice(family)) for unit in chosen})
 
 
 def random_objectives(rng: random.Random, number: int) -> tuple[Objective, ...]:

@@ -55,7 +55,7 @@ def test_the_best_are_those_of_brute_force_and_proved(rule: ContainerRule) -> No
         assert (found.costs.measure(Objective.ATTEMPTS), found.costs.units) == least
         certificate = certify(problem, (*BY, Objective.UNITS), found.units)
         if certificate is not None:
-            given = problem.network, problem.kitchen, problem.rates, problem.utensils
+            given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
             verified = verify.verify(certificate.content, *given)
             assert verified.costs is not None
             assert verified.costs[0] == least[0]

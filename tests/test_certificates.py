@@ -39,7 +39,8 @@ RULES = list(ContainerRule)
 def verified(certificate: Certificate, problem: Problem) -> Verified:
     """Verify what is written, not what was meant."""
     content = read_certificate(certificate.text())
-    return verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
+    given = problem.network, problem.kitchen, problem.rates, problem.utensils
+    return verify(content, *given, problem.unit_prices)
 
 
 def leaves(proof: dict[str, Any]) -> int:

@@ -33,13 +33,14 @@ from foon_asp.network import (
 )
 from foon_asp.problem import ContainerRule, Objective, Problem, executable_order, first_tree, reach, relevant
 from foon_asp.proof import Verdict, simulate, simulate_for
-from foon_asp.proof.verify import RefusedError, seal, verify
+from foon_asp.proof.verify import VERSION, RefusedError, seal
 from foon_asp.questions.diff import side
 from foon_asp.questions.menu import menu
 from foon_asp.reduce import ALL, NONE
 from foon_asp.search import SEARCHES, Ending, SearchSettings
 from tests import oracle
 from tests.conftest import Cli
+from tests.handmade_certificate import check, older
 from tests.random_problems import random_problem
 
 WATER = ObjectNode.of("water", [], [("in", "pot")])
@@ -188,16 +189,12 @@ def test_another_engine_says_the_same() -> None:
 # --- Certificates
 
 
-def checked(content: Any, problem: Problem) -> Any:
-    return verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
-
-
 def test_that_there_is_no_tree_is_certified() -> None:
     problem = ask(POT)
     found = certify_infeasible(problem)
     assert found is not None
-    assert found.content["version"] == 2
-    assert checked(found.content, problem).claim == "infeasible"
+    assert found.content["version"] == VERSION
+    assert check(found.content, problem).claim == "infeasible"
 
 
 def forged(problem: Problem) -> dict[str, Any]:
@@ -212,14 +209,18 @@ def forged(problem: Problem) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("version", "words"),
-    [(2, "the tree does not make every goal"), (1, "let it skip.*certify again"), (3, "version 2")],
+    [
+        (VERSION, "the tree does not make every goal"),
+        (1, "let it skip.*certify again"),
+        (VERSION + 1, f"version {VERSION}"),
+    ],
 )
 def test_a_certificate_of_the_old_rule_is_refused(version: int, words: str) -> None:
     problem = ask(POT)
     content = forged(problem) | {"version": version}
     content["seal"] = seal(content)
     with pytest.raises(RefusedError, match=words):
-        checked(content, problem)
+        check(content, problem)
 
 
 def test_a_cut_is_not_crossed_by_a_unit_that_skips() -> None:
@@ -239,21 +240,21 @@ def test_a_cut_is_not_crossed_by_a_unit_that_skips() -> None:
     }
     hopeless["seal"] = seal(hopeless)
     with pytest.raises(RefusedError, match="crossed"):
-        checked(hopeless, problem)
+        check(hopeless, problem)
 
 
 def test_version_1_holds_under_strict_containers() -> None:
     problem = ask(HOT, ContainerRule.STRICT, (WATER, POT))
     found = certify(problem, (Objective.UNITS,), [0])
     assert found is not None
-    old = found.content | {"version": 1}
+    old = found.content | {"version": 1, "digests": older(problem)}
     old["seal"] = seal(old)
-    assert checked(old, problem).claim == "optimal"
-    for version in (0, 3, True, "1", 1.0, None):
+    assert check(old, problem).claim == "optimal"
+    for version in (0, VERSION + 1, True, "1", 1.0, None):
         other = old | {"version": version}
         other["seal"] = seal(other)
         with pytest.raises(RefusedError, match="version"):
-            checked(other, problem)
+            check(other, problem)
 
 
 # --- Levels
@@ -272,7 +273,7 @@ def test_levels(level: int) -> None:
     assert found.verdict is Verdict.NEVER
     certificate = certify_infeasible(problem)
     assert certificate is not None
-    assert checked(certificate.content, problem).level == level
+    assert check(certificate.content, problem).level == level
 
 
 @pytest.mark.parametrize("level", [1, 2])

@@ -239,7 +239,7 @@ def test_a_certificate_by_an_unknown_objective_is_refused(monkeypatch: pytest.Mo
     problem = two_ways(["0.5", "0.5"], ["0.2"])
     certificate = certify(problem, (Objective.INPUTS,), (2,))
     assert certificate is not None
-    given = problem.network, problem.kitchen, problem.rates, problem.utensils
+    given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
     verify.verify(certificate.content, *given)
     content = {**certificate.content, "objective": ["nonsense"]}
     content["seal"] = verify.seal(content)

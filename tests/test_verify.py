@@ -13,7 +13,7 @@ import pytest
 
 from foon_asp.asp import Settings, solve
 from foon_asp.certificate import Certificate, certify, certify_infeasible, certify_outcome
-from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
+from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, Verified, seal, verify
 from foon_asp.resources import bundled_kitchen
@@ -26,7 +26,8 @@ Content = dict[str, Any]
 
 
 def check(content: Content, problem: Problem) -> Verified:
-    return verify(content, problem.network, problem.kitchen, problem.rates, problem.utensils)
+    given = problem.network, problem.kitchen, problem.rates, problem.utensils
+    return verify(content, *given, problem.unit_prices)
 
 
 def certificate(problem: Problem, *objectives: Objective) -> Certificate:
@@ -267,13 +268,13 @@ def test_units_of_a_tree_cannot_be_swapped_for_others() -> None:
     assert passed < 10
 
 
-@pytest.mark.parametrize("part", ["network", "kitchen", "rates", "utensils"])
+@pytest.mark.parametrize("part", ["network", "kitchen", "rates", "utensils", "prices"])
 def test_other_data_is_refused(part: str) -> None:
     data = read_data(find_data(bundled_kitchen()))
     goal = find_goal("ice", data.network, data.goals)
-    content = certificate(
-        Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils), Objective.UNITS
-    ).content
+    prices = UnitPrices({"pour": Fraction(1, 2)}, {data.network.unit(3): Fraction(0)})
+    given = data.network, data.kitchen, (goal,), data.rates, data.utensils
+    content = certificate(Problem(*given, unit_prices=prices), Objective.UNITS).content
     assert data.rates is not None
     network, kitchen, rates, utensils = data.network, data.kitchen, dict(data.rates), data.utensils
     if part == "network":
@@ -285,10 +286,12 @@ def test_other_data_is_refused(part: str) -> None:
         kitchen = kitchen - {min(kitchen)}
     elif part == "rates":
         rates["pour"] /= 2
+    elif part == "prices":
+        prices = UnitPrices(prices.motions, {data.network.unit(2): Fraction(0)})
     else:
         utensils = utensils | {"thimble"}
     with pytest.raises(RefusedError, match=part):
-        verify(content, network, kitchen, rates, utensils)
+        verify(content, network, kitchen, rates, utensils, prices)
 
 
 # --- handmade
