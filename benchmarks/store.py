@@ -123,7 +123,8 @@ def small_cones(store: Path, largest: int) -> dict[str, int]:
 def answer(output: str) -> object:
     """Give what an answer says, without times and places."""
     found = json.loads(output)
-    trees = [(unit["motion"], unit["inputs"], unit["outputs"]) for unit in found["units"]]
+    nodes = [[node["node"] for node in (*unit["inputs"], *unit["outputs"])] for unit in found["units"]]
+    trees = [(unit["motion"], *names) for unit, names in zip(found["units"], nodes, strict=True)]
     return found["status"], found["costs"], trees
 
 

@@ -5,12 +5,16 @@ import json
 import signal
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import jsonschema
 import pytest
 
 from foon_asp.cli.main import main
+from foon_asp.report.schema import schema
+from foon_asp.text.json_value import schema_name
 
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = ROOT.parent / "shared" / "corpus"
@@ -35,6 +39,24 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.slow)
 
 
+@cache
+def _validator(kind: str) -> Any:
+    return jsonschema.Draft202012Validator(schema(kind))
+
+
+def valid(value: Any) -> Any:
+    """Give a document of ours back if its schema has it; of certificates, there is another description."""
+    if value.get("format") == "foon-asp certificate":
+        return value
+    name, kind, _ = value["schema"].split("/")
+    assert (name, value["schema"]) == ("foon-asp", schema_name(kind))
+    validator = _validator(kind)
+    if not validator.is_valid(value):
+        fault = jsonschema.exceptions.best_match(validator.iter_errors(value))
+        raise AssertionError(f"{kind}: {fault.json_path}: {fault.message[:500]}")
+    return value
+
+
 class Ran(NamedTuple):
     """How a command ended."""
 
@@ -44,8 +66,8 @@ class Ran(NamedTuple):
 
     @property
     def json(self) -> Any:
-        """Parse what was printed."""
-        return json.loads(self.out)
+        """Parse what was printed, and hold it against its schema."""
+        return valid(json.loads(self.out))
 
 
 Cli = Callable[..., Ran]

@@ -23,7 +23,7 @@ from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import InputError, find_data, find_goal, read_data
-from tests.conftest import Cli
+from tests.conftest import Cli, valid
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
 
@@ -44,7 +44,7 @@ def questions(tmp_path: Path) -> Path:
 
 
 def rows_of(file: Path) -> list[dict[str, Any]]:
-    head, *rows = map(json.loads, file.read_text().splitlines())
+    head, *rows = (valid(json.loads(line)) for line in file.read_text().splitlines())
     assert "question" in head
     return rows
 

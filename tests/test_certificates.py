@@ -316,9 +316,9 @@ def test_solve_writes_a_certificate_that_verify_accepts(cli: Cli, tmp_path: Path
     checked = cli("verify", file)
     assert checked.code == 0
     assert "verified: no task tree is better by success, then units (strict containers)" in checked.out
-    exact = ran.json["costs"]["success"]["exact"]
-    assert exact in checked.out
-    assert cli("verify", file, "--format", "json").json["costs"] == {"success": exact, "units": 31}
+    success = ran.json["costs"]["success"]
+    assert success["exact"] in checked.out
+    assert cli("verify", file, "--format", "json").json["costs"] == {"success": success, "units": 31}
     assert cli("solve", "--goal", "ice", "--format", "json").json["proof"] == "cuts"
     plain = cli("solve", "--goal", "ice", "--reduce", "none", "--format", "json")
     assert plain.json["proof"] == "solver"
@@ -337,7 +337,8 @@ def test_verify_refuses_other_data_and_changes(cli: Cli, tmp_path: Path) -> None
     file.write_text(json.dumps(content))
     changed = cli("verify", file, "--format", "json")
     assert changed.code == 1
-    assert changed.json == {"verified": False, "reason": "the seal does not fit: something was changed"}
+    reason = "the seal does not fit: something was changed"
+    assert changed.json == {"schema": "foon-asp/verify/1", "verified": False, "reason": reason}
     file.write_text("{")
     assert cli("verify", file).code == 1
     assert cli("verify", tmp_path / "none.json").code == 2

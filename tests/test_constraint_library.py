@@ -22,7 +22,7 @@ def test_the_list_can_be_pasted(cli: Cli) -> None:
     text = cli("constraints")
     assert text.code == 0
     assert "  --constraint at_most_motion -c limited_motion=wash -c max_uses=2\n" in text.out
-    listed = cli("constraints", "--format", "json").json
+    listed = cli("constraints", "--format", "json").json["constraints"]
     assert len(listed) == len(list(FOLDER.glob("*.lp"))) >= 13
     for entry in listed:
         words = [w for p in entry["parameters"] for w in ("-c", f"{p['name']}={p['example']}")]

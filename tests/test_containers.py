@@ -334,7 +334,8 @@ def test_the_command_line(cli: Cli, tmp_path: Path) -> None:
     assert ran.code == 0
     assert "     → pot; contains {water}  (implied, not made here)\n     → hot water\n" in ran.out
     (unit,) = cli("solve", *asked, *hot, "--format", "json").json["units"]
-    assert unit["outputs"] == ["pot; contains {water}", "hot water"]
+    made = [(node["node"], node["made"]) for node in unit["outputs"]]
+    assert made == [("pot; contains {water}", False), ("hot water", True)]
     tree = tmp_path / "tree.txt"
     tree.write_text(cli("solve", *asked, *hot, "--format", "foon").out)
     assert "S\tcontains\t{water}\n" in tree.read_text()
@@ -345,9 +346,9 @@ def test_the_command_line(cli: Cli, tmp_path: Path) -> None:
     assert cli("check", tree, *asked, *hot).code == 0
     ran = cli("search", "bfs", *asked, *pot)
     assert "does not execute" in ran.out
-    (row,) = cli("compare", *asked, *pot, "--search", "bfs", "--format", "json").json
+    (row,) = cli("compare", *asked, *pot, "--search", "bfs", "--format", "json").json["comparisons"]
     assert row["optimum"]["units"]["status"] == "infeasible"
-    assert row["searches"][0]["executes"] == "does not execute"
+    assert row["searches"][0]["verdict"] == "does not execute"
 
 
 def test_in_a_picture_no_arrow_leads_to_what_was_skipped(cli: Cli, tmp_path: Path) -> None:

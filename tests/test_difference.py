@@ -113,12 +113,35 @@ def test_without_a_tree(cli: Cli, tmp_path: Path, files: tuple[Path, Path]) -> N
     assert "the answer has no tree (infeasible)" in none.err
 
 
+NODE = {"node": "bread", "label": "bread", "states": [], "relations": [], "contents": []}
+UNIT = {"motion": "cut", "inputs": [NODE], "outputs": [NODE], "source": [{"file": "x", "line": 1}]}
+ANSWER = {"schema": "foon-asp/answer/1", "goals": [NODE], "units": [UNIT]}
+
+
+def test_the_answer_that_is_broken_above_is_one(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "x.json"
+    file.write_text(json.dumps(ANSWER))
+    assert cli("diff", file, file).code == 0
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ({"units": [{"motion": "cut"}]}, "'inputs' is missing"),
-        ({"units": [{"motion": 3, "inputs": [], "outputs": [], "source": [{}]}]}, "not written as such"),
-        ({"units": 3}, "expected an answer of foon-asp"),
+        ({**ANSWER, "units": [{"motion": "cut"}]}, "'inputs' is missing"),
+        ({**ANSWER, "units": [UNIT | {"motion": 3}]}, "not written as such"),
+        ({**ANSWER, "units": [UNIT | {"inputs": ["bread"]}]}, "expected an answer of foon-asp"),
+        ({**ANSWER, "units": [UNIT | {"inputs": [NODE | {"label": "roll"}]}]}, "'bread' are those of 'roll'"),
+        (
+            {**ANSWER, "units": [UNIT | {"inputs": [NODE | {"states": [3]}]}]},
+            "expected an answer of foon-asp",
+        ),
+        ({**ANSWER, "units": 3}, "expected an answer of foon-asp"),
+        ({**ANSWER, "goals": None}, "expected an answer of foon-asp"),
+        ({"units": []}, "expected 'foon-asp/answer/1'"),
+        ({**ANSWER, "schema": "foon-asp/answer/2"}, "'foon-asp/answer/2', expected 'foon-asp/answer/1'"),
+        ({**ANSWER, "schema": 1}, "expected 'foon-asp/answer/1'"),
+        ({"schema": "foon-asp/optima/1", "answers": [ANSWER]}, "has no tree, or more than one"),
+        ({"schema": "foon-asp/menu/1", "answer": {**ANSWER, "schema": "x"}}, "it is 'x'"),
     ],
 )
 def test_what_is_no_answer(cli: Cli, tmp_path: Path, content: object, message: str) -> None:

@@ -16,7 +16,7 @@ from foon_asp.engines import Asked, DisagreementError, Engine, EngineAnswer, Sol
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
 from foon_asp.search import Retrieve, SearchSettings
-from tests.conftest import ROOT, Cli
+from tests.conftest import ROOT, Cli, valid
 from tests.example_package import foon_example
 from tests.packages import Packages, install
 
@@ -52,11 +52,11 @@ def test_a_search_of_another_package_stands_in_compare(cli: Cli, packages: Packa
     install_example(packages)
     ran = cli("compare", "--goal", "macaroni", "--goal", "ice", "--format", "json")
     assert ran.code == 0
-    for row in ran.json:
+    for row in ran.json["comparisons"]:
         assert [each["search"] for each in row["searches"]][-2:] == ["greedy-inputs", "fewest-open"]
         theirs = row["searches"][-1]
         assert theirs["ending"] == "tree"
-        assert theirs["executes"] in {"executes as listed", "executes in another order"}
+        assert theirs["verdict"] in {"executes as listed", "executes in another order"}
     table = cli("compare", "--goal", "ice", "--search", "fewest-open")
     assert [line.split()[0] for line in table.out.splitlines()[4:7]] == ["─" * 80, "optimum", "fewest-open"]
 
@@ -221,13 +221,13 @@ def test_what_it_does_it_does_elsewhere(packages: Packages) -> None:
     packages.install("foon-hostile", HOSTILE, {"noisy": "noisy", "wrong": "wrong", "none": "none"})
     ran = run(packages.folder, "compare", "--goal", "ice", "--goal", "tea", "--format", "json")
     assert ran.returncode == 0
-    found, _ = json.loads(ran.stdout)
+    found, _ = valid(json.loads(ran.stdout))["comparisons"]
     rows = {row["search"]: row for row in found["searches"]}
     problem = foon_asp.load().problem("ice")
     best = foon_asp.solve(problem, "success").costs
     assert best is not None
-    assert found["optimum"]["success"]["value"] == str(best.success) != "1"
-    assert rows["wrong"]["executes"] == "does not execute"
+    assert found["optimum"]["success"]["value"]["exact"] == str(best.success) != "1"
+    assert rows["wrong"]["verdict"] == "does not execute"
     assert rows["none"]["ending"] == rows["noisy"]["ending"] == "none"
     assert "noise of print" in ran.stderr
     assert "noise of a program" in ran.stderr
@@ -242,7 +242,7 @@ def test_a_search_without_an_end_is_ended(cli: Cli, packages: Packages) -> None:
     ran = cli("search", "endless", "--goal", "ice", "--time-limit", "0.5")
     assert ran.code == 3
     assert "unknown: stopped at a limit" in ran.out
-    rows = cli("compare", "--goal", "ice", "--time-limit", "0.5", "--format", "json").json
+    rows = cli("compare", "--goal", "ice", "--time-limit", "0.5", "--format", "json").json["comparisons"]
     assert [(each["search"], each["ending"]) for each in rows[0]["searches"]][-2:] == [
         ("endless", "unknown"),
         ("none", "none"),

@@ -164,6 +164,7 @@ def test_any_value_of_a_comparison_may_be_wrong(cli: Cli, tmp_path: Path, wrong:
     file = tmp_path / "results"
     assert begin(cli, "compare", file, file)[0] == 0
     row = json.loads(file.read_text().splitlines()[1])
+    assert row.pop("schema") == "foon-asp/compare-row/1"
     assert comparison_json(read_comparison(row)) == row
     for part in (row["searches"][0], row["optimum"]["units"]):
         for key, value in list(part.items()):

@@ -195,10 +195,11 @@ def test_answers_say_their_level_and_what_steps_stand_for(cli: Cli) -> None:
     assert f"stands for 1 unit at level 3:\n       78    {place}  open: macaroni box; sealed" in ran.out
     answer = json.loads(cli("solve", "--goal", "macaroni", "--level", "2", "--format", "json").out)
     assert answer["level"] == 2
-    assert answer["goals_stand_for"] == [["macaroni; cooked; in [pot]"]]
+    ((stands_for,),) = [goal["stands_for"] for goal in answer["goals"]]
+    assert stands_for["node"] == "macaroni; cooked; in [pot]"
     detailed = json.loads(cli("solve", "--goal", "macaroni", "--format", "json").out)
     assert detailed["level"] == 3
-    assert "goals_stand_for" not in detailed
+    assert "stands_for" not in detailed["goals"][0]
     assert "stands_for" not in detailed["units"][0]
     for unit in answer["units"]:
         places = [(s["file"], s["line"]) for s in unit["source"]]
@@ -257,8 +258,8 @@ def test_searches_and_comparisons_say_their_level(cli: Cli) -> None:
     assert found["level"] == 2
     assert all(unit["stands_for"] for unit in found["units"])
     assert "(strict containers, level 2)" in cli("compare", *asked).out
-    (row,) = cli("compare", *asked, "--format", "json").json
-    assert row["level"] == 2
+    compared = cli("compare", *asked, "--format", "json").json
+    assert (compared["level"], len(compared["comparisons"])) == (2, 1)
     assert "(strict containers, level 2)" in cli("optima", *asked).out
 
 
@@ -267,11 +268,11 @@ def test_goals_that_are_one_at_a_level_are_asked_once(cli: Cli, tmp_path: Path) 
     (tmp_path / "kitchen.txt").write_text("O\ta\n")
     (tmp_path / "goal_nodes.txt").write_text("O\tb\nS\tx\nO\tb\nS\ty\n")
     asked = ("optima", "--data", tmp_path, "--objective", "units", "--format", "json")
-    assert len(cli(*asked).json) == 2
-    assert len(cli(*asked, "--level", "1").json) == 1
+    assert len(cli(*asked).json["answers"]) == 2
+    assert len(cli(*asked, "--level", "1").json["answers"]) == 1
     compared = ("compare", "--data", tmp_path, "--search", "bfs", "--format", "json")
-    assert len(cli(*compared).json) == 2
-    assert len(cli(*compared, "--level", "1").json) == 1
+    assert len(cli(*compared).json["comparisons"]) == 2
+    assert len(cli(*compared, "--level", "1").json["comparisons"]) == 1
 
 
 def test_a_tree_is_drawn_at_its_level(cli: Cli, tmp_path: Path) -> None:

@@ -153,7 +153,7 @@ def test_the_answer_in_json(cli: Cli) -> None:
     ran = cli("pareto", "--goal", "macaroni", "--objective", "success,units", "--format", "json")
     assert ran.code == 0
     assert ran.json["complete"]
-    assert ran.json["objective"] == ["success", "units"]
+    assert ran.json["objectives"] == ["success", "units"]
     points = ran.json["points"]
     assert [point["measures"]["units"] for point in points] == [11, 10, 9]  # the best success first
     rates = read_data(find_data(bundled_kitchen())).rates

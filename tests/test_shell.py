@@ -120,7 +120,7 @@ def test_a_session_answers_as_the_verbs_do(shell: Cli, cli: Cli, tmp_path: Path)
         if "roots" in one:
             assert one == theirs
             continue
-        for key in ("goals", "containers", "objective", "status", "proof", "costs", "lower_bound"):
+        for key in ("goals", "containers", "objectives", "status", "proof", "costs", "lower_bound"):
             assert one[key] == theirs[key]
 
 

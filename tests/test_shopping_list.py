@@ -163,7 +163,7 @@ def test_the_universal_whipped_cream_is_made_possible(cli: Cli, universal: Path)
         words = ["shopping-list", "--data", universal, "--goal", "whipped cream", "--containers", rule]
         found = cli(*words, "--format", "json").json
         (first, *others) = found["lists"]
-        assert [item["object"] for item in first["items"]] == [
+        assert [item["node"] for item in first["items"]] == [
             "mixing bowl; in [mixer]; contains {condensed milk,cream cheese,pudding mix}"
         ]
         assert (first["proved"], others, found["complete"], found["offer"]) == (True, [], True, "for sale")

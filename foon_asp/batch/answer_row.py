@@ -7,7 +7,7 @@ from foon_asp.batch.asked import Asked, Asker
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
-from foon_asp.report.answer import bounds_json, costs_json
+from foon_asp.report.json_document import costs_json, figures_json
 
 Row = dict[str, object]
 
@@ -56,7 +56,7 @@ def _answered(asked: Asked, outcome: Outcome) -> Row:
         **failed_row(asked, error),
         "status": str(outcome.status),
         "proof": None if outcome.proof is None else str(outcome.proof),
-        "costs": costs_json(outcome.costs, outcome.objectives),
-        "lower_bound": bounds_json(outcome),
+        "costs": costs_json(outcome.costs),
+        "lower_bound": figures_json(outcome.bounds),
         "units": None if outcome.units is None else list(map(network.unit_number, outcome.units)),
     }

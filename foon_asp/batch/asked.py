@@ -1,11 +1,11 @@
 """One of many questions, and who turns it into a problem."""
 
-import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from foon_asp.problem import Problem
+from foon_asp.text.json_value import json_line
 
 
 class Asked(NamedTuple):
@@ -24,7 +24,7 @@ class Asked(NamedTuple):
     @property
     def key(self) -> str:
         """The question in words, the same in every run: what a row of results is known by."""
-        return json.dumps(self.shown(), ensure_ascii=False, separators=(",", ":"))
+        return json_line(self.shown())
 
     def shown(self) -> dict[str, object]:
         """Give what was asked, in plain values."""

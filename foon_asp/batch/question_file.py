@@ -12,7 +12,7 @@ from foon_asp.network import Source
 from foon_asp.problem import ContainerRule, parse_objectives
 from foon_asp.text import Diagnostic, InputError, Severity, read_plain_text
 from foon_asp.text.json_fault import json_fault
-from foon_asp.text.json_value import read_json
+from foon_asp.text.json_value import json_line, read_json
 
 _LONGEST = 1e9  # seconds, some thirty years
 _KEYS = ("goal", "objective", "containers", "kitchen", "time_limit")
@@ -117,5 +117,5 @@ def _goal(value: object) -> tuple[str, ...]:
 
 def _name(value: object, key: str) -> str:
     if not isinstance(value, str) or not value:
-        raise ValueError(f"found {json.dumps(value)[:40]} as {key!r}, expected a name")
+        raise ValueError(f"found {json_line(value)[:40]} as {key!r}, expected a name")
     return value

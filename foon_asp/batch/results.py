@@ -11,6 +11,7 @@ from foon_asp.batch.answer_row import Row
 from foon_asp.batch.asked import Asked
 from foon_asp.compare import RowsFile
 from foon_asp.errors import UserError
+from foon_asp.text.json_value import is_other_version, schema_name
 
 if TYPE_CHECKING:
     import pyarrow
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _ROWS_IN_PART = 1000
 _ASKED = ("goal", "objective", "containers", "kitchen", "time_limit")
 _ANSWERED = ("status", "error", "proof", "costs", "lower_bound", "units", "seconds")
+KIND = "batch-row"
 _QUESTION, _WAITING = "_question.jsonl", "_waiting.jsonl"
 _PART = re.compile(r"part-(\d{6,18})\.parquet", re.ASCII)
 
@@ -59,7 +61,7 @@ class JsonLines(RowsFile[_Kept]):
     """A file with a row on each line, under one that says what is asked."""
 
     def __init__(self, path: Path, question: dict[str, object]) -> None:
-        super().__init__(path, question, _kept)
+        super().__init__(path, KIND, question, _kept)
         self.done = {kept.key: kept.status for kept in self.found}
 
     def add(self, asked: Asked, row: Row) -> None:
@@ -93,7 +95,7 @@ class ParquetFolder:
             path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise UserError(f"{path}: cannot be written: {error.strerror or error}") from None
-        self._begun = RowsFile(path / _QUESTION, question, _kept)  # refuses parts of another question
+        self._begun = RowsFile(path / _QUESTION, KIND, question, _kept)  # refuses parts of another question
         self._waiting_file = path / _WAITING
         self._open()
         # a part was written, and the rows waiting for it were not yet taken away
@@ -118,7 +120,7 @@ class ParquetFolder:
         self._begun.__exit__()
 
     def _open(self) -> None:
-        self._rows = RowsFile(self._waiting_file, self._question, _kept)
+        self._rows = RowsFile(self._waiting_file, KIND, self._question, _kept)
 
     def _write_part(self) -> None:
         from pyarrow import ArrowException, parquet  # noqa: PLC0415 (an extra)
@@ -171,11 +173,13 @@ def _statuses(part: Path) -> dict[str, str]:
 
     try:
         # a part by itself: the name of its folder says nothing of what is in it
-        rows = parquet.read_table(part, columns=[*_ASKED, "status"], partitioning=None).to_pylist()
+        rows = parquet.read_table(part, columns=["schema", *_ASKED, "status"], partitioning=None).to_pylist()
     except (OSError, ArrowException) as error:
         raise UserError(f"{part}: cannot be read: {error}") from None
     try:
         found = [_kept(_of_part(row)) for row in rows]
+    except UserError as other:
+        raise UserError(f"{part}: error: {other}; name another folder") from None
     except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
         raise UserError(f"{part}: error: no part of results of foon-asp; name another folder") from None
     return {kept.key: kept.status for kept in found}
@@ -184,7 +188,11 @@ def _statuses(part: Path) -> dict[str, str]:
 def _of_part(row: dict[str, Any]) -> dict[str, Any]:
     """Give the row of a part, of which what was asked is read, as it is on a line."""
     goal = row["goal"][0] if len(row["goal"]) == 1 else row["goal"]
-    return dict.fromkeys(_ANSWERED) | row | {"goal": goal}
+    if is_other_version(row["schema"], schema_name(KIND)):
+        raise UserError(
+            f"found {row['schema']}, expected {schema_name(KIND)}: another version of foon-asp wrote this"
+        )
+    return dict.fromkeys(_ANSWERED) | {key: row[key] for key in (*_ASKED, "status")} | {"goal": goal}
 
 
 def _table(rows: list[dict[str, Any]]) -> "pyarrow.Table":
@@ -194,6 +202,7 @@ def _table(rows: list[dict[str, Any]]) -> "pyarrow.Table":
     texts, whole = pyarrow.string(), pyarrow.int64()
     schema = pyarrow.schema(
         {
+            "schema": texts,
             "goal": pyarrow.list_(texts),
             "objective": texts,
             "containers": texts,
@@ -218,6 +227,7 @@ def _table(rows: list[dict[str, Any]]) -> "pyarrow.Table":
 def _flat(row: dict[str, Any]) -> dict[str, Any]:
     costs = row["costs"] or {}
     return {
+        "schema": schema_name(KIND),
         **row,
         "goal": [row["goal"]] if isinstance(row["goal"], str) else row["goal"],
         **{

@@ -3,7 +3,6 @@
 docs/proofs.md describes the format. Nothing is given out that ``foon_asp.proof.verify`` does not accept.
 """
 
-import json
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -13,6 +12,7 @@ from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Known, Objective, Problem
 from foon_asp.proof import verify
+from foon_asp.text.json_value import json_line
 
 
 class NotBestError(Exception):
@@ -39,18 +39,14 @@ class Certificate(NamedTuple):
         lines = []
         for key, value in self.content.items():
             if key == "cuts" and value:
-                shown = "[\n" + ",\n".join("  " + _line(cut) for cut in value) + "\n ]"
+                shown = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
             elif key == "proof" and isinstance(value, dict) and value.get("weights"):
-                pairs = ",\n".join("  " + _line(pair) for pair in value["weights"])
+                pairs = ",\n".join("  " + json_line(pair) for pair in value["weights"])
                 shown = '{"weights": [\n' + pairs + "\n ]}"
             else:
-                shown = _line(value)
+                shown = json_line(value)
             lines.append(f' "{key}": {shown}')
         return "{\n" + ",\n".join(lines) + "\n}\n"
-
-
-def _line(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False)
 
 
 def certify(

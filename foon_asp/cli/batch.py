@@ -1,6 +1,5 @@
 """``foon-asp batch``: thousands of questions in one run, each answer a row."""
 
-import json
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -24,6 +23,8 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
+from foon_asp.report.json_document import document
+from foon_asp.text.json_value import json_text
 
 
 @click.command("batch")
@@ -90,13 +91,10 @@ def command(
                     advance()
             except KeyboardInterrupt:
                 interrupted = True
-    summary = {
-        "questions": len(asked),
-        **tally.summary(),
-        "seconds": round(time.monotonic() - began, 3),
-    }
+    seconds = round(time.monotonic() - began, 3)
+    summary = document("batch", questions=len(asked)) | tally.summary() | {"seconds": seconds}
     if format_ == "json":
-        click.echo(json.dumps(summary, indent=2))
+        click.echo(json_text(summary), nl=False)
     else:
         for line in _in_words(summary, tally):
             click.echo(line)

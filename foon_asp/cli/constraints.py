@@ -6,6 +6,7 @@ from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.report.constraint_list import constraints_json, constraints_text
+from foon_asp.text.json_value import json_text
 
 
 @click.command("constraints")
@@ -17,6 +18,8 @@ def command(format_: str) -> ExitCode:
     Add the last line of an entry to solve, why-not, shopping-list or clash. A constraint is a file of a few
     lines; the docs (writing-constraints.md) teach writing one of your own.
     """
-    render = {"text": constraints_text, "json": constraints_json}[format_]
-    click.echo(render(library_constraints()), nl=False)
+    listed = library_constraints()
+    click.echo(
+        json_text(constraints_json(listed)) if format_ == "json" else constraints_text(listed), nl=False
+    )
     return ExitCode.DONE

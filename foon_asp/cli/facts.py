@@ -12,10 +12,13 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.problem import parse_objectives
 from foon_asp.questions.options import CONSTRAINTS, CONTAINERS, ENCODINGS, GOALS, OBJECTIVES, SOFT
+from foon_asp.report.json_document import document
+from foon_asp.text.json_value import json_text
 
 
 @click.command("facts")
 @click_options(GOALS, OBJECTIVES, CONTAINERS, CONSTRAINTS, ENCODINGS, SOFT)
+@options.format_option("text", "json")
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
@@ -24,6 +27,7 @@ def command(
     constraints: tuple[Path, ...],
     encodings: Path | None,
     soft: dict[Path, int],
+    format_: str,
     **data: object,
 ) -> ExitCode:
     """Print the facts that clingo is given for a goal; encodings/README.md says what they mean.
@@ -45,6 +49,10 @@ def command(
     problem = dataset.problem(
         dataset.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
     )
-    program = bare_program(problem, chosen, Settings(constraints, encodings), soft)
-    write_data(program.facts)
+    facts = bare_program(problem, chosen, Settings(constraints, encodings), soft).facts
+    if format_ == "json":
+        lines = facts.rstrip("\n").split("\n")  # a name may hold what other letters end a line
+        click.echo(json_text(document("facts", problem, chosen, facts=lines)), nl=False)
+    else:
+        write_data(facts)
     return ExitCode.DONE

@@ -17,6 +17,7 @@ from foon_asp.report.lint_text import lint_text
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
+from foon_asp.text.json_value import json_text
 
 _CODE = click.Choice(list(CATALOG))
 
@@ -62,8 +63,8 @@ def command(
     if format_ == "github":
         write_data(lint_annotations(findings))
     else:
-        render = {"text": lint_text, "json": lint_json}[format_]
-        click.echo(render(findings, len(files), count), nl=False)
+        told = findings, len(files), count
+        click.echo(json_text(lint_json(*told)) if format_ == "json" else lint_text(*told), nl=False)
     bad = any(finding.severity is not Severity.NOTE for finding in findings)
     return ExitCode.NEGATIVE if bad else ExitCode.DONE
 

@@ -12,6 +12,7 @@ from foon_asp.network import LEVELS, network_at_level
 from foon_asp.network.statistics import count
 from foon_asp.report.statistics_table import statistics_json, statistics_text
 from foon_asp.text import kitchen_nodes
+from foon_asp.text.json_value import json_text
 
 
 @click.command("stats")
@@ -44,6 +45,6 @@ def command(
         at_level = network_at_level(read.network, level)
         kitchen = kitchen_nodes(at_level, read.kitchen_items) if read.kitchen_items else None
         levels.append(count(at_level, kitchen))
-    render = {"text": statistics_text, "json": statistics_json}[format_]
-    click.echo(render(read.network, levels, bool(read.kitchen_items)), nl=False)
+    told = read.network, levels, bool(read.kitchen_items)
+    click.echo(json_text(statistics_json(*told)) if format_ == "json" else statistics_text(*told), nl=False)
     return ExitCode.DONE

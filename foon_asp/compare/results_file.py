@@ -1,7 +1,6 @@
 """Comparisons as JSON Lines: written as they come, read back to go on after an interruption."""
 
 import hashlib
-import json
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -13,6 +12,7 @@ from foon_asp.compare.rows_file import RowsFile
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import Verdict
 from foon_asp.search import Ending, Search, SearchSettings
+from foon_asp.text.json_value import json_line
 
 Plain = TypeVar("Plain")
 
@@ -124,7 +124,7 @@ def results_question(
         sorted((motion, str(rate)) for motion, rate in (problem.rates or {}).items()),
         *([list(map(str, problem.prices))] if problem.unit_prices else []),
     ):
-        digest.update(json.dumps(part).encode())
+        digest.update(json_line(part).encode())
     return {
         "data": digest.hexdigest()[:16],
         "containers": str(problem.containers),
@@ -144,7 +144,7 @@ class ResultsFile(RowsFile[Comparison]):
     """A file of comparisons under construction, begun for a question as :class:`RowsFile` says."""
 
     def __init__(self, path: Path, question: dict[str, object]) -> None:
-        super().__init__(path, question, read_comparison)
+        super().__init__(path, "compare-row", question, read_comparison)
         self.done = {comparison.goal: comparison for comparison in self.found}
 
     def add(self, comparison: Comparison) -> None:

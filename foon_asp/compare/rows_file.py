@@ -1,14 +1,13 @@
 """Results as JSON Lines: written as they come, read back to go on after an interruption."""
 
 import contextlib
-import json
 import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any, Generic, Self, TypeVar
 
 from foon_asp.errors import UserError
-from foon_asp.text.json_value import read_json
+from foon_asp.text.json_value import Json, is_other_version, json_line, read_json, schema_name
 
 Row = TypeVar("Row")
 
@@ -16,19 +15,20 @@ Row = TypeVar("Row")
 class RowsFile(Generic[Row]):
     """A file of rows under construction.
 
-    Its first line is the question (data and settings). Rows are written whole and at once; a last one that
-    an interruption cut short is dropped. ``found`` are the rows that were there, as ``read`` makes them of
-    plain values.
+    Its first line is the question (data and settings). Every line says its ``kind`` and version. Rows are
+    written whole and at once; a last one that an interruption cut short is dropped. ``found`` are the rows
+    that were there, as ``read`` makes them of plain values.
 
-    Raises :class:`UserError`, and leaves the file as it is, where it was begun for another question, and
-    where anything in it is nothing that this class wrote: nobody's file is taken for one of ours. ``read``
-    refuses a row by raising a :class:`ValueError`, :class:`KeyError`, :class:`TypeError`,
-    :class:`AttributeError` or :class:`ArithmeticError`.
+    Raises :class:`UserError`, and leaves the file as it is, where it was begun for another question, where
+    its lines are of another version, and where anything in it is nothing that this class wrote: nobody's file
+    is taken for one of ours. ``read`` refuses a row by raising a :class:`ValueError`, :class:`KeyError`,
+    :class:`TypeError`, :class:`AttributeError` or :class:`ArithmeticError`.
     """
 
-    def __init__(self, path: Path, question: dict[str, object], read: Callable[[Any], Row]) -> None:
+    def __init__(self, path: Path, kind: str, question: Json, read: Callable[[Any], Row]) -> None:
         self.path = path
-        self.question = json.loads(json.dumps(question))
+        self.schema = schema_name(kind)
+        self.question = read_json(json_line(question))
         self._read = read
         self.found: list[Row] = []
         kept, missing = self._look_at(self._content())
@@ -46,9 +46,9 @@ class RowsFile(Generic[Row]):
             self.__exit__()
             raise
 
-    def write(self, row: dict[str, object]) -> None:
+    def write(self, row: Json) -> None:
         """Write one row; it is on the disk when this returns."""
-        self._put(_line(row))
+        self._put(self._line(row))
 
     def __enter__(self) -> Self:
         return self
@@ -70,10 +70,10 @@ class RowsFile(Generic[Row]):
     def _look_at(self, content: bytes) -> tuple[int, bytes]:
         """Read what was there; say how many bytes of it are kept, and which are missing behind them."""
         if not content:
-            return 0, _line({"question": self.question})
+            return 0, self._line({"question": self.question})
         first, newline, rows = content.partition(b"\n")
         begun = self._value(first, 1) if newline else None
-        if not isinstance(begun, dict) or begun.keys() != {"question"}:
+        if not isinstance(begun, dict) or not self._is_of_version(begun) or begun.keys() != {"question"}:
             raise UserError(
                 f"{self.path}: holds something else than results of foon-asp, and is left as it is; "
                 "name another file"
@@ -81,7 +81,7 @@ class RowsFile(Generic[Row]):
         if begun["question"] != self.question:
             raise UserError(
                 f"{self.path}: was begun for another question; name another file, or remove this one\n"
-                f"  there: {json.dumps(begun['question'])}\n  now:   {json.dumps(self.question)}"
+                f"  there: {json_line(begun['question'])}\n  now:   {json_line(self.question)}"
             )
         *whole, last = rows.split(b"\n")
         for number, line in enumerate(whole, 2):
@@ -98,6 +98,8 @@ class RowsFile(Generic[Row]):
     def _row(self, line: bytes, number: int) -> Row:
         value = self._value(line, number)
         try:
+            if not self._is_of_version(value):
+                raise self._foreign(number)
             return self._read(value)
         except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
             raise self._foreign(number) from None
@@ -107,6 +109,16 @@ class RowsFile(Generic[Row]):
             return read_json(line)
         except ValueError:
             raise self._foreign(number) from None
+
+    def _is_of_version(self, line: Json) -> bool:
+        """Take the version from a line; raises :class:`UserError` where it is another one of ours."""
+        found = line.pop("schema", "no version" if line.keys() == {"question"} else None)
+        if found == "no version" or is_other_version(found, self.schema):
+            raise UserError(
+                f"{self.path}: holds results of foon-asp with {found}, expected {self.schema}: another "
+                "version wrote them; name another file, or remove this one"
+            )
+        return bool(found == self.schema)
 
     def _foreign(self, number: int) -> UserError:
         return UserError(
@@ -125,9 +137,5 @@ class RowsFile(Generic[Row]):
     def _fault(self, done: str, error: OSError) -> UserError:
         return UserError(f"{self.path}: cannot be {done}: {error.strerror or error}")
 
-
-def _line(row: dict[str, object]) -> bytes:
-    try:
-        return json.dumps(row, ensure_ascii=False).encode() + b"\n"
-    except UnicodeEncodeError:  # half a character, as in the name of a file that is no UTF-8
-        return json.dumps(row).encode() + b"\n"
+    def _line(self, row: Json) -> bytes:
+        return json_line({"schema": self.schema, **row}).encode() + b"\n"

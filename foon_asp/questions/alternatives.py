@@ -27,9 +27,11 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_json, costs_text, counted, goal_lines, unit_json, unit_lines
+from foon_asp.report.answer import costs_text, counted, goal_lines, unit_lines
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.json_document import costs_json, document, steps_json
 from foon_asp.report.notebook import page_bundle
+from foon_asp.text.json_value import Json
 
 _SHOWN = 20  # trees that are listed one by one for people
 _PICTURES = 4  # that a notebook shows
@@ -101,27 +103,23 @@ class Alternatives(Result):
         lines = _optimal_lines(self) if self.wanted is None else _lines(self, self.wanted)
         return "\n".join([*goal_lines(self.problem), *lines]) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the trees with what they cost, and the units that all optimal ones or some of them have."""
-        network = self.problem.network
-        return {
-            "goals": [str(network.objects[goal]) for goal in self.problem.goals],
-            "containers": str(self.problem.containers),
-            "level": network.level,
-            "objective": [str(objective) for objective in self.objectives],
-            "complete": self.complete,
-            "unproved": self.unproved,
-            "optimal": len(self.optimal),
-            "in_every_optimal": sorted(map(network.unit_number, self.in_every)),
-            "in_some_optimal": sorted(map(network.unit_number, self.in_some)),
-            "trees": [
-                {
-                    "costs": costs_json(tree.costs, self.objectives),
-                    "units": [unit_json(network, unit) for unit in tree.units],
-                }
+        number = self.problem.network.unit_number
+        return document(
+            "alternatives",
+            self.problem,
+            self.objectives,
+            complete=self.complete,
+            unproved=self.unproved,
+            optimal=len(self.optimal),
+            in_every_optimal=sorted(map(number, self.in_every)),
+            in_some_optimal=sorted(map(number, self.in_some)),
+            trees=[
+                {"costs": costs_json(tree.costs), "units": steps_json(self.problem, tree.units)}
                 for tree in self.trees
             ],
-        }
+        )
 
     def drawing(self) -> Drawing | None:
         """Give what the picture of the first tree shows."""

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Status
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import headline, outcome_dict, outcome_foon, outcome_text
+from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
+from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # what a command that prints an answer can do without
     from foon_asp.questions.tree import Tree
@@ -47,9 +48,9 @@ class Answer(Result, Outcome):
         """Give the answer as ``foon-asp solve`` does."""
         return outcome_text(self)
 
-    def json_dict(self) -> dict[str, object]:
+    def json_dict(self) -> Json:
         """Give the answer as ``foon-asp solve --format json`` does; docs/json.md describes it."""
-        return outcome_dict(self)
+        return answer_json(self)
 
     def foon(self) -> str:
         """Give the tree as FOON text with a comment that says what it is; empty where there is none."""

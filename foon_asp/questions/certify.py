@@ -11,6 +11,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.certificate import Certificate, Coverage, NotBestError, certify_outcome, coverage
 from foon_asp.certificate import certify as prove_best
 from foon_asp.dataset.paths import File, Files
+from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof import Verdict, simulate_for
@@ -33,6 +34,7 @@ from foon_asp.report.certified import bound_text, certificate_lines
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text import FoonReader, summarize
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -59,7 +61,7 @@ class Certified(Result):
     def _lines(self) -> list[str]:
         return certificate_lines(self.answer, self.certificate, self.place)
 
-    def json_dict(self) -> dict[str, object]:
+    def json_dict(self) -> Json:
         """Give the answer as ``foon-asp solve --certificate FILE --format json`` does."""
         return self.answer.json_dict()
 
@@ -103,9 +105,11 @@ class Proof(Result):
         """Say what is proved, or why nothing is."""
         return f"{self.words}\n"
 
-    def json_dict(self) -> object:
-        """Give the certificate as plain values; ``None`` where there is none."""
-        return None if self.certificate is None else self.certificate.content
+    def json_dict(self) -> Json:
+        """Give the certificate as plain values; raises :class:`UserError` where there is none."""
+        if self.certificate is None:
+            raise UserError(self.words)
+        return self.certificate.content
 
     def json_text(self) -> str:
         """Give the certificate as it is written; empty where there is none or it was written into a file."""

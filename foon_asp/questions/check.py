@@ -11,9 +11,10 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_json
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.verdict import Listed, obstacle_json, verdict_text
+from foon_asp.report.json_document import costs_json, document
+from foon_asp.report.verdict import Listed, verdict_json, verdict_text
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,22 +52,17 @@ class Checked(Result):
         """Say whether the tree executes, in which order, and what stops it."""
         return verdict_text(self.problem, self._listed(), self.simulation)
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the same; positions count from 1."""
-        problem, simulation, listed = self.problem, self.simulation, self._listed()
-        ids = self._ids()
+        problem, ids = self.problem, self._ids()
         known = [unit for unit in ids if unit is not None]
-        return {
-            "goals": list(map(str, problem.goal_nodes)),
-            "containers": str(problem.containers),
-            "level": problem.network.level,
-            "verdict": str(simulation.verdict),
-            "as_listed": obstacle_json(listed, simulation.as_listed),
-            "in_any_order": obstacle_json(listed, simulation.obstacle),
-            "order": [position + 1 for position in simulation.order],
-            "not_in_network": [position + 1 for position, unit in enumerate(ids) if unit is None],
-            "costs": costs_json(problem.costs(known)) if len(known) == len(ids) else None,
-        }
+        return document(
+            "check",
+            problem,
+            **verdict_json(problem, self._listed(), self.simulation),
+            not_in_network=[position for position, unit in enumerate(ids, 1) if unit is None],
+            costs=costs_json(problem.costs(known)) if len(known) == len(ids) else None,
+        )
 
     def drawing(self) -> Drawing | None:
         """Give what the picture shows."""

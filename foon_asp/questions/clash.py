@@ -28,9 +28,11 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, goal_lines, headline, outcome_dict
+from foon_asp.report.answer import counted, goal_lines, headline
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
+from foon_asp.report.json_document import document
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,6 +50,7 @@ class Clash(Result):
     """
 
     problem: Problem
+    objectives: tuple[Objective, ...]
     constraints: tuple[IntegrityConstraint, ...]
     weights: Mapping[int, int]
     makeable: bool = True
@@ -121,25 +124,23 @@ class Clash(Result):
         if self.outcome is not None and self.outcome.status is not Status.UNKNOWN:
             yield f"without {'it' if len(self.dropped) == 1 else 'them'}: {headline(self.outcome)}"
 
-    def json_dict(self) -> dict[str, object]:
+    def json_dict(self) -> Json:
         """Give all that is known of the clash."""
-        objects = self.problem.network.objects
-        return {
-            "goals": [str(objects[goal]) for goal in self.problem.goals],
-            "containers": str(self.problem.containers),
-            "level": self.problem.network.level,
-            "complete": self.complete,
-            "tree_exists_without_constraints": self.tree_exists,
-            "clash": bool(self.dropped),
-            "constraints": [
-                {**constraint_json(constraint), "weight": self.weights[constraint.number]}
-                for constraint in self.constraints
+        return document(
+            "clash",
+            self.problem,
+            self.objectives,
+            complete=self.complete,
+            tree_exists_without_constraints=self.tree_exists,
+            clash=bool(self.dropped),
+            constraints=[
+                constraint_json(each) | {"weight": self.weights[each.number]} for each in self.constraints
             ],
-            "smallest_clash": list(map(constraint_json, self.smallest)),
-            "smallest_proved": self.proved,
-            "cheapest_to_drop": list(map(constraint_json, self.dropped)),
-            "answer": None if self.outcome is None else outcome_dict(self.outcome),
-        }
+            smallest_clash=list(map(constraint_json, self.smallest)),
+            smallest_proved=self.proved,
+            cheapest_to_drop=list(map(constraint_json, self.dropped)),
+            answer=None if self.outcome is None else self.outcome.json_dict(),
+        )
 
     def drawing(self) -> Drawing | None:
         """Give what the picture of the tree shows."""
@@ -218,7 +219,7 @@ def find_clash(
     how = how._replace(relaxed=relaxed)
     program = assemble(how, caller().reporter.warning)
     blame = (question_encoding("blame.lp"),)
-    known = Clash(problem, constraints, weights)
+    known = Clash(problem, tuple(objectives), constraints, weights)
 
     def those(numbers: Iterable[int]) -> tuple[IntegrityConstraint, ...]:
         return tuple(by_number[number] for number in sorted(numbers))

@@ -26,6 +26,7 @@ from foon_asp.questions.solve import answered
 from foon_asp.questions.solve_soft import SoftAnswer, softly_answered
 from foon_asp.report.disagreement import write_disagreement
 from foon_asp.report.drawing import Drawing
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,7 +66,7 @@ class CrossChecked(Result):
             that = "that no tree exists" if none else f"by {by}"
             yield f"cross-check: {engine} agrees {that} ({check.seconds:.2f} s)"
 
-    def json_dict(self) -> dict[str, object]:
+    def json_dict(self) -> Json:
         """Give the answer with what each engine says of it.
 
         ``agrees_by`` is empty where it agrees that no tree exists.
@@ -82,7 +83,7 @@ class CrossChecked(Result):
             }
             for check in self.checks
         ]
-        return {**self.answer.json_dict(), "cross_check": rows}
+        return self.answer.json_dict() | {"cross_check": rows}
 
     def foon(self) -> str:
         """Give the tree as FOON text; empty where there is none."""

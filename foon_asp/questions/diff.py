@@ -12,6 +12,7 @@ from foon_asp.problem import (
     ContainerRule,
     Costs,
     Known,
+    Objective,
     container_rule,
     given_outputs,
     needed_inputs,
@@ -23,8 +24,10 @@ from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NoTreeError, Result
 from foon_asp.questions.tree import Tree, read_listed
-from foon_asp.report.answer import costs_json, costs_text, counted, headline
+from foon_asp.report.answer import costs_text, counted, headline
+from foon_asp.report.json_document import costs_json, document, head_json, listed_unit_json, named_json
 from foon_asp.text import find_goal
+from foon_asp.text.json_value import Json
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 
@@ -35,7 +38,8 @@ class Side(NamedTuple):
     """One of two trees: its units in the order listed, each once, with place, needs and products; its costs.
 
     ``goals`` may be empty where they are not known. ``costs.success`` is ``None`` where a rate is not known.
-    ``ending`` is how the question ended whose answer it is.
+    ``ending`` is how the question ended whose answer it is, and ``objectives`` are those of it, none for a
+    tree that is no answer.
     """
 
     name: str
@@ -46,7 +50,10 @@ class Side(NamedTuple):
     goals: tuple[ObjectNode, ...]
     kitchen: frozenset[ObjectNode]
     costs: Costs
-    ending: Ending = Ending.DONE
+    rule: ContainerRule
+    network: Network | None
+    ending: Ending
+    objectives: tuple[Objective, ...]
 
     def origin(self, node: ObjectNode) -> FunctionalUnit | None:
         """Give the unit that makes a node first; ``None`` where the kitchen has it or no unit makes it."""
@@ -118,25 +125,27 @@ class Difference(Result):
                 )
         return "\n".join(lines) + "\n"
 
-    def json_dict(self) -> object:
-        """Give the same."""
-        return {
-            "a": _side_json(self.left),
-            "b": _side_json(self.right),
-            "same_units": not self.only_left and not self.only_right,
-            "same_order": self.same_order,
-            "only_in_a": [_unit_json(self.left, unit) for unit in self.only_left],
-            "only_in_b": [_unit_json(self.right, unit) for unit in self.only_right],
-            "in_both": [_unit_json(self.left, unit) for unit in self.both],
-            "they_part_at": [
+    def json_dict(self) -> Json:
+        """Give the same; ids are those of the network that a tree is of."""
+        left, right = self.left, self.right
+        return document(
+            "diff",
+            a=_side_json(left),
+            b=_side_json(right),
+            same_units=not self.only_left and not self.only_right,
+            same_order=self.same_order,
+            only_in_a=[_unit_json(left, unit) for unit in self.only_left],
+            only_in_b=[_unit_json(right, unit) for unit in self.only_right],
+            in_both=[_unit_json(left, unit) for unit in self.both],
+            they_part_at=[
                 {
-                    "object": str(parting.object),
-                    "a": _origin_json(self.left, parting.left, parting.object),
-                    "b": _origin_json(self.right, parting.right, parting.object),
+                    "object": named_json(left.network, parting.object),
+                    "a": _origin_json(left, parting.left, parting.object),
+                    "b": _origin_json(right, parting.right, parting.object),
                 }
                 for parting in self.partings
             ],
-        }
+        )
 
     def __repr__(self) -> str:
         only = f"{len(self.only_left)} only left, {len(self.only_right)} only right"
@@ -230,7 +239,10 @@ def diff(left: Answer | Tree | Side, right: Answer | Tree | Side) -> Difference:
 def _side(name: str, given: Answer | Tree | Side) -> Side:
     if isinstance(given, Side):
         return given
-    ending = given.ending if isinstance(given, Answer) else Ending.DONE
+    ending = Ending.DONE
+    objectives: tuple[Objective, ...] = ()
+    if isinstance(given, Answer):
+        ending, objectives = given.ending, given.objectives
     tree = given.tree if isinstance(given, Answer) else given
     if tree is None:
         raise NoTreeError(f"the {name} answer has no tree, so there is nothing to compare", ending)
@@ -247,6 +259,7 @@ def _side(name: str, given: Answer | Tree | Side) -> Side:
         problem.network,
         ending,
         problem.unit_prices,
+        objectives,
     )
 
 
@@ -261,6 +274,7 @@ def side(
     network: Network | None = None,
     ending: Ending = Ending.DONE,
     unit_prices: UnitPrices | None = None,
+    objectives: tuple[Objective, ...] = (),
 ) -> Side:
     """Take a tree as one side of a difference; its units need not be those of any network.
 
@@ -279,7 +293,8 @@ def side(
         known.add(Known.PRICES)
     taken = {node for needed in needs.values() for node in needed if node in kitchen}
     costs = tree_costs([_ListedUnit(unit, rates, prices[unit]) for unit in units], len(taken), known)
-    return Side(name, units, places, needs, gives, tuple(goals), kitchen, costs, ending)
+    at_hand = tuple(goals), kitchen
+    return Side(name, units, places, needs, gives, *at_hand, costs, rule, network, ending, objectives)
 
 
 class _ListedUnit(NamedTuple):
@@ -326,19 +341,16 @@ def _ends(tree: Side) -> list[ObjectNode]:
     return [node for unit in tree.units for node in tree.gives[unit] if node not in needed]
 
 
-def _side_json(tree: Side) -> dict[str, object]:
-    return {"name": tree.name, "goals": [str(goal) for goal in tree.goals], "costs": costs_json(tree.costs)}
+def _side_json(tree: Side) -> Json:
+    goals, level = [named_json(tree.network, goal) for goal in tree.goals], 3
+    if tree.network is not None:
+        level = tree.network.level
+    head = head_json(goals, tree.rule, level, tree.objectives)
+    return {"name": tree.name, **head, "costs": costs_json(tree.costs)}
 
 
-def _unit_json(tree: Side, unit: FunctionalUnit) -> dict[str, object]:
-    place = tree.places[unit]
-    return {
-        "motion": unit.motion,
-        "inputs": [str(node) for node in unit.inputs],
-        "outputs": [str(node) for node in unit.outputs],
-        "file": place.file,
-        "line": place.line,
-    }
+def _unit_json(tree: Side, unit: FunctionalUnit) -> Json:
+    return listed_unit_json(tree.network, unit, tree.places[unit])
 
 
 def _unit_text(tree: Side, unit: FunctionalUnit) -> str:
@@ -358,7 +370,7 @@ def _origin(tree: Side, unit: FunctionalUnit | None, node: ObjectNode) -> str:
     return "from the kitchen" if node in tree.kitchen else "not made"
 
 
-def _origin_json(tree: Side, unit: FunctionalUnit | None, node: ObjectNode) -> object:
+def _origin_json(tree: Side, unit: FunctionalUnit | None, node: ObjectNode) -> Json:
     if unit is not None:
-        return _unit_json(tree, unit)
-    return "kitchen" if node in tree.kitchen else None
+        return {"unit": _unit_json(tree, unit)}
+    return {"kitchen" if node in tree.kitchen else "missing": True}

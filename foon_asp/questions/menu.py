@@ -15,8 +15,10 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, fraction_json, headline, outcome_dict, steps, success_text
+from foon_asp.report.answer import counted, headline, steps, success_text
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.json_document import document, figure_json, nodes_json
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,19 +58,22 @@ class Menu(Result):
         """Give the costs together and one by one, what is shared, and the tree for all."""
         return "\n".join(_lines(self)) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give all answers, the sum of the separate ones, and which goals each unit serves."""
-        network = self.together.problem.network
-        total = self.sum_of_separate(self.together.objectives[0])
-        return {
-            "together": outcome_dict(self.together),
-            "separate": [outcome_dict(answer) for answer in self.separate],
-            "sum_of_separate": fraction_json(total) if isinstance(total, Fraction) else total,
-            "serves": [
-                {"unit": network.unit_number(unit), "goals": [str(network.objects[o]) for o in goals]}
+        problem, objectives = self.together.problem, self.together.objectives
+        network = problem.network
+        return document(
+            "menu",
+            problem,
+            objectives,
+            answer=self.together.json_dict(),
+            separate=[answer.json_dict() for answer in self.separate],
+            sum_of_separate=figure_json(objectives[0], self.sum_of_separate(objectives[0])),
+            serves=[
+                {"unit": network.unit_number(unit), "goals": nodes_json(network, goals)}
                 for unit, goals in self.serves.items()
             ],
-        }
+        )
 
     def drawing(self) -> Drawing | None:
         """Give what the picture of the tree for all shows."""

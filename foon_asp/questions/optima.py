@@ -13,15 +13,17 @@ from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, OBJECTIVES
 from foon_asp.questions.posing import each_goal
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import outcome_dict
+from foon_asp.report.json_document import document
 from foon_asp.report.optima_table import optima_table
 from foon_asp.report.renderable import Renderable, plain_text
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
 class Optima(Result):
     """The answers for each goal by itself, under each objective: goal by goal, in the order asked."""
 
+    problem: Problem
     outcomes: tuple[Answer, ...]
 
     @property
@@ -38,9 +40,11 @@ class Optima(Result):
         """Give the table, as wide and in such colours as a console has."""
         return optima_table(self.outcomes)
 
-    def json_dict(self) -> object:
-        """Give the answers in a list."""
-        return [outcome_dict(outcome) for outcome in self.outcomes]
+    def json_dict(self) -> Json:
+        """Give the answers; the objectives are all that were asked about."""
+        objectives = dict.fromkeys(each for outcome in self.outcomes for each in outcome.objectives)
+        answers = [outcome.json_dict() for outcome in self.outcomes]
+        return document("optima", self.problem, objectives, answers=answers)
 
     def __repr__(self) -> str:
         return f"<Optima: {len(self.outcomes)} answers>"
@@ -81,4 +85,4 @@ def optima(
         for chosen in lists:
             within = how._replace(deadline=Deadline(*each_limits, within=whole))
             outcomes.append(find(replace(problem, goals=(goal,)), chosen, within, caller().reporter))
-    return Optima(tuple(map(Answer._make, outcomes)))
+    return Optima(problem, tuple(map(Answer._make, outcomes)))

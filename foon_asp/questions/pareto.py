@@ -22,16 +22,15 @@ from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import (
     changes_text,
-    costs_json,
     costs_text,
     counted,
     figure_text,
-    fraction_json,
     goal_lines,
     success_texts,
-    unit_json,
     unit_lines,
 )
+from foon_asp.report.json_document import costs_json, document, figures_json, steps_json
+from foon_asp.text.json_value import Json
 
 _FEWEST, _MOST = 2, 3  # objectives
 
@@ -99,34 +98,31 @@ class Front(Result):
                 lines += ["", f"point {number + 1}: {costs_text(point.costs)}", *_units(self, number)]
         return "\n".join(line.rstrip() for line in lines) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the points, each with its measures, all that its tree costs, and its units."""
         network = self.problem.network
         points = []
         for number, point in enumerate(self.points):
             gone, new = _changes(self, number)
+            measures = dict(zip(self.objectives, self.measures(point), strict=True))
             points.append(
                 {
-                    "measures": {
-                        str(objective): fraction_json(measure) if isinstance(measure, Fraction) else measure
-                        for objective, measure in zip(self.objectives, self.measures(point), strict=True)
-                    },
-                    "costs": costs_json(point.costs, self.objectives),
-                    "units": [unit_json(network, unit) for unit in point.units],
-                    "gone": [network.unit_number(unit) for unit in gone],
-                    "new": [network.unit_number(unit) for unit in new],
+                    "measures": figures_json(measures),
+                    "costs": costs_json(point.costs),
+                    "units": steps_json(self.problem, point.units),
+                    "gone": list(map(network.unit_number, gone)),
+                    "new": list(map(network.unit_number, new)),
                 }
             )
-        return {
-            "goals": [str(network.objects[goal]) for goal in self.problem.goals],
-            "containers": str(self.problem.containers),
-            "level": network.level,
-            "objective": [str(objective) for objective in self.objectives],
-            "encodings": None if self.encodings is None else str(self.encodings),
-            "complete": self.complete,
-            "points": points,
-            "seconds": round(self.seconds, 6),
-        }
+        return document(
+            "pareto",
+            self.problem,
+            self.objectives,
+            encodings=None if self.encodings is None else str(self.encodings),
+            complete=self.complete,
+            points=points,
+            seconds=round(self.seconds, 6),
+        )
 
     def write_chart(self, file: File) -> None:
         """Draw the front into a file, SVG or PNG by its suffix.

@@ -18,16 +18,10 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import (
-    costs_json,
-    costs_text,
-    fraction_json,
-    goal_lines,
-    headline,
-    outcome_dict,
-    success_text,
-)
+from foon_asp.report.answer import costs_text, goal_lines, headline, success_text
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.json_document import costs_json, document, figures_json, mention_json, nodes_json
+from foon_asp.text.json_value import Json
 
 
 class Part(StrEnum):
@@ -89,10 +83,11 @@ class Regrets(Result):
                 lines += ["", title, *(line for regret in regrets for line in _lines(self.outcome, regret))]
         return "\n".join(lines) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the answer and the regrets."""
-        regrets = [_json(self.outcome, regret) for regret in self.regrets]
-        return {"answer": outcome_dict(self.outcome), "regrets": regrets}
+        best = self.outcome
+        regrets = [_json(best, regret) for regret in self.regrets]
+        return document("regret", best.problem, best.objectives, answer=best.json_dict(), regrets=regrets)
 
     def drawing(self) -> Drawing | None:
         """Give what the picture of the best tree shows."""
@@ -208,21 +203,17 @@ def _loss(best: Answer, regret: Regret) -> str:
     return f"{int(loss):+} {first}"  # less by ``kitchen`` where an item is made that is not at hand
 
 
-def _json(best: Answer, regret: Regret) -> dict[str, object]:
+def _json(best: Answer, regret: Regret) -> Json:
     network = best.problem.network
     assert best.costs is not None
     losses = {}
     if regret.status is Status.OPTIMAL:
-        for objective in best.objectives:
-            loss = regret.loss(best.costs, objective)
-            losses[str(objective)] = fraction_json(loss) if isinstance(loss, Fraction) else loss
+        losses = figures_json({each: regret.loss(best.costs, each) for each in best.objectives})
+    is_unit = regret.part is Part.UNIT
     return {
-        "part": str(regret.part),
-        "id": network.unit_number(regret.id)
-        if regret.part is Part.UNIT
-        else network.object_number(regret.id),
-        "name": network.motions[regret.id] if regret.part is Part.UNIT else str(network.objects[regret.id]),
+        "unit": mention_json(network, regret.id) if is_unit else None,
+        "item": None if is_unit else nodes_json(network, [regret.id])[0],
         "status": str(regret.status),
-        "costs": costs_json(regret.costs, best.objectives),
+        "costs": costs_json(regret.costs),
         "loss": losses or None,
     }

@@ -1,12 +1,12 @@
 """What a question gives: it says itself as text and as JSON, and shows itself as a picture."""
 
-import json
 from collections.abc import Iterable
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.text.json_value import Json, json_text, read_json
 
 if TYPE_CHECKING:
     from foon_asp.report.drawing import Drawing
@@ -50,17 +50,17 @@ class Result:
         """Give the result in words, as the command line does."""
         raise NotImplementedError
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the result as plain values, in the order in which JSON has them."""
         raise NotImplementedError
 
     def json_text(self) -> str:
         """Give the result as JSON, as the command line does with ``--format json``."""
-        return json.dumps(self.json_dict(), indent=2, ensure_ascii=False) + "\n"
+        return json_text(self.json_dict())
 
     def json(self) -> Any:
         """Give the result as plain values: lists, dictionaries, strings and numbers (docs/json.md)."""
-        return json.loads(self.json_text())
+        return read_json(self.json_text())
 
     def foon(self) -> str:
         """Give the tree as FOON text; raises :class:`UserError` for what is no tree."""

@@ -10,19 +10,14 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import SEARCHING, search_settings, searched
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import (
-    costs_json,
-    costs_text,
-    goal_lines,
-    goals_stand_for_json,
-    steps,
-    unit_json,
-)
+from foon_asp.report.answer import costs_text, goal_lines, steps
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.verdict import Listed, obstacle_json, verdict_text
+from foon_asp.report.json_document import costs_json, document, nodes_json, steps_json
+from foon_asp.report.verdict import Listed, verdict_json, verdict_text
 from foon_asp.search import Ending as Searched
 from foon_asp.search import Retrieval, Search, search_names
 from foon_asp.text import write_units
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,29 +63,21 @@ class Retrieved(Result):
         lines.append(verdict_text(self.problem, self._listed(), self.simulation).rstrip("\n"))
         return "\n".join([*lines, "", *steps(self.problem, self.retrieval.units)]) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the same; positions count from 1."""
         problem, found, simulation = self.problem, self.retrieval, self.simulation
-        objects = problem.network.objects
-        listed = self._listed()
-        return {
-            "goals": [str(objects[goal]) for goal in problem.goals],
-            **goals_stand_for_json(problem),
-            "containers": str(problem.containers),
-            "level": problem.network.level,
-            "search": self.search.name,
-            "package": self.search.package,
-            "ending": str(found.ending),
-            "stuck_at": None if found.stuck_at is None else str(objects[found.stuck_at]),
-            "verdict": None if simulation is None else str(simulation.verdict),
-            "as_listed": None if simulation is None else obstacle_json(listed, simulation.as_listed),
-            "in_any_order": None if simulation is None else obstacle_json(listed, simulation.obstacle),
-            "order": None if simulation is None else [position + 1 for position in simulation.order],
-            "costs": costs_json(self.costs),
-            "units": None
-            if simulation is None
-            else [unit_json(problem.network, unit) for unit in found.units],
-        }
+        stuck = () if found.stuck_at is None else (found.stuck_at,)
+        return document(
+            "search",
+            problem,
+            search=self.search.name,
+            package=self.search.package,
+            ending=str(found.ending),
+            stuck_at=next(iter(nodes_json(problem.network, stuck)), None),
+            **verdict_json(problem, self._listed(), simulation),
+            costs=costs_json(self.costs),
+            units=None if simulation is None else steps_json(problem, found.units),
+        )
 
     def foon(self) -> str:
         """Give the tree as FOON text, in the order listed; a comment says whether it executes."""

@@ -21,18 +21,10 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import (
-    changes_text,
-    costs_json,
-    counted,
-    fraction_json,
-    goal_lines,
-    headline,
-    outcome_dict,
-    success_text,
-    unit_json,
-)
+from foon_asp.report.answer import changes_text, counted, goal_lines, headline, success_text
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.json_document import costs_json, document, fraction_json, steps_json
+from foon_asp.text.json_value import Json
 
 _SUCCESS = (Objective.SUCCESS,)
 _TINY = Fraction(1, 10**9)  # at which part of its rate a motion is as good as forbidden, mostly
@@ -161,17 +153,19 @@ class Sensitivity(Result):
         """Give the motions whose rates can make another tree the best, then those whose rates cannot."""
         return "\n".join([*goal_lines(self.outcome.problem), headline(self.outcome), *_lines(self)]) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the answer and the intervals, with the trees beyond their ends."""
-        first = self.first
-        return {
-            "answer": outcome_dict(self.outcome),
-            "intervals": [_interval_json(self.outcome, interval) for interval in self.intervals],
-            "others": list(self.others),
-            "first": None
-            if first is None
-            else {"motion": first.interval.motion, "side": "above" if first.above else "below"},
-        }
+        best, first = self.outcome, self.first
+        side = first and {"motion": first.interval.motion, "side": "above" if first.above else "below"}
+        return document(
+            "sensitivity",
+            best.problem,
+            best.objectives,
+            answer=best.json_dict(),
+            intervals=[_interval_json(best, interval) for interval in self.intervals],
+            others=list(self.others),
+            first=side,
+        )
 
     def drawing(self) -> Drawing | None:
         """Give what the picture of the best tree shows."""
@@ -494,7 +488,7 @@ def _wrapped(text: str, indent: str) -> list[str]:
     )
 
 
-def _interval_json(best: Answer, interval: Interval) -> dict[str, object]:
+def _interval_json(best: Answer, interval: Interval) -> Json:
     flips = {flip.above: flip for flip in interval.flips}
     return {
         "motion": interval.motion,
@@ -505,9 +499,9 @@ def _interval_json(best: Answer, interval: Interval) -> dict[str, object]:
     }
 
 
-def _end_json(best: Answer, end: End, flip: Flip | None) -> dict[str, object]:
+def _end_json(best: Answer, end: End, flip: Flip | None) -> Json:
     network = best.problem.network
-    known: dict[str, object] = {"proved": end.proved, "at": None, "beyond": None}
+    known: Json = {"proved": end.proved, "at": None, "beyond": None}
     if flip is None or end.beyond is None:
         return known
     gone, new = _gone_and_new(best, end)
@@ -520,7 +514,7 @@ def _end_json(best: Answer, end: End, flip: Flip | None) -> dict[str, object]:
     }
     known["beyond"] = {
         "costs": costs_json(best.problem.costs(end.beyond)),
-        "units": [unit_json(network, unit) for unit in end.beyond],
+        "units": steps_json(best.problem, end.beyond),
         "gone": [network.unit_number(unit) for unit in gone],
         "new": [network.unit_number(unit) for unit in new],
     }

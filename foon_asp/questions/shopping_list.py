@@ -17,7 +17,7 @@ from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source
-from foon_asp.problem import Number, Problem, exact
+from foon_asp.problem import Number, Objective, Problem, exact
 from foon_asp.problem.dead_ends import Cause, dead_ends
 from foon_asp.problem.shop import Shop
 from foon_asp.questions.answer import Answer
@@ -26,9 +26,11 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, fraction_json, goal_lines, headline, outcome_dict, steps
+from foon_asp.report.answer import answer_json, counted, goal_lines, headline, steps
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.json_document import document, fraction_json, nodes_json
 from foon_asp.text import LineError, parse_node
+from foon_asp.text.json_value import Json
 from foon_asp.text.price_list import Price, read_prices
 
 
@@ -85,6 +87,7 @@ class Shopping(Result):
     complete: bool
     outcome: Answer | None
     prices: Mapping[int, Fraction] | None
+    objectives: tuple[Objective, ...]
 
     @property
     def items(self) -> tuple[ObjectNode, ...]:
@@ -130,16 +133,15 @@ class Shopping(Result):
             lines.append(tree or "nothing to do")
         return "\n".join(lines) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the lists and the answer that the first makes possible."""
-        problem = self.problem
-        objects = problem.network.objects
-        return {
-            "goals": [str(objects[goal]) for goal in problem.goals],
-            "containers": str(problem.containers),
-            "level": problem.network.level,
-            "offer": str(self.offer),
-            "lists": [
+        answer, bought = self.outcome, self.lists[0].items if self.lists else ()
+        return document(
+            "shopping-list",
+            self.problem,
+            self.objectives,
+            offer=str(self.offer),
+            lists=[
                 {
                     "items": [_item_json(self, o) for o in found.items],
                     "price": fraction_json(found.price),
@@ -147,9 +149,9 @@ class Shopping(Result):
                 }
                 for found in self.lists
             ],
-            "complete": self.complete,
-            "answer": None if self.outcome is None else outcome_dict(self.outcome),
-        }
+            complete=self.complete,
+            answer=None if answer is None else answer_json(answer, bought),
+        )
 
     def drawing(self) -> Drawing | None:
         """Give what the picture of the tree shows."""
@@ -237,7 +239,7 @@ def shopping_list(
         outcome = Answer._make(solve(stocked, chosen, how, reporter))
         if outcome.status is Status.INFEASIBLE:
             raise BugError("the shopping list does not make a tree possible")
-    return Shopping(problem, offer, tuple(found), complete, outcome, by_id)
+    return Shopping(problem, offer, tuple(found), complete, outcome, by_id, chosen)
 
 
 def _given(prices: Mapping[str, Number]) -> list[Price]:
@@ -347,10 +349,9 @@ def _item_lines(shopping: Shopping, o: int) -> Iterator[str]:
             yield f"    for {places}"
 
 
-def _item_json(shopping: Shopping, o: int) -> dict[str, object]:
-    network = shopping.problem.network
+def _item_json(shopping: Shopping, o: int) -> Json:
     price = Fraction(1) if shopping.prices is None else shopping.prices[o]
-    return {"id": o, "object": str(network.objects[o]), "price": fraction_json(price)}
+    return nodes_json(shopping.problem.network, [o])[0] | {"price": fraction_json(price)}
 
 
 def _price(shopping: Shopping, found: ShoppingList) -> str:

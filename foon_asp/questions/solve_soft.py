@@ -23,6 +23,7 @@ from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import counted, headline, outcome_text
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,17 +64,13 @@ class SoftAnswer(Result):
             times = "" if each.ways == 1 else f", {each.ways} times"
             yield from constraint_lines(each.constraint, f"    (weight {each.weight}{times})")
 
-    def json_dict(self) -> dict[str, object]:
+    def json_dict(self) -> Json:
         """Give the answer with the penalty, and every soft constraint."""
         constraints = [
-            {**constraint_json(each.constraint), "weight": each.weight, "broken": each.ways}
+            constraint_json(each.constraint) | {"weight": each.weight, "broken": each.ways}
             for each in self.constraints
         ]
-        return {
-            **self.outcome.json_dict(),
-            "penalty": self.penalty,
-            "soft_constraints": constraints,
-        }
+        return self.outcome.json_dict() | {"penalty": self.penalty, "soft_constraints": constraints}
 
     def foon(self) -> str:
         """Give the tree as FOON text; empty where there is none."""

@@ -15,6 +15,8 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.certified import verified_json, verified_text
+from foon_asp.report.json_document import document
+from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
     from foon_asp.certificate import Certificate
@@ -32,7 +34,7 @@ class VerifiedCertificate(Result):
         """Say what is proved, as ``foon-asp verify`` does."""
         return verified_text(self.verified, self.network, dict(self.content))
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Say what is proved, as ``foon-asp verify --format json`` does."""
         return verified_json(self.verified, self.network)
 
@@ -52,9 +54,9 @@ class Refused(Result):
         """Say why."""
         return f"refused: {self.reason}\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Say why."""
-        return {"verified": False, "reason": self.reason}
+        return document("verify", verified=False, reason=self.reason)
 
 
 def verify_or_refuse(data: Foon, certificate: Path) -> VerifiedCertificate | Refused:

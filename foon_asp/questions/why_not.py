@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from foon_asp.dataset.paths import File, Files
 from foon_asp.foon import Foon
-from foon_asp.network import ObjectNode, pattern_at_level
+from foon_asp.network import Network, ObjectNode, pattern_at_level
 from foon_asp.network.near_nodes import nearest, slip_between
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Blocked, Cause, NearName, Root, dead_ends
@@ -14,8 +14,10 @@ from foon_asp.questions.arguments import Constants, settings, whole
 from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, goal_lines, unit_json
+from foon_asp.report.answer import counted, goal_lines
+from foon_asp.report.json_document import document, mention_json, nodes_json, unit_json
 from foon_asp.text import ListedObject
+from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # clingo, which is needed where rules have a say
     from foon_asp.questions.clash import Clash
@@ -86,54 +88,27 @@ class Explanation(Result):
             yield f"{more} behind other units; --format json lists all"
         yield "foon-asp shopping-list with the same options says what to add to the kitchen"
 
-    def json_dict(self) -> dict[str, object]:
+    def json_dict(self) -> Json:
         """Give everything that is known of the dead ends, without the bounds of the text."""
-        problem = self.problem
-        network = problem.network
-        objects = network.objects
-        found: dict[str, object] = {
-            "goals": [str(objects[goal]) for goal in problem.goals],
-            "containers": str(problem.containers),
-            "level": network.level,
-            "tree_exists": not self.goals,
-            "unreachable_goals": [str(objects[goal]) for goal in self.goals],
-            "roots": [
+        network = self.problem.network
+        return document(
+            "why-not",
+            self.problem,
+            tree_exists=not self.goals,
+            unreachable_goals=nodes_json(network, self.goals),
+            roots=[_root_json(network, root) for root in self.roots],
+            dead_ends=[
                 {
-                    "object": str(objects[root.object]),
-                    "cause": str(root.cause),
-                    "on_the_easiest_way": root.on_the_way,
-                    "stops": [_place(problem, unit) for unit in root.stops],
-                    "cycle": None
-                    if root.cycle is None
-                    else [
-                        {"object": str(objects[o]), "needed_by": _place(problem, unit)}
-                        for o, unit in root.cycle.steps
-                    ],
-                    "near": [
-                        {"name": near.name, "differs_in": near.slip.kind, "kitchen_entry": near.place}
-                        for near in root.near
-                    ],
-                    "alike": [str(objects[o]) for o in root.alike],
-                }
-                for root in self.roots
-            ],
-            "dead_ends": [
-                {
-                    "object": str(objects[o]),
+                    "object": nodes_json(network, [o])[0],
                     "makers": [
-                        {
-                            **unit_json(network, blocked.unit),
-                            "lacks": [str(objects[lack]) for lack in blocked.lacks],
-                        }
+                        unit_json(network, blocked.unit) | {"lacks": nodes_json(network, blocked.lacks)}
                         for blocked in makers
                     ],
                 }
                 for o, makers in self.dead_ends.items()
             ],
-        }
-        if self.clash is not None:
-            found["clash"] = self.clash.json_dict()
-        return found
+            clash=None if self.clash is None else self.clash.json_dict(),
+        )
 
 
 @question(
@@ -338,6 +313,21 @@ def _had(problem: Problem, o: int) -> str:
     return f"{problem.network.objects[o]} ({'in the kitchen' if o in problem.kitchen else 'can be made'})"
 
 
-def _place(problem: Problem, unit: int) -> dict[str, object]:
-    source = problem.network.sources[unit][0]
-    return {"id": unit, "motion": problem.network.motions[unit], "file": source.file, "line": source.line}
+def _root_json(network: Network, root: Root) -> Json:
+    steps = None if root.cycle is None else root.cycle.steps
+    return {
+        "object": nodes_json(network, [root.object])[0],
+        "cause": str(root.cause),
+        "on_the_easiest_way": root.on_the_way,
+        "stops": [mention_json(network, unit) for unit in root.stops],
+        "cycle": steps
+        and [
+            {"object": nodes_json(network, [o])[0], "needed_by": mention_json(network, unit)}
+            for o, unit in steps
+        ],
+        "near": [
+            {"name": near.name, "differs_in": near.slip.kind, "kitchen_entry": near.place}
+            for near in root.near
+        ],
+        "alike": nodes_json(network, root.alike),
+    }

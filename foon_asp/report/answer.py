@@ -8,45 +8,20 @@ from fractions import Fraction
 from foon_asp.asp import Outcome, Proof, Status
 from foon_asp.network import Network
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
+from foon_asp.report.json_document import (
+    approximate,
+    costs_json,
+    document,
+    figures_json,
+    input_origins,
+    steps_json,
+)
 from foon_asp.text import write_units
+from foon_asp.text.json_value import Json
 
 _DIGITS = 4  # of a success, where so many tell several apart
 _MOST_DIGITS = 40
 _NAMED = 6  # motions that are named of those that come, and of those that go
-
-
-def fraction_json(value: Fraction | None) -> dict[str, object] | None:
-    """Give an exact number and a float beside it for people; ``None`` stays ``None``.
-
-    There is no float (``None``) beside a number above all of them.
-    """
-    if value is None:
-        return None
-    # through Decimal: products of long rates have more digits than Python turns into text at once
-    parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
-    return {"exact": "/".join(parts) if value.denominator != 1 else parts[0], "approx": _float(value)}
-
-
-def costs_json(costs: Costs | None, objectives: Iterable[Objective] = ()) -> dict[str, object] | None:
-    """Give the usual measures of a tree, and those by some objectives."""
-    if costs is None:
-        return None
-    usual = {
-        "units": costs.units,
-        "inputs": costs.inputs,
-        "ingredients": costs.ingredients,
-        "kitchen": costs.kitchen,
-        "success": fraction_json(costs.success),
-    }
-    said = {*usual, Objective.INPUTS_AND_INGREDIENTS}
-    others = (objective for objective in objectives if objective not in said)
-    return usual | {str(each): figure_json(each, costs.measure(each)) for each in others}
-
-
-def figure_json(objective: Objective, figure: int | Fraction) -> object:
-    """Give what is measured by an objective: a whole number, or an exact fraction."""
-    whole = objective.row.whole
-    return int(figure) if whole else fraction_json(Fraction(figure))
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:
@@ -63,59 +38,27 @@ def bound_text(objective: Objective, bound: int | Fraction) -> str:
     return f"{objective} {side} {figure_text(objective, bound)}"
 
 
-def bounds_json(outcome: Outcome) -> dict[str, object]:
-    """Give the proved bounds by objective."""
-    return {str(objective): figure_json(objective, bound) for objective, bound in outcome.bounds.items()}
-
-
-def unit_json(network: Network, unit: int) -> dict[str, object]:
-    """Give a unit with its id, motion, nodes in one-line notation and every place it was read from.
-
-    Below level 3 the level-3 units it stands for are listed in the same way.
-    """
-    objects = network.objects
-    given: dict[str, object] = {
-        "id": network.unit_number(unit),
-        "motion": network.motions[unit],
-        "inputs": [str(objects[o]) for o in network.inputs[unit]],
-        "outputs": [str(objects[o]) for o in network.outputs[unit]],
-        "source": [
-            {"file": source.file, "line": source.line, "videos": list(source.videos)}
-            for source in network.sources[unit]
-        ],
-    }
-    if network.detailed is not None:
-        given["stands_for"] = [unit_json(network.detailed, detail) for detail in network.stands_for[unit]]
-    return given
-
-
-def outcome_dict(outcome: Outcome) -> dict[str, object]:
-    """Give the keys and values of an outcome in JSON; docs/json.md describes them."""
-    problem = outcome.problem
-    goals = [str(problem.network.objects[o]) for o in problem.goals]
-    return {
-        "goal": " + ".join(goals),
-        "goals": goals,
-        **goals_stand_for_json(problem),
-        "containers": str(problem.containers),
-        "level": problem.network.level,
-        "objective": [str(objective) for objective in outcome.objectives],
-        "encodings": None if outcome.encodings is None else str(outcome.encodings),
-        "status": str(outcome.status),
-        "stopped": outcome.stopped,
-        "proof": None if outcome.proof is None else str(outcome.proof),
-        "proof_by_objective": {
+def answer_json(outcome: Outcome, bought: Collection[int] = ()) -> Json:
+    """Give an outcome as a document; ``bought`` are the items of the kitchen that were not there before."""
+    problem, units = outcome.problem, outcome.units
+    return document(
+        "answer",
+        problem,
+        outcome.objectives,
+        encodings=None if outcome.encodings is None else str(outcome.encodings),
+        status=str(outcome.status),
+        stopped=outcome.stopped,
+        proof=None if outcome.proof is None else str(outcome.proof),
+        proof_by_objective={
             str(objective): str(Proof.CERTIFICATE if objective in outcome.certified else outcome.proof)
             for objective in levels(outcome.objectives)
             if outcome.status is Status.OPTIMAL
         },
-        "costs": costs_json(outcome.costs, outcome.objectives),
-        "lower_bound": bounds_json(outcome),
-        "units": None
-        if outcome.units is None
-        else [unit_json(problem.network, unit) for unit in outcome.units],
-        "seconds": {phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
-    }
+        costs=costs_json(outcome.costs),
+        lower_bound=figures_json(outcome.bounds),
+        units=None if units is None else steps_json(problem, units, bought),
+        seconds={phase: round(seconds, 6) for phase, seconds in outcome.seconds.items()},
+    )
 
 
 def outcome_foon(outcome: Outcome) -> str:
@@ -161,17 +104,6 @@ def goal_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
             yield f"    ... and {len(details) - shown} more; --format json lists all"
 
 
-def goals_stand_for_json(problem: Problem) -> dict[str, object]:
-    """Give, below level 3 alone, the level-3 nodes that each goal stands for."""
-    network = problem.network
-    if network.detailed is None:
-        return {}
-    objects = network.detailed.objects
-    return {
-        "goals_stand_for": [[str(objects[o]) for o in network.objects_stand_for[g]] for g in problem.goals]
-    }
-
-
 def headline(outcome: Outcome) -> str:
     """Say in one line what is claimed."""
     rule = outcome.problem.conditions
@@ -209,18 +141,10 @@ def success_text(success: Fraction) -> str:
 
 
 def _four_digits(value: Fraction) -> str:
-    approx = _float(value)
+    approx = approximate(value)
     if approx is None or (value and not approx):  # there are numbers below the least float, and above all
         return f"{Decimal(value.numerator) / Decimal(value.denominator):.4g}"
     return f"{approx:.4g}"
-
-
-def _float(value: Fraction) -> float | None:
-    """Give the nearest float; ``None`` for a number above all."""
-    try:
-        return float(value)
-    except OverflowError:
-        return None
 
 
 def success_texts(values: Sequence[Fraction]) -> list[str]:
@@ -259,27 +183,16 @@ def steps(
     or by none.
     """
     network = problem.network
-    maker: dict[int, int] = {}
-    for number, unit in enumerate(units, 1):
+    for number, (unit, origins) in enumerate(input_origins(problem, units, bought), 1):
         who = "    by the person" if unit in helped else ""
         yield f"{number:>3}  {network.motions[unit]}    [{network.sources[unit][0]}]{who}"
-        for o in network.inputs[unit]:
-            if o in problem.kitchen:
-                origin = "bought" if o in bought else "kitchen"
-            elif o in maker:
-                origin = f"step {maker[o]}"
-            elif o not in problem.needs[unit]:
-                origin = "implied"
-            else:
-                later = (n for n, u in enumerate(units[number:], number + 1) if o in problem.gives[u])
-                origin = f"step {step}, which is later" if (step := next(later, 0)) else "missing"
-            yield f"       {network.objects[o]}  ({origin})"
+        for o, origin in zip(network.inputs[unit], origins, strict=True):
+            ((where, step),) = origin.items()
+            said = {"step": f"step {step}", "later_step": f"step {step}, which is later"}.get(where, where)
+            yield f"       {network.objects[o]}  ({said})"
         for o in network.outputs[unit]:
-            if o in problem.gives[unit]:
-                yield f"     → {network.objects[o]}"
-                maker.setdefault(o, number)
-            else:
-                yield f"     → {network.objects[o]}  (implied, not made here)"
+            made = "" if o in problem.gives[unit] else "  (implied, not made here)"
+            yield f"     → {network.objects[o]}{made}"
         yield from _details(network, unit)
 
 

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from foon_asp.escapes import escaped
 from foon_asp.network import Network
+from foon_asp.problem import Objective
 from foon_asp.proof.verify import Verified
+from foon_asp.report.json_document import document, figures_json, goals_json, head_json
+from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # the rest of these rooms takes clingo along, which `verify` has to do without
     from foon_asp.asp import Outcome
@@ -82,26 +85,21 @@ def verified_text(verified: Verified, network: Network, content: dict[str, Any])
     return "\n".join(lines) + "\n"
 
 
-def verified_json(verified: Verified, network: Network) -> dict[str, object]:
+def verified_json(verified: Verified, network: Network) -> Json:
     """Give what a verified certificate proves for programs."""
-    return {
-        "verified": True,
-        "claim": verified.claim,
-        "goals": [str(network.objects[goal]) for goal in verified.goals],
-        "containers": verified.containers,
-        "level": verified.level,
-        "objective": list(verified.objectives),
-        "costs": None
-        if verified.costs is None
-        else {
-            objective: str(cost) if isinstance(cost, Fraction) else cost
-            for objective, cost in zip(verified.objectives, verified.costs, strict=True)
-        },
-        "forbidden": {"motions": list(verified.motions), "objects": list(verified.labels)},
-        "not_covered": list(verified.not_covered),
-        "tree": None if verified.tree is None else list(verified.tree),
-        "cuts": verified.cuts,
-    }
+    goals, objectives = goals_json(network, verified.goals), tuple(map(Objective, verified.objectives))
+    costs = None if verified.costs is None else dict(zip(objectives, verified.costs, strict=True))
+    return document(
+        "verify",
+        **head_json(goals, verified.containers, verified.level, objectives),
+        verified=True,
+        claim=verified.claim,
+        costs=None if costs is None else figures_json(costs),
+        forbidden={"motions": list(verified.motions), "objects": list(verified.labels)},
+        not_covered=list(verified.not_covered),
+        tree=None if verified.tree is None else list(verified.tree),
+        cuts=verified.cuts,
+    )
 
 
 def _figure(objective: str, cost: int | Fraction) -> str:

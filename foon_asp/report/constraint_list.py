@@ -1,11 +1,12 @@
 """The ready-made constraints for people and for programs."""
 
-import json
 import shlex
 import textwrap
 from collections.abc import Sequence
 
 from foon_asp.asp.constraint_library import LibraryConstraint
+from foon_asp.report.json_document import document
+from foon_asp.text.json_value import Json
 
 _WIDTH = 100
 
@@ -22,8 +23,8 @@ def constraints_text(constraints: Sequence[LibraryConstraint]) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def constraints_json(constraints: Sequence[LibraryConstraint]) -> str:
-    """Give a list of objects; an own value of ``null`` means that the parameter is not set by the file."""
+def constraints_json(constraints: Sequence[LibraryConstraint]) -> Json:
+    """Give each; an own value of ``null`` means that the parameter is not set by the file."""
     listed = [
         {
             "name": constraint.name,
@@ -43,4 +44,4 @@ def constraints_json(constraints: Sequence[LibraryConstraint]) -> str:
         }
         for constraint in constraints
     ]
-    return json.dumps(listed, indent=2, ensure_ascii=False) + "\n"
+    return document("constraints", constraints=listed)

@@ -1,6 +1,5 @@
 """A disagreement between engines as a folder of data that asks the same question again."""
 
-import json
 import platform
 import shlex
 from importlib.metadata import PackageNotFoundError, version
@@ -15,10 +14,12 @@ from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import printed_command
 from foon_asp.errors import UserError
 from foon_asp.proof.verify import digests
-from foon_asp.report.answer import costs_json, outcome_dict
+from foon_asp.report.answer import answer_json
+from foon_asp.report.json_document import costs_json
 from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import encodings_folder
 from foon_asp.text import decimal_text, write_unit_prices, write_units
+from foon_asp.text.json_value import json_text
 
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
 
@@ -88,7 +89,7 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
         "digests": digests(network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
         "kitchen": [str(node) for node in nodes],
         "forbidden_units": sorted(coverage(settings).forbids(network)),
-        "answer": outcome_dict(outcome) | ({"penalty": asked.penalty} if asked.soft else {}),
+        "answer": answer_json(outcome) | ({"penalty": asked.penalty} if asked.soft else {}),
         "other": {
             "engine": answer.engine,
             "objectives": [str(objective) for objective in answer.objectives],
@@ -98,11 +99,11 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
     }
     files = {
         "FOON.txt": write_units(map(whole.unit, range(len(whole)))),
-        "kitchen.json": json.dumps(kitchen, indent=1, ensure_ascii=False) + "\n",
+        "kitchen.json": json_text(kitchen),
         "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
         "facts.lp": facts,
         **rules.files,
-        "report.json": json.dumps(report, indent=2, ensure_ascii=False) + "\n",
+        "report.json": json_text(report),
     }
     if problem.rates is not None:
         files["motion.txt"] = "".join(f"{motion}\t{decimal_text(r)}\n" for motion, r in problem.rates.items())

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from foon_asp.asp.integrity import IntegrityConstraint
+from foon_asp.text.json_value import Json
 
 
 def constraint_lines(constraint: IntegrityConstraint, remark: str = "") -> Iterator[str]:
@@ -12,7 +13,7 @@ def constraint_lines(constraint: IntegrityConstraint, remark: str = "") -> Itera
     yield f"      {constraint.text}"
 
 
-def constraint_json(constraint: IntegrityConstraint) -> dict[str, object]:
+def constraint_json(constraint: IntegrityConstraint) -> Json:
     """Give a constraint with its place and text."""
     return {
         "number": constraint.number,

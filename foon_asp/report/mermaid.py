@@ -1,10 +1,10 @@
 """A drawing as a Mermaid flowchart, which many viewers of Markdown show as a picture."""
 
-import json
 import re
 from collections.abc import Iterator
 
 from foon_asp.report.drawing import Box, Drawing, Role
+from foon_asp.text.json_value import json_line
 
 # By role: what opens and closes a box, and its look. A border cannot be double: a goal's is thick.
 _BOXES = {
@@ -31,7 +31,7 @@ def mermaid_markdown(drawing: Drawing) -> str:
 
 def _lines(drawing: Drawing) -> Iterator[str]:
     # The header is YAML, in which a text can be written as in JSON.
-    yield f"---\ntitle: {json.dumps(' | '.join(drawing.caption), ensure_ascii=False)}\n---"
+    yield f"---\ntitle: {json_line(' | '.join(drawing.caption))}\n---"
     yield "flowchart TD"
     yield from (f"  {_node(box)}" for box in drawing.boxes)
     yield from (f"  {tail} --> {head}" for tail, head in drawing.arrows)

@@ -1,6 +1,5 @@
 """What is in a network, for people and for programs."""
 
-import json
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
@@ -8,6 +7,8 @@ from dataclasses import asdict
 from foon_asp.escapes import escaped
 from foon_asp.network import Network
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
+from foon_asp.report.json_document import document, nodes_json
+from foon_asp.text.json_value import Json
 
 _SHOWN = 10
 
@@ -80,26 +81,26 @@ def statistics_text(network: Network, levels: Sequence[Statistics], from_kitchen
     return "\n".join(lines) + "\n"
 
 
-def statistics_json(network: Network, levels: Sequence[Statistics], from_kitchen: bool) -> str:
-    """Give the same as JSON."""
+def statistics_json(network: Network, levels: Sequence[Statistics], from_kitchen: bool) -> Json:
+    """Give the same as a document."""
     files, videos = _origins(network)
     copies = sum(files.values())
-    result = {
-        "units_read": copies,
-        "copies": copies - len(network),
-        "files": [{"file": file, "units": number} for file, number in files.items()],
-        "videos": list(videos),
-        "reached_from": "kitchen" if from_kitchen else "not made",
-        "levels": [asdict(statistics) for statistics in levels],
-        "most_connected_labels": [
+    return document(
+        "stats",
+        units_read=copies,
+        copies=copies - len(network),
+        files=[{"file": file, "units": number} for file, number in files.items()],
+        videos=list(videos),
+        reached_from="kitchen" if from_kitchen else "not made",
+        levels=[asdict(statistics) for statistics in levels],
+        most_connected_labels=[
             {"label": label, "units": number} for label, number in most_connected_labels(network, _SHOWN)
         ],
-        "most_connected_objects": [
-            {"object": str(network.objects[node]), "needed_by": users, "made_by": makers}
+        most_connected_objects=[
+            {"object": nodes_json(network, [node])[0], "needed_by": users, "made_by": makers}
             for node, users, makers in most_connected_objects(network, _SHOWN)
         ],
-    }
-    return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
+    )
 
 
 def _origins(network: Network) -> tuple[Counter[str], tuple[str, ...]]:

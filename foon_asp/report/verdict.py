@@ -6,6 +6,8 @@ from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.proof import Obstacle, Simulation, Verdict
 from foon_asp.report.answer import costs_text
+from foon_asp.report.json_document import listed_unit_json, named_json
+from foon_asp.text.json_value import Json
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 
@@ -58,18 +60,27 @@ def _skips(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
     return node not in given_outputs(unit, problem.containers, problem.utensils, problem.network)
 
 
-def obstacle_json(listed: Listed, obstacle: Obstacle | None) -> dict[str, object] | None:
-    """Give an obstacle; units count from 1, ``None`` stays ``None``."""
+def verdict_json(problem: Problem, listed: Listed, simulation: Simulation | None) -> Json:
+    """Give what a simulation found; positions count from 1, and without one all is ``None``."""
+    if simulation is None:
+        return dict.fromkeys(("verdict", "as_listed", "in_any_order", "order"))
+    return {
+        "verdict": str(simulation.verdict),
+        "as_listed": _obstacle_json(problem, listed, simulation.as_listed),
+        "in_any_order": _obstacle_json(problem, listed, simulation.obstacle),
+        "order": [position + 1 for position in simulation.order],
+    }
+
+
+def _obstacle_json(problem: Problem, listed: Listed, obstacle: Obstacle | None) -> Json | None:
     if obstacle is None:
         return None
-    if obstacle.unit is None:
-        return {"unit": None, "missing": str(obstacle.missing)}
-    unit, source = listed[obstacle.unit]
+    position, unit = obstacle.unit, None
+    if position is not None:
+        unit = listed_unit_json(problem.network, *listed[position])
     return {
-        "unit": obstacle.unit + 1,
-        "motion": unit.motion,
-        "file": source.file,
-        "line": source.line,
-        "missing": str(obstacle.missing),
+        "position": None if position is None else position + 1,
+        "unit": unit,
+        "missing": named_json(problem.network, obstacle.missing),
         "cycle": [position + 1 for position in obstacle.cycle],
     }

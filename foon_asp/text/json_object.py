@@ -7,6 +7,7 @@ from typing import NamedTuple
 from foon_asp.escapes import note_line_end
 from foon_asp.network import Contents, Relation
 from foon_asp.text.json_list import JsonList, JsonNumber
+from foon_asp.text.json_value import json_line
 from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number, read_state
 from foon_asp.text.listed_unit import ObjectBlock
 
@@ -170,7 +171,7 @@ def _name(value: object, key: str, expected: str = "a name") -> str:
 def _shown(value: object) -> str:
     if isinstance(value, JsonNumber):
         return value.text[:40]
-    return json.dumps(value, default=_plain_number)[:40]
+    return json_line(value, _plain_number)[:40]
 
 
 def _plain_number(value: JsonNumber) -> object:

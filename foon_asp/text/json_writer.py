@@ -3,7 +3,6 @@
 What is written is laid out like the files in these forms, and read by :mod:`foon_asp.text.json_units`.
 """
 
-import json
 import re
 from collections.abc import Sequence
 
@@ -11,6 +10,7 @@ from foon_asp.network import Contents, Relation
 from foon_asp.text.conversion_times import in_two_fields
 from foon_asp.text.json_layout import STEP
 from foon_asp.text.json_list import JsonNumber
+from foon_asp.text.json_value import json_line
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
 from foon_asp.text.motion_times import MotionFields
 
@@ -131,7 +131,4 @@ def _text(value: object) -> str:
         return "{" + ",".join(f"{_text(key)}:{_text(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ",".join(map(_text, value)) + "]"
-    if isinstance(value, str):
-        lone = any("\ud800" <= c <= "\udfff" for c in value)  # half a pair, which is no text in UTF-8
-        return json.dumps(value, ensure_ascii=lone)
-    return json.dumps(value)
+    return json_line(value)

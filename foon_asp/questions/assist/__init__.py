@@ -16,18 +16,10 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import (
-    costs_json,
-    costs_text,
-    counted,
-    fraction_json,
-    goal_lines,
-    goals_stand_for_json,
-    steps,
-    success_text,
-    unit_json,
-)
+from foon_asp.report.answer import costs_text, counted, goal_lines, steps, success_text
+from foon_asp.report.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.text import read_rates
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -91,23 +83,21 @@ class Assistance(Result):
         """
         return "\n".join([*goal_lines(self.problem), *_lines(self)]) + "\n"
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give all rows with their trees, and who does each unit."""
-        problem, person = self.problem, self.person
-        rates = None if person is None else {motion: fraction_json(rate) for motion, rate in person.items()}
-        return {
-            "goals": [str(problem.network.objects[goal]) for goal in problem.goals],
-            **goals_stand_for_json(problem),
-            "containers": str(problem.containers),
-            "level": problem.network.level,
-            "person": rates,
-            "complete": self.complete,
-            "greatest_success": fraction_json(self.greatest),
-            "more_help_changes_nothing": self.exhausted,
-            "reach": fraction_json(self.wanted),
-            "smallest": self.smallest,
-            "rows": [_row_json(self, row) for row in self.rows],
-        }
+        person = self.person
+        return document(
+            "assist",
+            self.problem,
+            [Objective.SUCCESS],
+            person=None if person is None else {m: fraction_json(rate) for m, rate in person.items()},
+            complete=self.complete,
+            greatest_success=fraction_json(self.greatest),
+            more_help_changes_nothing=self.exhausted,
+            reach=fraction_json(self.wanted),
+            smallest=self.smallest,
+            rows=[_row_json(self, row) for row in self.rows],
+        )
 
 
 @question(
@@ -262,18 +252,15 @@ def _name(found: Assistance, unit: int) -> str:
     return f"{network.unit_number(unit)} {network.motions[unit]}"
 
 
-def _row_json(found: Assistance, row: Assisted) -> dict[str, object]:
-    network = found.problem.network
+def _row_json(found: Assistance, row: Assisted) -> Json:
+    units = None if row.units is None else steps_json(found.problem, row.units)
+    for step, unit in zip(units or (), row.units or (), strict=True):
+        step["by"] = "person" if unit in row.helped else "robot"
     return {
         "most": row.most,
         "status": str(row.status),
         "costs": costs_json(row.costs),
         "bound": fraction_json(row.bound),
-        "by_person": sorted(map(network.unit_number, row.helped)),
-        "units": None
-        if row.units is None
-        else [
-            {**unit_json(network, unit), "by": "person" if unit in row.helped else "robot"}
-            for unit in row.units
-        ],
+        "by_person": sorted(map(found.problem.network.unit_number, row.helped)),
+        "units": units,
     }

@@ -1,0 +1,37 @@
+"""``foon-asp schema``: what is in the JSON of a verb, as a JSON Schema."""
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.errors import UserError
+from foon_asp.report.schema import schema, schema_kinds
+from foon_asp.text.json_value import json_text, schema_name
+
+_KINDS = {"solve": "answer"}  # of verbs that do not give it their name
+
+
+@click.command("schema")
+@click.argument("verb", required=False, metavar="[VERB]")
+@options.debug_option
+def command(verb: str | None) -> ExitCode:
+    """Print the JSON Schema of what a verb prints with --format json; without a verb, list them.
+
+    \b
+    foon-asp schema
+    foon-asp schema solve > answer.schema.json
+
+    The schemas are of the draft 2020-12, each in one piece. batch-row and compare-row are the lines of the
+    files that batch and compare write with --results. docs/json.md has an example of every document.
+    """
+    kinds = schema_kinds()
+    if verb is None:
+        for kind in kinds:
+            click.echo(f"{schema_name(kind):<26} {schema(kind)['title']}")
+        return ExitCode.DONE
+    kind = _KINDS.get(verb, verb)
+    if kind not in kinds:
+        known = ", ".join(sorted({*kinds, *_KINDS}))
+        raise UserError(f"found {verb!r}, expected what has a schema: {known}")
+    click.echo(json_text(schema(kind)), nl=False)
+    return ExitCode.DONE

@@ -1,0 +1,178 @@
+"""What every verb prints with ``--format json``: one head, and units, steps and figures in one form.
+
+docs/json.md describes it, and ``foon_asp/schemas`` says it for programs.
+"""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from decimal import Decimal
+from fractions import Fraction
+
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
+from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.text.json_node import node_json, place_json
+from foon_asp.text.json_value import Json, schema_name
+
+
+def document(
+    kind: str, problem: Problem | None = None, objectives: Iterable[str] = (), /, **fields: object
+) -> Json:
+    """Give a document of a kind; one about a problem begins with what was asked."""
+    start = {} if problem is None else problem_json(problem, objectives)
+    return {"schema": schema_name(kind), **start, **fields}
+
+
+def problem_json(problem: Problem, objectives: Iterable[str] = ()) -> Json:
+    """Give what was asked: goals, rules, level and objectives."""
+    network = problem.network
+    return head_json(goals_json(network, problem.goals), problem.containers, network.level, objectives)
+
+
+def head_json(goals: list[Json], containers: str, level: int, objectives: Iterable[str] = ()) -> Json:
+    """Give what every document about goals begins with."""
+    return {
+        "goals": goals,
+        "containers": str(containers),
+        "items": "lasting",
+        "level": level,
+        "objectives": list(map(str, objectives)),
+    }
+
+
+def goals_json(network: Network, goals: Iterable[int]) -> list[Json]:
+    """Give goals; below level 3 with the level-3 nodes that each stands for."""
+    goals = tuple(goals)
+    listed = nodes_json(network, goals)
+    if network.detailed is not None:
+        for goal, shown in zip(goals, listed, strict=True):
+            shown["stands_for"] = nodes_json(network.detailed, network.objects_stand_for[goal])
+    return listed
+
+
+def nodes_json(network: Network, ids: Iterable[int]) -> list[Json]:
+    """Give nodes of a network."""
+    return [node_json(network.objects[o], network.object_number(o)) for o in ids]
+
+
+def named_json(network: Network | None, node: ObjectNode) -> Json:
+    """Give a node that a network may have or not."""
+    o = None if network is None else network.object_id(node)
+    return node_json(node, None if network is None or o is None else network.object_number(o))
+
+
+def mention_json(network: Network, unit: int) -> Json:
+    """Give what a unit is known by: its id, motion and places."""
+    return {
+        "id": network.unit_number(unit),
+        "motion": network.motions[unit],
+        "source": list(map(place_json, network.sources[unit])),
+    }
+
+
+def unit_json(network: Network, unit: int) -> Json:
+    """Give a unit; below level 3 with the level-3 units that it stands for."""
+    mention = mention_json(network, unit)
+    shown = {
+        "id": mention["id"],
+        "motion": mention["motion"],
+        "inputs": nodes_json(network, network.inputs[unit]),
+        "outputs": nodes_json(network, network.outputs[unit]),
+        "source": mention["source"],
+    }
+    if network.detailed is not None:
+        shown["stands_for"] = [unit_json(network.detailed, detail) for detail in network.stands_for[unit]]
+    return shown
+
+
+def listed_unit_json(network: Network | None, unit: FunctionalUnit, place: Source) -> Json:
+    """Give a unit that was listed somewhere, and that a network may have or not."""
+    id_ = None if network is None else network.unit_id(unit)
+    return {
+        "id": None if network is None or id_ is None else network.unit_number(id_),
+        "motion": unit.motion,
+        "inputs": [named_json(network, node) for node in unit.inputs],
+        "outputs": [named_json(network, node) for node in unit.outputs],
+        "source": [place_json(place)],
+    }
+
+
+def steps_json(problem: Problem, units: Collection[int], bought: Collection[int] = ()) -> list[Json]:
+    """Give units as the steps of a plan: where each input comes from, and which outputs are made."""
+    network = problem.network
+    steps = []
+    for step, (unit, origins) in enumerate(input_origins(problem, units, bought), 1):
+        shown = unit_json(network, unit)
+        for node, origin in zip(shown["inputs"], origins, strict=True):
+            node["from"] = origin
+        for node, o in zip(shown["outputs"], network.outputs[unit], strict=True):
+            node["made"] = o in problem.gives[unit]
+        steps.append({"step": step, **shown})
+    return steps
+
+
+def input_origins(
+    problem: Problem, units: Collection[int], bought: Collection[int] = ()
+) -> Iterator[tuple[int, list[Json]]]:
+    """Say for each unit, in the order listed, where each of its inputs comes from.
+
+    ``bought`` are the items of the kitchen, by id, that were not there before. In a list that does not
+    execute as it is, a needed input may be made by a later step only, or by none.
+    """
+    units = tuple(units)
+    makers: dict[int, list[int]] = {}
+    for step, unit in enumerate(units, 1):
+        for o in problem.gives[unit]:
+            makers.setdefault(o, []).append(step)
+    for step, unit in enumerate(units, 1):
+        origins: list[Json] = []
+        for o in problem.network.inputs[unit]:
+            makes = makers.get(o, ())
+            later = next((maker for maker in makes if maker > step), None)
+            if o in problem.kitchen:
+                origins.append({"bought" if o in bought else "kitchen": True})
+            elif makes and makes[0] < step:
+                origins.append({"step": makes[0]})
+            elif o not in problem.needs[unit]:
+                origins.append({"implied": True})
+            else:
+                origins.append({"missing": True} if later is None else {"later_step": later})
+        yield unit, origins
+
+
+def fraction_json(value: Fraction | None) -> Json | None:
+    """Give an exact number and a float beside it for people; ``None`` stays ``None``.
+
+    There is no float (``None``) beside a number above all of them.
+    """
+    if value is None:
+        return None
+    # through Decimal: products of long rates have more digits than Python turns into text at once
+    parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
+    return {"exact": "/".join(parts) if value.denominator != 1 else parts[0], "approx": approximate(value)}
+
+
+def approximate(value: Fraction) -> float | None:
+    """Give the nearest float; ``None`` for a number above all."""
+    try:
+        return float(value)
+    except OverflowError:
+        return None
+
+
+def figure_json(objective: Objective, figure: int | Fraction | None) -> object:
+    """Give what an objective measures: a whole number, or an exact fraction; ``None`` stays ``None``."""
+    if figure is None or not objective.row.whole:
+        return fraction_json(None if figure is None else Fraction(figure))
+    return int(figure)
+
+
+def costs_json(costs: Costs | None) -> Json | None:
+    """Give all measures of a tree by objective, ``None`` where nothing is known, and its ingredients."""
+    if costs is None:
+        return None
+    figures = figures_json({each: costs.measures.get(each) for each in Objective})
+    return figures | {"ingredients": costs.ingredients}
+
+
+def figures_json(figures: Mapping[Objective, int | Fraction | None]) -> Json:
+    """Give what is measured by several objectives."""
+    return {str(objective): figure_json(objective, figure) for objective, figure in figures.items()}

@@ -1,0 +1,298 @@
+"""The JSON of every verb: held against its schema, and the schemas against what there is."""
+
+import copy
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import click
+import jsonschema
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from foon_asp.asp import Proof, Status
+from foon_asp.cli.verbs import VERBS, verb_command
+from foon_asp.network import LEVELS, ObjectNode
+from foon_asp.problem import ContainerRule, Objective
+from foon_asp.proof import Verdict
+from foon_asp.report.schema import schema, schema_kinds
+from foon_asp.resources import schemas_folder
+from foon_asp.search import Ending
+from foon_asp.text.json_node import node_json, read_node_json
+from foon_asp.text.json_value import json_text, read_json
+from tests.conftest import Cli, valid
+
+FORBID = ("--constraint", "forbid_motion", "-c", 'forbidden_motion="crush"')
+SOFT = ("--soft", "forbid_motion=3", "-c", 'forbidden_motion="crush"')
+# By verb: what is asked of the bundled kitchen, each to give another branch of the document. The first is
+# asked by default. What is in capitals is a file.
+ASKED: dict[str, list[tuple[str, ...]]] = {
+    "solve": [
+        ("--goal", "ice", *SOFT),
+        ("--goal", "ice", "--cross-check"),
+        ("--goal", "ice", "--goal", "tea", "--objective", "success,inputs", "--containers", "implied"),
+        ("--goal", "ice", "--level", "1"),
+        ("--goal", "apple pie"),
+        ("--goal", "ice", "--objective", "attempts,inputs+ingredients,kitchen"),
+        ("--goal", "whipped cream", "--time-limit", "0"),
+    ],
+    "optima": [("--goal", "ice"), ("--goal", "tea", "--objective", "kitchen,success", "--level", "2")],
+    "search": [("bfs", "--goal", "ice"), ("bfs", "--goal", "macaroni"), ("dfs", "--goal", "apple pie")],
+    "compare": [("--goal", "ice"), ("--goal", "apple pie", "--level", "2")],
+    "check": [("TORN", "--goal", "ice"), ("TREE", "--goal", "tea"), ("TREE", "--goal", "ice")],
+    "verify": [("PROOF",), ("FORGED",)],
+    "why-not": [("--goal", "apple pie"), ("--goal", "ice", *FORBID)],
+    "shopping-list": [("--goal", "apple pie"), ("--goal", "ice")],
+    "clash": [
+        ("--goal", "ice", *FORBID),
+        ("--goal", "ice", "--constraint", "require_motion", "-c", 'required_motion="crush"'),
+    ],
+    "alternatives": [("--goal", "ice"), ("--goal", "ice", "--different", "2"), ("--goal", "apple pie")],
+    "pareto": [("--goal", "ice"), ("--goal", "apple pie")],
+    "regret": [("--goal", "ice", "--objective", "success,kitchen"), ("--goal", "apple pie")],
+    "sensitivity": [("--goal", "ice"), ("--goal", "apple pie")],
+    "menu": [("--goal", "ice", "--goal", "tea"), ("--goal", "ice", "--goal", "apple pie")],
+    "assist": [("--goal", "ice", "--reach", "0.9"), ("--goal", "ice"), ("--goal", "apple pie")],
+    "diff": [("TREE", "TORN", "--goal", "ice"), ("TREE", "solve --goal ice --containers implied")],
+    "batch": [("QUESTIONS", "--results", "ROWS")],
+    "stats": [()],
+    "facts": [("--goal", "ice"), ("--goal", "ice", *SOFT[:2])],
+    "constraints": [()],
+    "lint": [("LINTED",)],
+}
+# Verbs without documents: certificates, pictures, schemas and files have forms of their own.
+OTHERS = {"certify", "draw", "schema", "shell", "fmt", "convert", "merge", "import"}
+CASES = [
+    pytest.param(verb, words, marks=() if not number else pytest.mark.slow, id=f"{verb}-{number}")
+    for verb, asked in ASKED.items()
+    for number, words in enumerate(asked)
+]
+
+
+@pytest.fixture
+def files(cli: Cli, tmp_path: Path) -> dict[str, str]:
+    """Give a file for every name in capitals."""
+    return {name: str(tmp_path / f"{name}.txt") for name in ("ROWS", *_CONTENTS)}
+
+
+_UNIT = "O\tice\nS\tcubed\nO\tmuddler\nM\tcrush\nO\tice\nS\tcrushed\n"
+_CONTENTS = {
+    "TREE": ("solve", "--goal", "ice", "--format", "json"),
+    "TORN": f"//\n{_UNIT}//\n",
+    "PROOF": ("certify", "--goal", "ice", "--objective", "success"),
+    "FORGED": "{}",
+    "QUESTIONS": '{"goal": ["ice", "icecream"]}\n',
+    "LINTED": _UNIT.replace("O\tm", "O m"),
+}
+
+
+@pytest.fixture
+def printed(cli: Cli, files: dict[str, str]) -> Any:
+    """Ask, with files in the place of names in capitals, and give what is printed."""
+
+    def ask(verb: str, *words: str) -> Any:
+        for name in {*words} & _CONTENTS.keys():
+            content = _CONTENTS[name]
+            text = content if isinstance(content, str) else cli(*content).out
+            Path(files[name]).write_text(text, encoding="utf-8")
+        ran = cli(verb, *(files.get(word, word) for word in words), "--format", "json")
+        assert ran.code in {0, 1, 3}, ran.err
+        return ran.json
+
+    return ask
+
+
+def answers() -> dict[str, click.Command]:
+    """Give the commands that have JSON, by verb."""
+    found = {}
+    for verb in VERBS:
+        command = verb_command(verb)
+        formats = [o.type for o in command.params if o.name == "format_" and isinstance(o.type, click.Choice)]
+        if any("json" in choice.choices for choice in formats):
+            found[verb] = command
+    return found
+
+
+def test_every_verb_that_answers_has_a_schema() -> None:
+    assert answers().keys() == ASKED.keys() == VERBS.keys() - OTHERS
+    kinds = {"answer" if verb == "solve" else verb for verb in ASKED}
+    assert {*schema_kinds()} == kinds | {"batch-row", "compare-row"}
+
+
+@pytest.mark.parametrize(("verb", "words"), CASES)
+def test_what_is_printed_is_what_the_schema_says(printed: Any, verb: str, words: tuple[str, ...]) -> None:
+    kind = "answer" if verb == "solve" else verb
+    assert printed(verb, *words)["schema"] == f"foon-asp/{kind}/1"
+
+
+HEAD = ("goals", "containers", "items", "level", "objectives")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "verb", [verb for verb in ASKED if verb not in {"batch", "stats", "constraints", "lint"}]
+)
+def test_the_head_is_the_same_in_every_verb(printed: Any, verb: str) -> None:
+    document = printed(verb, *ASKED[verb][0])
+    heads = [document["a"], document["b"]] if verb == "diff" else [document]
+    for head in heads:
+        assert [key for key in head if key in HEAD] == [*HEAD]
+        assert "ice" in {goal["label"] for goal in head["goals"]} or verb in {"why-not", "shopping-list"}
+        assert head["items"] == "lasting"
+
+
+# --- the schemas
+
+
+@pytest.mark.parametrize("kind", [*schema_kinds(), None])
+def test_a_schema_is_one(kind: str | None) -> None:
+    file = schemas_folder() / f"{kind or 'defs'}.json"
+    for each in (schema(kind) if kind else {}, json.loads(file.read_text(encoding="utf-8"))):
+        jsonschema.Draft202012Validator.check_schema(each)
+    if kind:
+        whole = schema(kind)
+        references = re.findall(r'"\$ref": "([^"]*)"', json.dumps(whole))
+        assert {reference.removeprefix("#/$defs/") for reference in references} == whole.get(
+            "$defs", {}
+        ).keys()
+        assert whole["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+
+
+def test_what_the_schemas_share_is_used() -> None:
+    used = {name for kind in schema_kinds() for name in schema(kind).get("$defs", {})}
+    assert used == json.loads((schemas_folder() / "defs.json").read_text(encoding="utf-8"))["$defs"].keys()
+
+
+def test_the_words_of_the_schemas_are_ours() -> None:
+    shared = schema("answer")["$defs"]
+    assert shared["objective"]["enum"] == list(map(str, Objective))
+    assert shared["containers"]["enum"] == list(map(str, ContainerRule))
+    assert shared["status"]["enum"] == list(map(str, Status))
+    assert sorted(shared["level"]["enum"]) == sorted(LEVELS)
+    assert schema("check")["$defs"]["verdict"]["enum"] == list(map(str, Verdict))
+    assert schema("search")["properties"]["ending"]["enum"] == list(map(str, Ending))
+    assert {*shared["answer"]["properties"]["proof"]["enum"]} == {*map(str, Proof), None}
+
+
+def test_the_verb_prints_them(cli: Cli) -> None:
+    listed = cli("schema").out.splitlines()
+    assert [line.split()[0] for line in listed] == [f"foon-asp/{kind}/1" for kind in schema_kinds()]
+    assert (
+        json.loads(cli("schema", "solve").out) == schema("answer") == json.loads(cli("schema", "answer").out)
+    )
+    ran = cli("schema", "sovle")
+    assert (ran.code, ran.out) == (2, "")
+    assert "found 'sovle', expected what has a schema: alternatives, answer, " in ran.err
+
+
+# What may have other keys, or lack one: what is by objective, phase, motion or code, and what only some have.
+OPEN = {"codes", "statuses", "proofs", "person", "question"}
+LOOSE = {
+    *OPEN,
+    "seconds",
+    "lower_bound",
+    "proof_by_objective",
+    "measures",
+    "ratios",
+    "optimum",
+    "loss",
+    "costs",
+}
+SOME = {"stands_for", "penalty", "soft_constraints", "cross_check"}
+
+
+def changed(document: Any) -> Iterator[Any]:
+    """Give the document with a key too many or too few, once for every place that looks the same."""
+    seen: set[tuple[str, ...]] = set()
+
+    def walk(value: Any, path: tuple[str, ...]) -> Iterator[None]:
+        if isinstance(value, list):
+            for each in value:
+                yield from walk(each, path)
+        elif isinstance(value, dict):
+            for key in list(value):
+                yield from walk(value[key], (*path, key))
+            name = path[-1] if path else ""
+            shape = (*path, *sorted(value))
+            if shape in seen:
+                return
+            seen.add(shape)
+            if name not in OPEN:
+                value["more"] = 1
+                yield
+                del value["more"]
+            for key in [key for key in value if name not in LOOSE and key not in SOME]:
+                kept = dict(value)
+                del value[key]
+                yield
+                value.clear()
+                value.update(kept)
+
+    document = copy.deepcopy(document)
+    for _ in walk(document, ()):
+        yield document
+
+
+@pytest.mark.parametrize(
+    ("verb", "words"),
+    [
+        pytest.param(verb, asked[0], marks=() if verb in {"facts", "verify"} else pytest.mark.slow, id=verb)
+        for verb, asked in ASKED.items()
+    ],
+)
+def test_a_key_too_many_or_too_few_is_noticed(printed: Any, verb: str, words: tuple[str, ...]) -> None:
+    document = printed(verb, *words)
+    validator = jsonschema.Draft202012Validator(schema("answer" if verb == "solve" else verb))
+    broken = 0
+    for each in changed(document):
+        broken += 1
+        assert not validator.is_valid(each), each
+    assert broken > 3
+    assert valid(document) == document
+
+
+# --- nodes, and the text
+
+
+names = st.text(st.characters(codec="utf-8"), min_size=1, max_size=5)
+nodes = st.builds(
+    ObjectNode.of,
+    names,
+    st.lists(names, max_size=2),
+    st.lists(st.tuples(names, names), max_size=2),
+    st.lists(st.tuples(names, st.lists(names, max_size=3)), max_size=2),
+)
+
+
+@given(nodes)
+@settings(max_examples=30)
+def test_a_node_is_read_as_it_was_written(node: ObjectNode) -> None:
+    assert read_node_json(json.loads(json_text(node_json(node, 3)))) == node
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+    lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+)
+
+
+@given(values)
+@settings(max_examples=30)
+def test_what_is_laid_out_is_the_same_value(value: Any) -> None:
+    text = json_text(value)
+    assert read_json(text) == value
+    assert text.endswith("\n")
+    text.encode()
+
+
+def test_what_fits_stands_on_one_line() -> None:
+    short, long = ["a"] * 3, ["b" * 30] * 6
+    assert json_text({"short": short, "long": long, "none": []}) == (
+        '{\n  "short": ["a", "a", "a"],\n  "long": [\n    '
+        + ",\n    ".join([json.dumps("b" * 30)] * 6)
+        + '\n  ],\n  "none": []\n}\n'
+    )
+    assert all(len(line) <= 110 for line in json_text([[short] * 9] * 9).splitlines())
