@@ -7,6 +7,8 @@ from functools import lru_cache
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, node_at_level
 
+Ids = tuple[tuple[int, ...], ...]
+
 
 class ContainerRule(StrEnum):
     """``strict``: a unit needs every input. ``implied``: the rule of the published searches.
@@ -43,16 +45,7 @@ def needed_inputs(
     Below level 3 a node does not say what it holds. A unit of a ``network`` of such a level then needs what
     all the level-3 units need that it stands for: what one of them takes as given, it takes as given.
     """
-    if rule is ContainerRule.STRICT:
-        return unit.inputs
-    if network is not None and network.detailed is not None:
-        unit_id = network.unit_id(unit)
-        details = () if unit_id is None else network.stands_for[unit_id]
-        needed = set(unit.inputs)
-        for detail in map(network.detailed.unit, details):
-            needed &= {node_at_level(node, network.level) for node in needed_inputs(detail, rule, utensils)}
-        return tuple(node for node in unit.inputs if node in needed)
-    return tuple(node for node in unit.inputs if not _is_implied(node, unit.inputs, utensils))
+    return _sides(unit, rule, utensils, network)[0]
 
 
 def given_outputs(
@@ -62,72 +55,58 @@ def given_outputs(
 
     A unit of a ``network`` below level 3 makes what any of the level-3 units makes that it stands for.
     """
+    return _sides(unit, rule, utensils, network)[1]
+
+
+def _sides(
+    unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None
+) -> tuple[tuple[ObjectNode, ...], tuple[ObjectNode, ...]]:
+    """Give what a unit needs and what it makes."""
     if rule is ContainerRule.STRICT:
-        return unit.outputs
+        return unit.inputs, unit.outputs
     if network is not None and network.detailed is not None:
         unit_id = network.unit_id(unit)
         if unit_id is None:  # it needs all its inputs
-            return unit.outputs
-        details = map(network.detailed.unit, network.stands_for[unit_id])
-        given = {
-            node_at_level(node, network.level)
-            for detail in details
-            for node in given_outputs(detail, rule, utensils)
-        }
-        return tuple(node for node in unit.outputs if node in given)
-    skipped = set(unit.inputs).difference(needed_inputs(unit, rule, utensils))
-    return tuple(node for node in unit.outputs if node not in skipped)
+            return unit.inputs, unit.outputs
+        details = [
+            _sides(network.detailed.unit(d), rule, utensils, None) for d in network.stands_for[unit_id]
+        ]
+        needed = set.intersection(*(_at_level(needs, network.level) for needs, _ in details))
+        given = set.union(*(_at_level(gives, network.level) for _, gives in details))
+    else:
+        skipped = {node for node in unit.inputs if _is_implied(node, unit.inputs, utensils)}
+        needed, given = set(unit.inputs) - skipped, set(unit.outputs) - skipped
+    return tuple(n for n in unit.inputs if n in needed), tuple(n for n in unit.outputs if n in given)
+
+
+def _at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
+    return {node_at_level(node, level) for node in nodes}
 
 
 @lru_cache(maxsize=4)  # question after question is about the same network
-def network_needs(
-    network: Network, rule: ContainerRule, utensils: frozenset[str]
-) -> tuple[tuple[int, ...], ...]:
-    """Give for each unit of a network, at its level, the ids of the inputs that the rule asks for."""
+def network_sides(network: Network, rule: ContainerRule, utensils: frozenset[str]) -> tuple[Ids, Ids]:
+    """Give for each unit of a network, at its level, the ids of what it needs and of what it makes."""
     if rule is ContainerRule.STRICT:
-        return network.inputs
+        return network.inputs, network.outputs
+    needs, gives = list(network.inputs), list(network.outputs)
     detailed = network.detailed or network
     vessels = {
         o for o, node in enumerate(detailed.objects) if node.label in utensils and len(node.ingredients) == 1
     }
-    needs: list[tuple[int, ...]] = []
-    for unit, inputs in enumerate(network.inputs):
+    for unit in range(len(network)):
         details = network.stands_for[unit] if network.detailed else (unit,)
-        if all(vessels.isdisjoint(detailed.inputs[detail]) for detail in details):
-            needs.append(inputs)
-            continue
-        needed = set(needed_inputs(network.unit(unit), rule, utensils, network))
-        needs.append(tuple(o for o in inputs if network.objects[o] in needed))
-    return tuple(needs)
+        if not all(vessels.isdisjoint(detailed.inputs[detail]) for detail in details):
+            needed, given = map(set, _sides(network.unit(unit), rule, utensils, network))
+            needs[unit] = tuple(o for o in needs[unit] if network.objects[o] in needed)
+            gives[unit] = tuple(o for o in gives[unit] if network.objects[o] in given)
+    return tuple(needs), tuple(gives)
 
 
 @lru_cache(maxsize=4)
-def network_gives(
-    network: Network, rule: ContainerRule, utensils: frozenset[str]
-) -> tuple[tuple[int, ...], ...]:
-    """Give for each unit of a network, at its level, the ids of the outputs that it makes under the rule."""
-    if rule is ContainerRule.STRICT:
-        return network.outputs
-    detailed = network.detailed or network
-    pairs = zip(network_needs(detailed, rule, utensils), detailed.inputs, strict=True)
-    skipping = {detail for detail, (needs, inputs) in enumerate(pairs) if len(needs) < len(inputs)}
-    units: Iterable[int] = skipping
-    if network.detailed is not None:
-        units = (u for u, details in enumerate(network.stands_for) if not skipping.isdisjoint(details))
-    gives = list(network.outputs)
-    for unit in units:
-        given = set(given_outputs(network.unit(unit), rule, utensils, network))
-        gives[unit] = tuple(o for o in gives[unit] if network.objects[o] in given)
-    return tuple(gives)
-
-
-@lru_cache(maxsize=4)
-def network_makers(
-    network: Network, rule: ContainerRule, utensils: frozenset[str]
-) -> tuple[tuple[int, ...], ...]:
+def network_makers(network: Network, rule: ContainerRule, utensils: frozenset[str]) -> Ids:
     """Give for each object node the ids of the units that make it under the rule, in order."""
     makers: dict[int, tuple[int, ...]] = {}
-    gives = network_gives(network, rule, utensils)
+    _, gives = network_sides(network, rule, utensils)
     for unit, (outputs, given) in enumerate(zip(network.outputs, gives, strict=True)):
         if len(given) < len(outputs):
             for o in set(outputs).difference(given):

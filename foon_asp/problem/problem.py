@@ -12,9 +12,8 @@ from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTr
 from foon_asp.problem.containers import (
     ContainerRule,
     conditions,
-    network_gives,
     network_makers,
-    network_needs,
+    network_sides,
 )
 from foon_asp.problem.costs import Costs, tree_costs
 from foon_asp.problem.number import Number
@@ -170,12 +169,12 @@ class Problem:
     @cached_property
     def needs(self) -> tuple[tuple[int, ...], ...]:
         """For each unit, the ids of the inputs that the container rule asks for."""
-        return network_needs(self.network, self.containers, self.utensils)
+        return network_sides(self.network, self.containers, self.utensils)[0]
 
     @cached_property
     def gives(self) -> tuple[tuple[int, ...], ...]:
         """For each unit, the ids of the outputs that it makes: all but the inputs it may skip."""
-        return network_gives(self.network, self.containers, self.utensils)
+        return network_sides(self.network, self.containers, self.utensils)[1]
 
     @cached_property
     def makers(self) -> tuple[tuple[int, ...], ...]:
