@@ -4,7 +4,7 @@ import random
 from fractions import Fraction
 from itertools import combinations
 
-from foon_asp.network import NetworkBuilder, ObjectNode, Source
+from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Problem
 
 
@@ -50,4 +50,7 @@ def gap_problem(seed: int, corners: int = 5, density: float = 0.7) -> Problem:
         "draw": Fraction("0.95"),
     }
     rates["finish"] = Fraction(1)
-    return Problem(network, kitchen, (goal,), rates, frozenset(), ContainerRule.STRICT)
+    dear = {"clear": "0.30", "wipe": "0.1", "scrub": "0.25", "draw": "0.2", "finish": "0"}
+    prices = UnitPrices({motion: Fraction(price) for motion, price in dear.items()}, {})
+    given = frozenset[str](), ContainerRule.STRICT
+    return Problem(network, kitchen, (goal,), rates, *given, unit_prices=prices)

@@ -162,7 +162,8 @@ def random_prices(network: Network, seed: int) -> UnitPrices:
     """Give all motions a price, and some of the units one of their own."""
     rng = random.Random(f"prices {seed}")
     family = rng.choice((PRICES, PRICES, PRICES, FREE, TINY, HUGE, LONG))
-    motions = {motion: Fraction(rng.choice(family)) for motion in MOTIONS}
+    every = dict.fromkeys((*MOTIONS, *network.motions))
+    motions = {motion: Fraction(rng.choice(family)) for motion in every}
     chosen = [unit for unit in range(len(network)) if rng.random() < 0.4]
     return UnitPrices(motions, {network.unit(unit): Fraction(rng.choice(family)) for unit in chosen})
 

@@ -16,7 +16,14 @@ from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.menu import menu
 from foon_asp.questions.regret import Part, regret
 from tests import oracle
-from tests.random_problems import MOTIONS, RATES, UTENSILS, random_objectives, random_problem
+from tests.random_problems import (
+    MOTIONS,
+    RATES,
+    UTENSILS,
+    random_objectives,
+    random_prices,
+    random_problem,
+)
 
 RULES = list(ContainerRule)
 Units = frozenset[FunctionalUnit]
@@ -41,7 +48,8 @@ def choosing(seed: int, rule: ContainerRule) -> Problem:
     rates = {motion: Fraction(rng.choice(RATES)) for motion in MOTIONS}
     goal = network.object_id(steps[3])
     assert goal is not None
-    return Problem(network, kitchen, (goal,), rates, UTENSILS, rule)
+    prices = random_prices(network, seed)
+    return Problem(network, kitchen, (goal,), rates, UTENSILS, rule, unit_prices=prices)
 
 
 def minimal_trees(problem: Problem, allowed: oracle.Allowed = lambda _: True) -> list[Units]:

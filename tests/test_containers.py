@@ -27,6 +27,7 @@ from foon_asp.network import (
     ObjectNode,
     Source,
     TaskTree,
+    UnitPrices,
     network_at_level,
     node_at_level,
     unit_at_level,
@@ -76,7 +77,9 @@ def ask(
     assert None not in ids
     goal_id, *at_hand = (o for o in ids if o is not None)
     rates = dict.fromkeys(of.motions, Fraction(1, 2))
-    return Problem(of, frozenset(at_hand), (goal_id,), rates, frozenset({"pot"}), rule)
+    prices = UnitPrices(dict.fromkeys(of.motions, Fraction(2)), {})
+    given = of, frozenset(at_hand), (goal_id,), rates, frozenset({"pot"}), rule
+    return Problem(*given, unit_prices=prices)
 
 
 # The unit that fills: with a tap and an empty pot at hand, the pot of water is made in one step.

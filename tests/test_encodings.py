@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -20,6 +21,7 @@ from clingo.symbol import SymbolType
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import program_facts
 from foon_asp.asp.facts import FACT_PREDICATES
+from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import find_data, find_goal, read_data
@@ -222,7 +224,8 @@ def test_facts_are_what_the_table_says() -> None:
     """All predicates but those of the second step are printed for a bundled goal, and no others."""
     data = read_data(find_data(bundled_kitchen()))
     goal = find_goal("macaroni and cheese", data.network, data.goals)
-    problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, ContainerRule.STRICT)
+    given = data.network, data.kitchen, (goal,), data.rates, data.utensils, ContainerRule.STRICT
+    problem = Problem(*given, unit_prices=UnitPrices(dict.fromkeys(data.network.motions, Fraction(2)), {}))
     statements: list[AST] = []
     parse_string(program_facts(problem, OBJECTIVES, Settings()), statements.append)
     second_step = {

@@ -19,6 +19,7 @@ from foon_asp.asp.session import Session
 from foon_asp.certificate import certify
 from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import BugError, UserError
+from foon_asp.network import UnitPrices
 from foon_asp.problem import (
     ContainerRule,
     Costs,
@@ -317,6 +318,8 @@ def test_every_objective_is_a_criterion_of_the_encodings(objective: Objective) -
 
 def test_rates_do_not_count_where_nothing_multiplies() -> None:
     problem = replace(two_ways(["0.5", "0.5"], ["0.2"]), rates=None)
+    prices = UnitPrices(dict.fromkeys(problem.network.motions, Fraction(2)), {})
+    problem = replace(problem, unit_prices=prices)
     assert [multiplies(objective) for objective in Objective].count(True) == 1
     for objective in Objective:
         if objective.row.needs is not Known.RATES:

@@ -22,7 +22,8 @@ from foon_asp.questions.menu import menu
 from foon_asp.questions.pareto import pareto
 from foon_asp.questions.regret import regret
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduced, reduce
-from foon_asp.resources import encodings_folder
+from foon_asp.resources import bundled_kitchen, encodings_folder
+from foon_asp.text import FoonReader
 from tests.conftest import Cli
 from tests.random_problems import random_problem
 from tests.test_exact_success import two_ways
@@ -131,7 +132,9 @@ def test_other_objectives_in_our_own_encodings_are_a_bug(
     monkeypatch.setattr("foon_asp.asp.assembly.is_own", lambda _: True)
     monkeypatch.setattr("foon_asp.asp.settings.is_own", lambda _: True)
     monkeypatch.setattr("foon_asp.asp.own_encodings.is_own", lambda _: True)
-    words = ["--goal", "ice", "--objective", objective]
+    motions = FoonReader().read_network([bundled_kitchen() / "FOON.txt"]).motions
+    (tmp_path / "prices.txt").write_text("".join(f"{motion}\t2\n" for motion in motions))
+    words = ["--goal", "ice", "--objective", objective, "--unit-prices", str(tmp_path / "prices.txt")]
     assert cli("solve", *words, "--reduce", "none").code == 0
     text = (folder / "objectives.lp").read_text()
     for criterion in ("1@P,U", "N@P,U", "N+M@P,U", "W@P,U", "1@P,O"):

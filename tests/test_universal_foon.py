@@ -1,5 +1,6 @@
 """The real universal FOON: what is known of it, and engines that agree on all of it."""
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from foon_asp.asp import Status, solve
 from foon_asp.problem import ContainerRule, Objective, Problem, reach, relevant
 from foon_asp.text import Data, find_data, find_goal, read_data
 from tests.conftest import Cli
+from tests.random_problems import random_prices
 
 # Proved optima: units, inputs, success, each from its own objective.
 KNOWN = {
@@ -71,12 +73,13 @@ def test_the_cut_leaves_little(data: Data, rule: ContainerRule) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("rule", list(ContainerRule))
 def test_every_makeable_object_is_proved(data: Data, rule: ContainerRule) -> None:
-    one = Problem(data.network, data.kitchen, (0,), data.rates, data.utensils, rule)
+    given = data.network, data.kitchen, (0,), data.rates, data.utensils, rule
+    one = Problem(*given, unit_prices=random_prices(data.network, 0))
     reached = reach(one)
     goals = [o for o in sorted(reached.makers) if o not in data.kitchen]
     assert len(goals) > 2500
     for goal in goals[::8]:
-        problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
+        problem = replace(one, goals=(goal,))
         best = {objective: solve(problem, (objective,)) for objective in Objective}
         assert all(outcome.status is Status.OPTIMAL for outcome in best.values())
         for objective in Objective:
