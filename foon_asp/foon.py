@@ -11,7 +11,7 @@ from foon_asp.dataset.names import in_python
 from foon_asp.dataset.paths import File, Files, files
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, UnitPrices
-from foon_asp.problem import Names, Number, Problem, UnitPricesNamed
+from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
 from foon_asp.text import Data, GoalError, find_data
 from foon_asp.warning import warn
 
@@ -69,7 +69,7 @@ def build(
     :class:`UserError` for names that mean nothing or too much.
     """
     data = Data(network, frozenset(), (), (), None, frozenset(utensils), (), 0)
-    return Foon(Dataset(data, 0.0).vary(kitchen=kitchen, rates=rates, unit_prices=unit_prices), "a network")
+    return Foon(Dataset(data, 0.0).vary(Changes(kitchen, rates=rates, unit_prices=unit_prices)), "a network")
 
 
 class Foon:
@@ -138,7 +138,7 @@ class Foon:
         and at most 1; ``unit_prices`` new prices, from 0, of motions by name and of single units, which keep
         theirs when that of their motion changes.
         """
-        varied = self._dataset.vary(kitchen, adding, without, rates, unit_prices)
+        varied = self._dataset.vary(Changes(kitchen, adding, without, rates, unit_prices))
         return self if varied is self._dataset else Foon(varied, self._name)
 
     @property

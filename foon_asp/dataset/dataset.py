@@ -9,6 +9,7 @@ from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, list
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, UnitPrices, pattern_at_level
 from foon_asp.problem import (
+    Changes,
     Names,
     Number,
     Origin,
@@ -127,13 +128,8 @@ class Dataset:
         """
         kitchen = self._data.kitchen if only is None else only
         items = self._data.kitchen_items if only is None else ()
-        return Dataset(
-            self._data._replace(
-                kitchen=frozenset(kitchen).union(more).difference(less),
-                kitchen_items=items,
-            ),
-            self.read_seconds,
-        )
+        at_hand = frozenset(kitchen).union(more).difference(less)
+        return Dataset(self._data._replace(kitchen=at_hand, kitchen_items=items), self.read_seconds)
 
     def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
         """Give the same data with some success rates and some prices changed."""
@@ -145,15 +141,9 @@ class Dataset:
         data = self._data._replace(rates=None if changed is None else dict(changed), unit_prices=prices)
         return Dataset(data, self.read_seconds)
 
-    def vary(
-        self,
-        kitchen: Names | Path | None = None,
-        adding: Names = (),
-        without: Names = (),
-        rates: Mapping[str, Number] | None = None,
-        unit_prices: UnitPricesNamed | None = None,
-    ) -> "Dataset":
-        """Give the same data with another kitchen, other rates or prices; see :meth:`foon_asp.Foon.vary`."""
+    def vary(self, changes: Changes) -> "Dataset":
+        """Give the same data with another kitchen, other rates or prices."""
+        kitchen, adding, without, rates, unit_prices = changes
         dataset = self.valued(rates, unit_prices)
         if kitchen is None and not adding and not without:
             return dataset
@@ -173,19 +163,10 @@ class Dataset:
         return with_more.varied((), less, None) if less else with_more
 
     def posed_anew(
-        self,
-        problem: Problem,
-        goals: Names | None,
-        containers: str | None,
-        *,
-        kitchen: Names | Path | None,
-        adding: Names,
-        without: Names,
-        rates: Mapping[str, Number] | None,
-        unit_prices: UnitPricesNamed | None,
+        self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
     ) -> Problem:
         """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
-        dataset = self.with_kitchen_of(problem).vary(kitchen, adding, without, rates, unit_prices)
+        dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
         return _with_own_rates(dataset.problem(ids, containers or problem.containers), problem)
 

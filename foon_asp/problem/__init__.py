@@ -12,6 +12,7 @@ from foon_asp.problem.number import Number, exact, success_rate, unit_price
 from foon_asp.problem.objective import Known, Measured, Objective, Row, levels, multiplies, parse_objectives
 from foon_asp.problem.order import executable_order
 from foon_asp.problem.problem import (
+    Changes,
     Names,
     Origin,
     Problem,
@@ -24,6 +25,7 @@ from foon_asp.problem.relevance import Reached, backwards, first_tree, reach, re
 from foon_asp.problem.root import Root
 
 __all__ = [
+    "Changes",
     "ContainerRule",
     "Costs",
     "Known",

@@ -34,20 +34,21 @@ class Unpriced(NamedTuple):
     source: Source
 
 
+class Changes(NamedTuple):
+    """What varies of the data that a problem was posed of; see :meth:`foon_asp.Foon.vary`."""
+
+    kitchen: Names | Path | None = None
+    adding: Names = ()
+    without: Names = ()
+    rates: Mapping[str, Number] | None = None
+    unit_prices: UnitPricesNamed | None = None
+
+
 class Origin(Protocol):
     """The data that a problem was posed of."""
 
     def posed_anew(
-        self,
-        problem: "Problem",
-        goals: Names | None,
-        containers: str | None,
-        *,
-        kitchen: Names | Path | None,
-        adding: Names,
-        without: Names,
-        rates: Mapping[str, Number] | None,
-        unit_prices: UnitPricesNamed | None,
+        self, problem: "Problem", goals: Names | None, containers: str | None, changes: Changes
     ) -> "Problem":
         """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
 
@@ -145,16 +146,8 @@ class Problem:
         """
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
-        return self.origin.posed_anew(
-            self,
-            goals,
-            containers,
-            kitchen=kitchen,
-            adding=adding,
-            without=without,
-            rates=rates,
-            unit_prices=unit_prices,
-        )
+        changes = Changes(kitchen, adding, without, rates, unit_prices)
+        return self.origin.posed_anew(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
         """Give the first place where a unit was read; one of no network stands in no file."""
