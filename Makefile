@@ -4,6 +4,7 @@
 # make coverage  which lines and branches of the package the tests reach, in one process: some minutes
 # make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes
 # make lint   style and types
+# make tables  after a change of the grammar of FOON text: the tables that are read in its place
 # make bench  the benchmarks, in a few minutes, into docs/performance.md; make bench-full the large ones, which
 #             take about an hour and a half (with DATA=DIR also on the network in a folder)
 # Each makes .venv and installs what it needs when run first. With PYTHON=python3.13 VENV=.venv-3.13 it is another
@@ -16,7 +17,7 @@ BIN := $(VENV)/bin
 CORES := -n auto --dist worksteal
 PAGE := --page docs/performance.md
 
-.PHONY: demo test test-slow test-lowest coverage mutants lint bench bench-full clean
+.PHONY: demo test test-slow test-lowest coverage mutants tables lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -41,6 +42,9 @@ mutants: $(VENV)/installed-dev
 
 test-lowest:
 	PYTHON="$(PYTHON)" .ci/lowest $(CORES)
+
+tables: $(VENV)/installed-dev
+	PYTHONHASHSEED=0 $(BIN)/python -m tests.text.grammar_tables
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .

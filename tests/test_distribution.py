@@ -96,7 +96,7 @@ def test_wheel_has_encodings_data_and_grammar(wheel: Path) -> None:
         assert contents[f"foon_asp/{name}"] == (ROOT / name).read_bytes()
     for name in files_in("foon_asp"):
         assert contents[name] == (ROOT / name).read_bytes()
-    assert {"foon_asp/text/foon.lark", "foon_asp/py.typed"} <= set(names)
+    assert {"foon_asp/text/foon.lark", "foon_asp/text/foon.tables.json", "foon_asp/py.typed"} <= set(names)
     packed = {name for name in names if not name.split("/")[0].endswith(".dist-info")}
     assert sorted(packed - {f"foon_asp/{name}" for name in beside} - files_in("foon_asp")) == []
     (entry_points,) = (name for name in names if name.endswith("entry_points.txt"))

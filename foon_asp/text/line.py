@@ -3,13 +3,13 @@
 import re
 from collections.abc import Sequence
 from functools import cache, lru_cache
-from pathlib import Path
 from typing import NamedTuple, cast
 
 from lark import Lark, Token, Transformer
 from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken
 
 from foon_asp.network import Contents, ObjectNode, Relation
+from foon_asp.text.grammar import parser
 from foon_asp.text.motion_times import MotionFields, is_time, mended_time
 
 
@@ -421,10 +421,7 @@ def _items(bracket: Token, remarks: list[Remark]) -> tuple[str, ...]:
 
 @cache
 def _parser() -> Lark:
-    grammar = Path(__file__).with_name("foon.lark").read_text(encoding="utf-8")
-    return Lark(
-        grammar, start=["lines", "node"], parser="lalr", lexer="contextual", transformer=_LineBuilder()
-    )
+    return parser(_LineBuilder())
 
 
 def _parse(start: str, text: str) -> object:

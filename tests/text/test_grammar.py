@@ -1,0 +1,72 @@
+"""The tables of the grammar against the grammar."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from foon_asp.resources import bundled_kitchen
+from foon_asp.text import grammar, line
+from tests.text.grammar_tables import tables
+
+# what is written as it should be, what is mended, and what is refused, of every kind
+LINES = [
+    "O278\tmixing bowl\t1",
+    "O\tonion \t01\t15",
+    "O onion",
+    "O",
+    "S\tin\t[bowl]",
+    "S41\tempty ",
+    "S23\tcontains\t{salt,sugar}",
+    "S\tcontains [salt",
+    "S\tin [bowl}",
+    "S\t[bowl]",
+    "M54\tpour*\t1:10\t1:11",
+    "M\tpour\tAssume\tRobot\t0.85",
+    "M",
+    "X\tonion",
+    "",
+]
+NODES = [
+    "sweet potato; chopped; in [cutting board]",
+    "bowl; contains {a,b};",
+    r"a\;b; c",
+    "bowl; [in",
+    ";",
+    "",
+]
+
+
+def read(text: str, node: bool) -> object:
+    try:
+        return line.parse_node(text) if node else line.parse_line(text)
+    except line.LineError as error:
+        return error.column, error.found, error.expected
+
+
+def everything() -> list[object]:
+    line._parser.cache_clear()
+    kitchen = (bundled_kitchen() / "FOON.txt").read_text(encoding="utf-8").splitlines()
+    return [
+        line._parser().options.lexer,
+        *(read(text, node=False) for text in LINES),
+        *(read(text, node=True) for text in NODES),
+        *map(str, line.parse_lines([text for text in kitchen if text[:1] in "OSM"])),
+    ]
+
+
+def test_the_tables_are_those_of_the_grammar() -> None:
+    """After a change of the grammar: ``make tables``."""
+    assert json.loads(grammar.TABLES.read_text())["made_of"][1] == grammar.made_of()[1]
+
+
+def test_tables_read_what_the_grammar_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fresh = tmp_path / "tables.json"
+    fresh.write_text(tables())
+    monkeypatch.setattr(grammar, "TABLES", fresh)
+    by_tables = everything()
+    fresh.write_text(json.dumps({"made_of": ["another Lark", grammar.made_of()[1]]}))
+    by_grammar = everything()
+    line._parser.cache_clear()
+    assert by_tables == by_grammar
+    assert len(by_tables) > len(LINES) + len(NODES) + 100
