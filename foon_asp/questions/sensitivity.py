@@ -14,7 +14,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
-from foon_asp.problem import Objective, Problem, Root, levels, reach, relevant, success_rate
+from foon_asp.problem import Costs, Objective, Problem, Root, levels, reach, relevant, success_rate
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Constants, asked_with, settings
 from foon_asp.questions.caller import caller
@@ -28,6 +28,7 @@ from foon_asp.text.json_value import Json
 
 _SUCCESS = (Objective.SUCCESS,)
 _TINY = Fraction(1, 10**9)  # at which part of its rate a motion is as good as forbidden, mostly
+_HALF = Fraction(1, 2)
 _DIGITS = 4  # of an end in words, at least
 _PERCENT_DIGITS = 3
 _WIDTH = 60  # columns
@@ -245,28 +246,27 @@ class _Tree(NamedTuple):
 
 
 class _Search:
-    """Looks for the ends of intervals, motion by motion; docs/questions.md has the argument.
-
-    Under constraints a tree that is better is first looked for without them, but for units that they rule
-    out one by one: where there is none, none has to be looked for with them.
-    """
+    """Looks for the ends of intervals, motion by motion; docs/questions.md has the argument."""
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], how: Settings) -> None:
         self._problem, self._tree, self._how = problem, tree, how
         self._holds = Postconditions(problem, levels(_SUCCESS), how)
         reached = reach(problem)
         # A unit that the goals cannot need makes no tree better, but rules of the user's may ask for it.
-        plain = not how.constraints
+        plain = not how.constraints and how.replaced is None
         self._units = relevant(problem, reached) if plain else reached.units
+        self._most = self._counted(self._units)
+        self.motions = sorted(self._most)
         self._looser: Problem | None = None
-        if not plain or how.replaced is not None:
+        if not plain:
             from foon_asp.certificate import coverage  # noqa: PLC0415 (for constraints alone)
 
             self._looser = _without(problem, coverage(how).forbids(problem.network))
-        self._most = Counter(
-            problem.network.motions[unit] for unit in self._units if unit not in problem.own_rates
-        )
-        self.motions = sorted(self._most)
+        try:
+            self._settled = self._unmoved()
+        except KeyboardInterrupt:
+            how.begun.interrupt()
+            self._settled = set()
 
     def interval(self, motion: str) -> Interval:
         """Find the interval of one motion; at a limit, what is known of it."""
@@ -283,13 +283,14 @@ class _Search:
 
     def _above(self, motion: str, tree: _Tree) -> End:
         """Find the greatest rate at which the tree is optimal."""
-        if self._most[motion] == tree.power or (self._problem.rates or {})[motion] == 1:
+        rate = (self._problem.rates or {})[motion]
+        if rate == 1 or self._most[motion] == tree.power or motion in self._settled:
             return End(None, None)
         return self._end_from(motion, tree, Fraction(1))
 
     def _below(self, motion: str, tree: _Tree) -> End:
         """Find the least rate at which the tree is optimal."""
-        if not tree.power:
+        if not tree.power or self._ruled_out(motion, 0, _HALF):
             return End(None, None)
         rate = (self._problem.rates or {})[motion]
         tiny = _TINY if rate > _TINY else rate * _TINY
@@ -300,7 +301,7 @@ class _Search:
         # are, below this one; it would be better than the best there.
         if self._rest(motion, self._units) > tree.rest * tiny:
             return end
-        rival, proved = self._better(motion, 0, Fraction(1, 2))  # all others are 1: the fewest units of it
+        rival, proved = self._better(motion, 0, _HALF)  # all others are 1: the fewest units of it
         return (
             End(None, None, proved)
             if rival is None
@@ -331,38 +332,59 @@ class _Search:
         The rate is a root of this degree of a number. All rates are raised to that degree, which makes it
         rational and leaves products in the order in which they are.
         """
-        there = self._raised(self._problem, motion, degree, of)
-        ours = there.costs(self._tree).measure(Objective.SUCCESS)
-        if self._looser is not None:
-            bound = self._solve(
-                self._raised(self._looser, motion, degree, of),
-                self._how._replace(constraints=(), constants=(), encodings=None),
-            )
-            if (
-                bound.status is Status.OPTIMAL
-                and bound.costs is not None
-                and bound.costs.measure(Objective.SUCCESS) <= ours
-            ):
-                return None, True
-        outcome = self._solve(there, self._how)
+        if self._ruled_out(motion, degree, of):
+            return None, True
+        outcome, better = self._compared(_at_rate(self._problem, motion, degree, of))
         proved = outcome.status is Status.OPTIMAL
-        if outcome.units is None or outcome.costs is None:
-            self._require(outcome.status is not Status.INFEASIBLE)
-            return None, False
-        theirs = outcome.costs.measure(Objective.SUCCESS)
-        self._require(theirs >= ours or not proved)
-        return self._seen(motion, outcome.units, proved) if theirs > ours else None, proved
+        if not better or outcome.units is None:
+            return None, proved
+        return self._seen(motion, outcome.units, proved), proved
 
-    def _raised(self, problem: Problem, motion: str, degree: int, of: Fraction) -> Problem:
-        raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
-        own = {unit: rate**degree for unit, rate in problem.own_rates.items()}
-        return replace(problem, rates=raised | {motion: of}, own_rates=own, as_seen=problem)
+    def _ruled_out(self, motion: str, degree: int, of: Fraction) -> bool:
+        """Say whether even without the constraints no tree is better at another rate.
 
-    def _solve(self, problem: Problem, how: Settings) -> Outcome:
-        return solve(problem, _SUCCESS, how, Reporter())
+        What they rule out unit by unit is left out. This is fast: there is mostly nothing to search.
+        """
+        if self._looser is None:
+            return False
+        ours = _success(_at_rate(self._problem, motion, degree, of).costs(self._tree))
+        free = self._how._replace(constraints=(), constants=(), encodings=None)
+        bound = solve(_at_rate(self._looser, motion, degree, of), _SUCCESS, free, Reporter())
+        return bound.status is Status.OPTIMAL and bound.costs is not None and _success(bound.costs) <= ours
 
-    def _require(self, holds: bool) -> None:
-        self._holds.require(holds, lambda: "at other success rates a tree is called optimal that is not")
+    def _unmoved(self) -> set[str]:
+        """Find motions whose rates may be as great as can be, many at once.
+
+        If the tree is optimal where all units but its own that have one of these motions never fail, it is so
+        where the rate of one of the motions rises: other trees gain no more by that. If it is not, the
+        motions by which another tree gains are left out.
+        """
+        network, own = self._problem.network, self._problem.own_rates
+        motions = set(self.motions)
+        while motions:
+            others = {unit for unit in self._units if network.motions[unit] in motions}.difference(self._tree)
+            sure = dict.fromkeys(others, Fraction(1)) | dict(own)
+            outcome, better = self._compared(replace(self._problem, own_rates=sure, as_seen=self._problem))
+            if not better or outcome.units is None:
+                return motions if outcome.status is Status.OPTIMAL else set()
+            motions.difference_update(network.motions[unit] for unit in others.intersection(outcome.units))
+        return motions
+
+    def _compared(self, there: Problem) -> tuple[Outcome, bool]:
+        """Find the best tree at other rates, and say whether it is better there than the one in hand."""
+        outcome = solve(there, _SUCCESS, self._how, Reporter())
+        ours = _success(there.costs(self._tree))
+        theirs = Fraction(0) if outcome.costs is None else _success(outcome.costs)
+        self._holds.require(
+            theirs >= ours or outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE},
+            lambda: f"at other success rates {outcome.status} is said, but the tree {self._tree} is better",
+        )
+        return outcome, theirs > ours
+
+    def _counted(self, units: Iterable[int]) -> Counter[str]:
+        """Count the units of each motion whose rate is that of the motion."""
+        network, own = self._problem.network, self._problem.own_rates
+        return Counter(network.motions[unit] for unit in units if unit not in own)
 
     def _seen(self, motion: str, units: tuple[int, ...], best: bool) -> _Tree:
         return _Tree(
@@ -376,6 +398,17 @@ class _Search:
 
     def _varies(self, motion: str, unit: int) -> bool:
         return self._problem.network.motions[unit] == motion and unit not in self._problem.own_rates
+
+
+def _at_rate(problem: Problem, motion: str, degree: int, of: Fraction) -> Problem:
+    """Raise all rates of a problem to the degree of a root, which the rate of a motion is."""
+    raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
+    own = {unit: rate**degree for unit, rate in problem.own_rates.items()}
+    return replace(problem, rates=raised | {motion: of}, own_rates=own, as_seen=problem)
+
+
+def _success(costs: Costs) -> Fraction:
+    return Fraction(costs.measure(Objective.SUCCESS))
 
 
 def _without(problem: Problem, units: Collection[int]) -> Problem:
