@@ -16,7 +16,8 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Root
 from foon_asp.questions.result import Ending
-from foon_asp.questions.sensitivity import End, Interval, Sensitivity, sensitivity
+from foon_asp.questions.sensitivity import Sensitivity, sensitivity
+from foon_asp.questions.sensitivity.interval import End, Interval
 from foon_asp.resources import bundled_kitchen, encodings_folder
 from tests import oracle
 from tests.conftest import Cli
@@ -381,11 +382,10 @@ def test_a_worse_tree_called_the_best_is_a_bug(monkeypatch: pytest.MonkeyPatch) 
     problem = ways(rates, ("mix",), ("cut",), ("bake",))
 
     def wrong(asked: Problem, *given: Any) -> Outcome:
-        outcome = solve(asked, *given)
         worst = (2,)
-        return outcome if asked.as_seen is None else outcome._replace(units=worst, costs=asked.costs(worst))
+        return solve(asked, *given)._replace(units=worst, costs=asked.costs(worst))
 
-    monkeypatch.setattr("foon_asp.questions.sensitivity.solve", wrong)
+    monkeypatch.setattr("foon_asp.questions.sensitivity.envelope.solve", wrong)
     with pytest.raises(BugError, match=r"optimal is said, but the tree \(0,\) is better"):
         sensitivity(problem)
 
@@ -412,7 +412,8 @@ def test_what_was_found_before_a_limit_is_said(interrupted: bool, monkeypatch: p
                 raise KeyboardInterrupt
             return solve(problem, objectives, settings._replace(deadline=Deadline(0.0)), reporter)
 
-        monkeypatch.setattr("foon_asp.questions.sensitivity.solve", stopping)
+        for module in ("sensitivity", "sensitivity.envelope"):
+            monkeypatch.setattr(f"foon_asp.questions.{module}.solve", stopping)
         result = sensitivity(problem)
         if result.ending is Ending.DONE:
             done = True
