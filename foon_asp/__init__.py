@@ -25,36 +25,16 @@ if TYPE_CHECKING:
     from foon_asp.foon import Foon as Foon
     from foon_asp.foon import build as build
     from foon_asp.foon import load as load
-    from foon_asp.network import (
-        FunctionalUnit as FunctionalUnit,
-    )
-    from foon_asp.network import (
-        Network as Network,
-    )
-    from foon_asp.network import (
-        NetworkBuilder as NetworkBuilder,
-    )
-    from foon_asp.network import (
-        ObjectNode as ObjectNode,
-    )
-    from foon_asp.network import (
-        Source as Source,
-    )
-    from foon_asp.network import (
-        TaskTree as TaskTree,
-    )
-    from foon_asp.problem import (
-        ContainerRule as ContainerRule,
-    )
-    from foon_asp.problem import (
-        Costs as Costs,
-    )
-    from foon_asp.problem import (
-        Objective as Objective,
-    )
-    from foon_asp.problem import (
-        Problem as Problem,
-    )
+    from foon_asp.network import FunctionalUnit as FunctionalUnit
+    from foon_asp.network import Network as Network
+    from foon_asp.network import NetworkBuilder as NetworkBuilder
+    from foon_asp.network import ObjectNode as ObjectNode
+    from foon_asp.network import Source as Source
+    from foon_asp.network import TaskTree as TaskTree
+    from foon_asp.problem import ContainerRule as ContainerRule
+    from foon_asp.problem import Costs as Costs
+    from foon_asp.problem import Objective as Objective
+    from foon_asp.problem import Problem as Problem
     from foon_asp.proof import Simulation as Simulation
     from foon_asp.proof import Verdict as Verdict
     from foon_asp.proof.verify import RefusedError as RefusedError

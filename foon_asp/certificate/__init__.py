@@ -1,15 +1,9 @@
 """Writing certificates: proofs about trees that ``foon_asp.proof.verify`` checks without a solver."""
 
-from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
-from foon_asp.certificate.coverage import Coverage, coverage
-from foon_asp.certificate.outcome import certify_outcome
-
-__all__ = [
-    "Certificate",
-    "Coverage",
-    "NotBestError",
-    "certify",
-    "certify_infeasible",
-    "certify_outcome",
-    "coverage",
-]
+from foon_asp.certificate.certificate import Certificate as Certificate
+from foon_asp.certificate.certificate import NotBestError as NotBestError
+from foon_asp.certificate.certificate import certify as certify
+from foon_asp.certificate.certificate import certify_infeasible as certify_infeasible
+from foon_asp.certificate.coverage import Coverage as Coverage
+from foon_asp.certificate.coverage import coverage as coverage
+from foon_asp.certificate.outcome import certify_outcome as certify_outcome

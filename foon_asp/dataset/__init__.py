@@ -1,6 +1,5 @@
 """Data that was named and read, from text or from a store, and the problems that are posed of it."""
 
-from foon_asp.dataset.dataset import Dataset, ask
-from foon_asp.dataset.reading import read_dataset
-
-__all__ = ["Dataset", "ask", "read_dataset"]
+from foon_asp.dataset.dataset import Dataset as Dataset
+from foon_asp.dataset.dataset import ask as ask
+from foon_asp.dataset.reading import read_dataset as read_dataset

@@ -1,34 +1,17 @@
 """What a FOON is: object nodes, functional units, the merged network, task trees."""
 
-from foon_asp.network.functional_unit import FunctionalUnit
-from foon_asp.network.level import (
-    LEVELS,
-    network_at_level,
-    node_at_level,
-    pattern_at_level,
-    unit_at_level,
-)
-from foon_asp.network.network import Network, NetworkBuilder
-from foon_asp.network.node_pattern import NodePattern
-from foon_asp.network.object_node import Contents, ObjectNode, Relation
-from foon_asp.network.source import Source
-from foon_asp.network.task_tree import TaskTree
-from foon_asp.network.unit_prices import UnitPrices
-
-__all__ = [
-    "LEVELS",
-    "Contents",
-    "FunctionalUnit",
-    "Network",
-    "NetworkBuilder",
-    "NodePattern",
-    "ObjectNode",
-    "Relation",
-    "Source",
-    "TaskTree",
-    "UnitPrices",
-    "network_at_level",
-    "node_at_level",
-    "pattern_at_level",
-    "unit_at_level",
-]
+from foon_asp.network.functional_unit import FunctionalUnit as FunctionalUnit
+from foon_asp.network.level import LEVELS as LEVELS
+from foon_asp.network.level import network_at_level as network_at_level
+from foon_asp.network.level import node_at_level as node_at_level
+from foon_asp.network.level import pattern_at_level as pattern_at_level
+from foon_asp.network.level import unit_at_level as unit_at_level
+from foon_asp.network.network import Network as Network
+from foon_asp.network.network import NetworkBuilder as NetworkBuilder
+from foon_asp.network.node_pattern import NodePattern as NodePattern
+from foon_asp.network.object_node import Contents as Contents
+from foon_asp.network.object_node import ObjectNode as ObjectNode
+from foon_asp.network.object_node import Relation as Relation
+from foon_asp.network.source import Source as Source
+from foon_asp.network.task_tree import TaskTree as TaskTree
+from foon_asp.network.unit_prices import UnitPrices as UnitPrices

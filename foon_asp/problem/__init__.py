@@ -1,61 +1,35 @@
 """One question over a network, and its cut down to what can matter."""
 
-from foon_asp.problem.containers import (
-    ContainerRule,
-    conditions,
-    container_rule,
-    given_outputs,
-    needed_inputs,
-)
-from foon_asp.problem.costs import Costs, tree_costs
-from foon_asp.problem.number import Number, exact, success_rate, unit_price
-from foon_asp.problem.objective import Known, Measured, Objective, Row, levels, multiplies, parse_objectives
-from foon_asp.problem.order import executable_order
-from foon_asp.problem.problem import (
-    Changes,
-    Names,
-    Origin,
-    Problem,
-    UnitPricesNamed,
-    Unpriced,
-    count_unpriced,
-    require_rates,
-)
-from foon_asp.problem.relevance import Reached, backwards, first_tree, reach, relevant
-from foon_asp.problem.root import Root
-
-__all__ = [
-    "Changes",
-    "ContainerRule",
-    "Costs",
-    "Known",
-    "Measured",
-    "Names",
-    "Number",
-    "Objective",
-    "Origin",
-    "Problem",
-    "Reached",
-    "Root",
-    "Row",
-    "UnitPricesNamed",
-    "Unpriced",
-    "backwards",
-    "conditions",
-    "container_rule",
-    "count_unpriced",
-    "exact",
-    "executable_order",
-    "first_tree",
-    "given_outputs",
-    "levels",
-    "multiplies",
-    "needed_inputs",
-    "parse_objectives",
-    "reach",
-    "relevant",
-    "require_rates",
-    "success_rate",
-    "tree_costs",
-    "unit_price",
-]
+from foon_asp.problem.containers import ContainerRule as ContainerRule
+from foon_asp.problem.containers import conditions as conditions
+from foon_asp.problem.containers import container_rule as container_rule
+from foon_asp.problem.containers import given_outputs as given_outputs
+from foon_asp.problem.containers import needed_inputs as needed_inputs
+from foon_asp.problem.costs import Costs as Costs
+from foon_asp.problem.costs import tree_costs as tree_costs
+from foon_asp.problem.number import Number as Number
+from foon_asp.problem.number import exact as exact
+from foon_asp.problem.number import success_rate as success_rate
+from foon_asp.problem.number import unit_price as unit_price
+from foon_asp.problem.objective import Known as Known
+from foon_asp.problem.objective import Measured as Measured
+from foon_asp.problem.objective import Objective as Objective
+from foon_asp.problem.objective import Row as Row
+from foon_asp.problem.objective import levels as levels
+from foon_asp.problem.objective import multiplies as multiplies
+from foon_asp.problem.objective import parse_objectives as parse_objectives
+from foon_asp.problem.order import executable_order as executable_order
+from foon_asp.problem.problem import Changes as Changes
+from foon_asp.problem.problem import Names as Names
+from foon_asp.problem.problem import Origin as Origin
+from foon_asp.problem.problem import Problem as Problem
+from foon_asp.problem.problem import UnitPricesNamed as UnitPricesNamed
+from foon_asp.problem.problem import Unpriced as Unpriced
+from foon_asp.problem.problem import count_unpriced as count_unpriced
+from foon_asp.problem.problem import require_rates as require_rates
+from foon_asp.problem.relevance import Reached as Reached
+from foon_asp.problem.relevance import backwards as backwards
+from foon_asp.problem.relevance import first_tree as first_tree
+from foon_asp.problem.relevance import reach as reach
+from foon_asp.problem.relevance import relevant as relevant
+from foon_asp.problem.root import Root as Root

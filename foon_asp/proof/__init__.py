@@ -1,5 +1,7 @@
 """What every answer is held against: does a tree execute?"""
 
-from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate, simulate_for
-
-__all__ = ["Obstacle", "Simulation", "Verdict", "simulate", "simulate_for"]
+from foon_asp.proof.simulation import Obstacle as Obstacle
+from foon_asp.proof.simulation import Simulation as Simulation
+from foon_asp.proof.simulation import Verdict as Verdict
+from foon_asp.proof.simulation import simulate as simulate
+from foon_asp.proof.simulation import simulate_for as simulate_for

@@ -1,28 +1,17 @@
 """Searches, of the literature and of other packages, over the same problem as the solver and without it."""
 
-from foon_asp.search.breadth_first import breadth_first
-from foon_asp.search.catalog import SEARCHES, find_searches, search_names
-from foon_asp.search.depth_first import depth_first
-from foon_asp.search.greedy_inputs import Count, greedy_inputs
-from foon_asp.search.greedy_success import greedy_success
-from foon_asp.search.iterative_deepening import iterative_deepening
-from foon_asp.search.retrieval import Ending, Retrieval, Ties
-from foon_asp.search.search import Retrieve, Search, SearchSettings
-
-__all__ = [
-    "SEARCHES",
-    "Count",
-    "Ending",
-    "Retrieval",
-    "Retrieve",
-    "Search",
-    "SearchSettings",
-    "Ties",
-    "breadth_first",
-    "depth_first",
-    "find_searches",
-    "greedy_inputs",
-    "greedy_success",
-    "iterative_deepening",
-    "search_names",
-]
+from foon_asp.search.breadth_first import breadth_first as breadth_first
+from foon_asp.search.catalog import SEARCHES as SEARCHES
+from foon_asp.search.catalog import find_searches as find_searches
+from foon_asp.search.catalog import search_names as search_names
+from foon_asp.search.depth_first import depth_first as depth_first
+from foon_asp.search.greedy_inputs import Count as Count
+from foon_asp.search.greedy_inputs import greedy_inputs as greedy_inputs
+from foon_asp.search.greedy_success import greedy_success as greedy_success
+from foon_asp.search.iterative_deepening import iterative_deepening as iterative_deepening
+from foon_asp.search.retrieval import Ending as Ending
+from foon_asp.search.retrieval import Retrieval as Retrieval
+from foon_asp.search.retrieval import Ties as Ties
+from foon_asp.search.search import Retrieve as Retrieve
+from foon_asp.search.search import Search as Search
+from foon_asp.search.search import SearchSettings as SearchSettings

@@ -1,74 +1,40 @@
 """FOON text and the tables beside it, in and out."""
 
-from foon_asp.text.data_folder import (
-    Data,
-    DataFiles,
-    find_data,
-    kitchen_item_warning,
-    kitchen_nodes,
-    network_files,
-    read_data,
-    unit_price_warning,
-    unit_prices,
-)
-from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
-from foon_asp.text.exact_price import decimal_text
-from foon_asp.text.goal_name import (
-    GoalError,
-    NodeNames,
-    SomeNames,
-    Wording,
-    find_goal,
-    listed_nodes,
-    nodes_beginning,
-    notation,
-)
-from foon_asp.text.label_list import read_labels
-from foon_asp.text.line import LineError, parse_node
-from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store, read_plain_text
-from foon_asp.text.rate_table import read_rates
-from foon_asp.text.reader import FoonReader
-from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices, write_unit_prices
-from foon_asp.text.writer import write_units
-
-__all__ = [
-    "STORE_MAGIC",
-    "STORE_SUFFIX",
-    "Data",
-    "DataFiles",
-    "Diagnostic",
-    "FoonReader",
-    "GoalError",
-    "InputError",
-    "LineError",
-    "ListedObject",
-    "NodeNames",
-    "Severity",
-    "SomeNames",
-    "UnitPriceList",
-    "Wording",
-    "decimal_text",
-    "excerpt_with_caret",
-    "find_data",
-    "find_goal",
-    "is_store",
-    "kitchen_item_warning",
-    "kitchen_nodes",
-    "listed_nodes",
-    "network_files",
-    "nodes_beginning",
-    "notation",
-    "parse_node",
-    "read_data",
-    "read_labels",
-    "read_object_list",
-    "read_plain_text",
-    "read_rates",
-    "read_unit_prices",
-    "summarize",
-    "unit_price_warning",
-    "unit_prices",
-    "write_unit_prices",
-    "write_units",
-]
+from foon_asp.text.data_folder import Data as Data
+from foon_asp.text.data_folder import DataFiles as DataFiles
+from foon_asp.text.data_folder import find_data as find_data
+from foon_asp.text.data_folder import kitchen_item_warning as kitchen_item_warning
+from foon_asp.text.data_folder import kitchen_nodes as kitchen_nodes
+from foon_asp.text.data_folder import network_files as network_files
+from foon_asp.text.data_folder import read_data as read_data
+from foon_asp.text.data_folder import unit_price_warning as unit_price_warning
+from foon_asp.text.data_folder import unit_prices as unit_prices
+from foon_asp.text.diagnostics import Diagnostic as Diagnostic
+from foon_asp.text.diagnostics import InputError as InputError
+from foon_asp.text.diagnostics import Severity as Severity
+from foon_asp.text.diagnostics import excerpt_with_caret as excerpt_with_caret
+from foon_asp.text.diagnostics import summarize as summarize
+from foon_asp.text.exact_price import decimal_text as decimal_text
+from foon_asp.text.goal_name import GoalError as GoalError
+from foon_asp.text.goal_name import NodeNames as NodeNames
+from foon_asp.text.goal_name import SomeNames as SomeNames
+from foon_asp.text.goal_name import Wording as Wording
+from foon_asp.text.goal_name import find_goal as find_goal
+from foon_asp.text.goal_name import listed_nodes as listed_nodes
+from foon_asp.text.goal_name import nodes_beginning as nodes_beginning
+from foon_asp.text.goal_name import notation as notation
+from foon_asp.text.label_list import read_labels as read_labels
+from foon_asp.text.line import LineError as LineError
+from foon_asp.text.line import parse_node as parse_node
+from foon_asp.text.object_list import ListedObject as ListedObject
+from foon_asp.text.object_list import read_object_list as read_object_list
+from foon_asp.text.plain_file import STORE_MAGIC as STORE_MAGIC
+from foon_asp.text.plain_file import STORE_SUFFIX as STORE_SUFFIX
+from foon_asp.text.plain_file import is_store as is_store
+from foon_asp.text.plain_file import read_plain_text as read_plain_text
+from foon_asp.text.rate_table import read_rates as read_rates
+from foon_asp.text.reader import FoonReader as FoonReader
+from foon_asp.text.unit_price_list import UnitPriceList as UnitPriceList
+from foon_asp.text.unit_price_list import read_unit_prices as read_unit_prices
+from foon_asp.text.unit_price_list import write_unit_prices as write_unit_prices
+from foon_asp.text.writer import write_units as write_units
