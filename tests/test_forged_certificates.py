@@ -219,17 +219,22 @@ FORGED: dict[str, Forged] = {
     "__init__: an objective stands twice": plain(
         objective=["units", "units"], costs=[1, 1], proof={"weights": [[0, ["1", "1"]]]}
     ),
-    "_costly: a claim needs success rates, but no rates are given": plain(
+    "_known: a claim needs …, but none are given": plain(
         **{**SUCCESS, **NOTHING}, at=PLAIN._replace(rates=None), stays=WORDS
     ),
-    "_costly: a motion has no success rate": plain(
-        **{**SUCCESS, **NOTHING}, at=PLAIN._replace(rates={"pour": Fraction(1, 2)}), stays=KIND
+    "_known: a unit has none of the … that a claim needs": plain(
+        **{**SUCCESS, **NOTHING}, at=PLAIN._replace(rates={"pour": Fraction(1, 2)})
     ),
-    "_costly: a rate is not between 0 and 1": plain(
+    "_rates: a rate is above 1": plain(
         **{**SUCCESS, **NOTHING, "claim": "optimal", "bound": None, "costs": ["2"]},
         at=PLAIN._replace(rates=dict.fromkeys(("pour", "mix", "bake", "dig"), Fraction(2))),
     ),
-    "_costly: a unit that never succeeds has no end": plain(
+    "_known: one of the … is below 0": plain(
+        **{**SUCCESS, **NOTHING, "claim": "optimal", "bound": None, "costs": ["-2"]},
+        at=PLAIN._replace(rates=dict.fromkeys(("pour", "mix", "bake", "dig"), Fraction(-2))),
+        stays=KIND,
+    ),
+    "_rates: a unit that never succeeds has no end": plain(
         objective=["attempts"], claim="bound", bound=["0"], tree=None, costs=None, at=NEVER, stays=KIND
     ),
     "__init__: a constraint has no printable name": plain(not_covered=["mine.lp\nverified: all of it"]),

@@ -303,11 +303,11 @@ def test_a_rate_of_0_decides_before_all_objectives_after_it() -> None:
 
 
 def test_rates_outside_of_0_and_1_are_refused() -> None:
-    for rate in (Fraction(-1, 10), Fraction(11, 10)):
+    below, above = "one of the success rates is below 0", "a rate is above 1"
+    for rate, said in ((Fraction(-1, 10), below), (Fraction(11, 10), above)):
         odd = Problem(
             PLAIN.network, PLAIN.kitchen, (END_ID,), {**(PLAIN.rates or {}), "dig": rate}, frozenset()
         )
-        said = "a rate is not between 0 and 1"
         assert refusal(odd, claim="bound", objective=["success"], bound=[{}]) == said
         assert accepted(odd, **BOUND).claim == "bound"  # by units, rates are nobody's business
 
@@ -316,7 +316,7 @@ def test_without_rates_all_but_success_is_proved() -> None:
     plain = Problem(PLAIN.network, PLAIN.kitchen, (END_ID,), None, frozenset())
     assert accepted(plain, **POURED, cuts=[[END_ID]], proof=ONE).claim == "optimal"
     values: Content = {"claim": "bound", "objective": ["success"], "bound": [{}]}
-    assert refusal(plain, **values) == "a claim needs success rates, but no rates are given"
+    assert refusal(plain, **values) == "a claim needs success rates, but none are given"
 
 
 def test_units_that_need_nothing_take_no_items() -> None:

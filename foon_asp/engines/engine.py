@@ -10,6 +10,8 @@ from foon_asp.asp import Outcome, Settings
 from foon_asp.problem import Objective, Problem, backwards, executable_order, multiplies
 from foon_asp.proof import Verdict, simulate_for
 
+_GREATEST = 10**9  # of what a unit costs: beside more, floats lose costs that count
+
 
 class Asked(NamedTuple):
     """An answer to be checked, and all that it was asked under.
@@ -119,10 +121,10 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
     if multiplies(objective):
         rate = problem.rate(unit)
         return math.log(rate.denominator) - math.log(rate.numerator)
-    try:
-        return float(problem.figure(objective, unit))
-    except OverflowError:
-        raise NotCheckedError("a unit costs more than its floats hold") from None
+    figure = problem.figure(objective, unit)
+    if figure > _GREATEST:
+        raise NotCheckedError("a unit costs more than its floats hold beside others")
+    return float(figure)
 
 
 def taken(problem: Problem, units: Iterable[int]) -> list[int]:

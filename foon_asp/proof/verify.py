@@ -201,14 +201,15 @@ class _Check:
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
-        self.rates, self.utensils = rates or {}, utensils
+        self.utensils = utensils
         self.containers = certificate["containers"]
         _require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
         self.objectives = tuple(_list(certificate["objective"]))
         _require(all(objective in OBJECTIVES for objective in self.objectives), "an objective is unknown")
         _require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
         by_rates = {"success", "attempts"} & set(self.objectives)
-        self.costly = self._costly(rates) if by_rates else frozenset()
+        self.rates = self._rates(rates) if by_rates else []
+        self.costly = frozenset(self.rates) - {0, 1}
         self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
         _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         forbidden = _object(certificate["forbidden"], ("motions", "objects"))
@@ -222,15 +223,21 @@ class _Check:
         self.members = [frozenset(self._members(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
 
-    def _costly(self, given: Mapping[str, Fraction] | None) -> frozenset[Fraction]:
-        """Give the rates that cost something."""
-        _require(given is not None, "a claim needs success rates, but no rates are given")
-        motions = set(self.network.motions)
-        _require(motions <= self.rates.keys(), "a motion has no success rate")
-        found = frozenset(self.rates[motion] for motion in motions)
-        _require(all(0 <= rate <= 1 for rate in found), "a rate is not between 0 and 1")
+    def _rates(self, given: Mapping[str, Fraction] | None) -> list[Fraction]:
+        """Give the success rate of each unit."""
+        rates = None if given is None else [given.get(motion) for motion in self.network.motions]
+        found = self._known(rates, "success rates")
+        _require(all(rate <= 1 for rate in found), "a rate is above 1")
         _require("attempts" not in self.objectives or 0 not in found, "a unit that never succeeds has no end")
-        return found - {0, 1}
+        return found
+
+    def _known(self, values: Sequence[Fraction | None] | None, what: str) -> list[Fraction]:
+        """Give values of all units, by what they are and where all are there."""
+        _require(values is not None, f"a claim needs {what}, but none are given")
+        found = [value for value in values or () if value is not None]
+        _require(len(found) == len(self.network), f"a unit has none of the {what} that a claim needs")
+        _require(all(value >= 0 for value in found), f"one of the {what} is below 0")
+        return found
 
     def claim(self) -> Verified:
         """Check tree, costs and proof."""
@@ -291,14 +298,14 @@ class _Check:
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
-                rates = [self.rates[self.network.motions[u]] for u in units]
+                rates = [self.rates[u] for u in units]
                 _require(0 not in rates, "a tree that never succeeds is no better than another")
                 if sum(rate.denominator.bit_length() for rate in rates) > _WRITTEN:
                     raise LimitError("the success rate of the tree is too long a number to be written")
                 costs.append(math.prod(rates, start=Fraction(1)))
             else:
                 figure = total.get((level, None), Fraction(0))
-                if figure.denominator.bit_length() > _WRITTEN:
+                if max(figure.numerator, figure.denominator).bit_length() > _WRITTEN:
                     raise LimitError("what the tree costs is too long a number to be written")
                 costs.append(figure if objective == "attempts" else int(figure))
         return total, costs
@@ -435,9 +442,9 @@ class _Check:
             elif objective == "units":
                 cost[level, None] = Fraction(1)
             elif objective == "success":
-                cost[level, self.rates[network.motions[member]]] = Fraction(1)
+                cost[level, self.rates[member]] = Fraction(1)
             elif objective == "attempts":
-                cost[level, None] = 1 / self.rates[network.motions[member]]
+                cost[level, None] = 1 / self.rates[member]
             else:
                 _require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
                 inputs = network.inputs[member]
