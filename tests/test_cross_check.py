@@ -21,6 +21,7 @@ from foon_asp.engines import (
     NotCheckedError,
     agree,
     cross_check,
+    fast_downward,
 )
 from foon_asp.engines.fast_downward import installed, solve_with_fast_downward
 from foon_asp.engines.highs import solve_with_highs
@@ -33,6 +34,7 @@ from tests.conftest import Cli
 from tests.gap_problem import gap_problem
 from tests.hard_problem import hard_problem
 from tests.random_problems import random_objectives, random_problem
+from tests.test_exact_success import two_ways
 
 RULES = list(ContainerRule)
 Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
@@ -242,3 +244,14 @@ def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     again = cli(*shlex.split(report["command"])[1:])
     assert again.code == 0
     assert "3 units" in again.out
+
+
+def test_what_no_whole_number_of_an_engine_or_float_holds_is_not_asked_of_it() -> None:
+    seldom = Fraction(1, 10**9)
+    asked = two_ways([str(seldom), "0.5"], ["0.2"]), (Objective.ATTEMPTS,)
+    with pytest.raises(NotCheckedError, match="more than its whole numbers hold"):
+        list(fast_downward._task(asked[0], Objective.ATTEMPTS, frozenset()))
+    assert solve_with_highs(*asked, frozenset(), 60.0).units == (2,)
+    seldom /= 10
+    with pytest.raises(NotCheckedError, match="a unit costs more than its floats hold beside others"):
+        solve_with_highs(two_ways([str(seldom), "0.5"], ["0.2"]), asked[1], frozenset(), 60.0)

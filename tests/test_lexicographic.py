@@ -111,3 +111,24 @@ def test_numbers_are_taken_apart_into_coprime_ones() -> None:
     assert powers(72, [2, 3, 5]) == {2: 3, 3: 2}
     assert powers(64, [8]) == {8: 2}
     assert powers(1, [2]) == {}
+
+
+def test_totals_above_all_floats_are_ordered() -> None:
+    order = Lexicographic([[Fraction(1, 2), Fraction(1, 3)]])
+    for large in (10**16, 10**308, 10**400):
+        assert order.sign([large, -large]) == -1
+        assert order.sign([-large, large]) == 1
+        assert order.sign([large, Fraction(-large, 2)]) == 1  # ln 2 is more than half of ln 3
+        assert order.compare((Fraction(large), Fraction(0)), (Fraction(large), Fraction(1))) == -1
+    assert Lexicographic([None]).sign([Fraction(-(10**400), 3)]) == -1
+    assert order.approximate([10**400, -(10**400)]) == order.approximate([10**12, -(10**12)])
+
+
+def test_exponents_do_not_make_up_for_logarithms_that_floats_lose() -> None:
+    """A rate so near to 1 has a logarithm of 0 as a float, and counts for more than the other here."""
+    near = 1 - Fraction(1, 10**400)
+    nearer = 1 - Fraction(1, 10**250)
+    order = Lexicographic([[near, nearer]])
+    assert order.sign([10**200, -1]) == 1
+    assert order.sign([-(10**200), 1]) == -1
+    assert order.sign([10**100, -1]) == -1

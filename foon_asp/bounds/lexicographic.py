@@ -17,6 +17,7 @@ Vector = tuple[Fraction, ...]
 
 _MARGIN = 1e-9  # of a sum of logarithms, beyond which its float cannot have the wrong sign
 _TINY = 1e-290  # below this, floats lose their last digits
+_HELD = 10**15  # of exponents: times more, a logarithm that a float lost could count
 _DIGITS = 60  # of a logarithm, at first
 
 _GREATEST = 10**12  # of what a guess is made with: HiGHS gives up far above
@@ -63,9 +64,10 @@ class Lexicographic:
         return self.sign(minus(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
-        """Give each level as a float, for methods that guess what is then checked; none is above 10^12."""
+        """Give each level as a float, for methods that guess what is then checked; none is beyond 10^12."""
         return [
-            sum(self._terms(level, [min(e, _GREATEST) for e in part])) for level, part in self._parts(vector)
+            sum(self._terms(level, [max(-_GREATEST, min(e, _GREATEST)) for e in part]))
+            for level, part in self._parts(vector)
         ]
 
     def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
@@ -85,10 +87,11 @@ class Lexicographic:
         """Compare a product of powers of a level's rates with 1: -1 where it is above 1."""
         if not any(exponents):
             return 0
-        terms = self._terms(level, exponents)
-        about = sum(terms)
-        if abs(about) > _MARGIN * sum(map(abs, terms)) + _TINY:
-            return _sign(about)
+        if all(-_HELD < exponent < _HELD for exponent in exponents):
+            terms = self._terms(level, exponents)
+            about = sum(terms)
+            if abs(about) > _MARGIN * sum(map(abs, terms)) + _TINY:
+                return _sign(about)
         if self._is_one(level, exponents):
             return 0
         digits = _DIGITS

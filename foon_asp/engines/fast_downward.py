@@ -12,12 +12,13 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from foon_asp.engines.engine import EngineAnswer, cost, scope_of, taken
+from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, scope_of, taken
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 
 NAME = "Fast Downward"
 _SCALE = 10**6  # of logarithms of rates, which it adds as whole numbers
+_LARGEST = 2**31 - 1  # of its whole numbers
 _MEMORY = "4G"
 _NONE = ("Completely explored state space", "Initial state is a dead end", "unsolvable")
 
@@ -82,11 +83,15 @@ def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> 
         "end_goal",
     )
     operators: list[Iterator[str]] = []
+    total = len(items)
     for unit in scope.units:
         needs = [o for o in problem.needs[unit] if o in places]
         gives = [o for o in problem.gives[unit] if o in places and o not in items and o not in needs]
         if gives:  # an operator has to have an effect
             weight = round(scale * cost(problem, objective, unit))
+            total += weight
+            if total > _LARGEST:
+                raise NotCheckedError("the costs add up to more than its whole numbers hold")
             rows = [places[o] for o in needs], [places[o] for o in gives]
             operators.append(_operator(f"use {unit}", *rows, weight))
     operators += [_operator(f"take {o}", [], [places[o]], 1) for o in items]
