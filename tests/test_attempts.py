@@ -96,4 +96,8 @@ def test_what_never_succeeds_has_no_number_of_attempts() -> None:
     with pytest.raises(UserError, match="a success rate is 0, by which the objective attempts has no number"):
         solve(never, BY)
     assert solve(never, (Objective.UNITS,)).units == (2,)
-    assert Objective.ATTEMPTS not in never.costs([2]).measures
+    costs = never.costs([2])
+    assert Objective.ATTEMPTS not in costs.measures
+    with pytest.raises(ValueError, match=r"^there is no figure by 'attempts': it needs rates above 0$"):
+        costs.measure(Objective.ATTEMPTS)
+    assert costs.measure(Objective.SUCCESS) == 0

@@ -25,6 +25,7 @@ QUESTIONS = FACE.parent / "questions"
 BESIDE = {
     "__init__",
     "answer",
+    "answer_and_more",
     "arguments",
     "caller",
     "contract",

@@ -2,7 +2,7 @@
 
 import importlib
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
 from typing import Any
@@ -13,7 +13,6 @@ from click.core import ParameterSource
 from foon_asp.cli import options
 from foon_asp.cli.held import session_here
 from foon_asp.cli.progress import Progress
-from foon_asp.cli.verbs import verb_command
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
@@ -38,10 +37,19 @@ def parameters(question: Question[..., Result], given: Mapping[str, Any], parts:
     return {name: given[name] for name in own if name in given}
 
 
-def ask(question: Question[..., Result], given: Mapping[str, Any], deadline: Deadline | None) -> Result:
-    """Pose a question by the parameters of a command, and ask it; ``deadline`` is that of the command."""
+def ask(
+    question: Question[..., Result],
+    given: Mapping[str, Any],
+    deadline: Deadline | None,
+    command_of: Callable[[str], click.Command],
+) -> Result:
+    """Pose a question by the parameters of a command, and ask it.
+
+    ``deadline`` is that of the command. ``command_of`` gives the commands of other questions, which a
+    question may ask.
+    """
     own = {option.name for option in question.options}
-    command = _Command({name: value for name, value in given.items() if name not in own})
+    command = _Command({name: value for name, value in given.items() if name not in own}, command_of)
     with Progress() as progress:
         who = Caller(progress, session_here(), deadline, lenient=bool(given["lenient"]))
         with asked_by(who):
@@ -53,8 +61,8 @@ def ask(question: Question[..., Result], given: Mapping[str, Any], deadline: Dea
 class _Command:
     """What poses a question is given: the data, other questions, and the limits of reading."""
 
-    def __init__(self, data: dict[str, Any]) -> None:
-        self._data = data
+    def __init__(self, data: dict[str, Any], command_of: Callable[[str], click.Command]) -> None:
+        self._data, self._command_of = data, command_of
         self._context = click.get_current_context()
 
     @cached_property
@@ -82,7 +90,7 @@ class _Command:
             verb, *rest = shlex.split(words)
         except ValueError as error:
             raise UserError(f"found {words!r}, expected the words of a command: {error}") from None
-        question, command = find_question(verb), verb_command(verb)
+        question, command = find_question(verb), self._command_of(verb)
         name = f"{here.info_name} '{words}'"
         own = command.make_context(name, list(rest), obj=here.obj)
         if any(_is_given(own, option) for option in without):
@@ -97,7 +105,7 @@ class _Command:
         given = {name: value for name, value in asked.params.items() if name not in {"format_", "output"}}
         with asked.scope(cleanup=False):
             deadline = options.begin(given.pop("time_limit", None), given.pop("memory_limit", None))
-            return ask(question, given, deadline)
+            return ask(question, given, deadline, self._command_of)
 
 
 def _is_given(context: click.Context, option: str) -> bool:

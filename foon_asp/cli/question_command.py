@@ -59,7 +59,7 @@ def _answering(question: "Question[..., Result]") -> Callable[..., ExitCode]:
         form = _form(question, format_, output)
         check_outputs()
         try:
-            found = ask(question, given, deadline)
+            found = ask(question, given, deadline, question_command)
         except NoTreeError as nothing:
             click.echo(str(nothing), err=True)
             return _CODES[nothing.ending]

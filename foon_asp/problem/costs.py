@@ -52,12 +52,13 @@ class Costs:
     def measure(self, objective: Objective) -> int | Fraction:
         """Give the figure an objective looks at; for ``success`` more is better, else less.
 
-        Raises ``ValueError`` for an objective that nothing is known for, as ``success`` without rates.
+        Raises ``ValueError`` for an objective that there is no figure for, as ``success`` without rates and
+        ``attempts`` with a rate of 0.
         """
         if objective not in self.measures:
-            raise ValueError(
-                f"nothing is known for the objective {str(objective)!r}: no {objective.row.needs}"
-            )
+            needs = objective.row.needs
+            above = " above 0" if needs is Known.RATES else ""
+            raise ValueError(f"there is no figure by {str(objective)!r}: it needs {needs}{above}")
         return self.measures[objective]
 
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:

@@ -1,9 +1,12 @@
 """The best tree for a problem, and what is proved of it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from foon_asp.asp import Outcome, Status
+from foon_asp.asp import Outcome, Reporter, Settings, Status
+from foon_asp.asp.solver import solve as find
+from foon_asp.problem import Objective, Problem
+from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
 from foon_asp.text.json_value import Json
@@ -74,3 +77,14 @@ class Answer(Result, Outcome):
 
         drawing = self.drawing()
         return super()._repr_mimebundle_() if drawing is None else picture_bundle(self, drawing)
+
+
+def answered(
+    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+) -> Answer:
+    """Solve a problem, and note how long reading took where who asks knows."""
+    who = caller()
+    answer = Answer._make(find(problem, objectives, how, reporter or who.reporter))
+    if who.read_seconds is not None:
+        answer.seconds["read"] = who.read_seconds
+    return answer

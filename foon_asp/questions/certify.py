@@ -15,7 +15,8 @@ from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof import Verdict, simulate_for
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, answered
+from foon_asp.questions.answer_and_more import AnswerAndMore
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
@@ -28,55 +29,27 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.solve import answered
 from foon_asp.report.answer import costs_text, headline
 from foon_asp.report.certified import bound_text, certificate_lines
-from foon_asp.report.drawing import Drawing
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text import FoonReader, summarize
 from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
-class Certified(Result):
+class Certified(AnswerAndMore[Answer]):
     """An ``answer`` and the ``certificate`` that proves it, ``None`` where none was found.
 
     ``certificate.text()`` is what to write into a file; ``certificate.claim`` says what it proves:
     ``optimal``, ``infeasible``, or only a ``bound``. ``place`` says where it is.
     """
 
-    answer: Answer
     certificate: Certificate | None
     place: str = "in memory"
 
-    @property
-    def ending(self) -> Ending:
-        """Done when the tree is proved to be the best, whatever proves it."""
-        return self.answer.ending
-
-    def text(self) -> str:
-        """Give the answer, and what it rests on."""
-        return self.answer.text() + "".join(f"{line}\n" for line in self._lines())
-
-    def _lines(self) -> list[str]:
+    def lines(self) -> list[str]:
+        """Say what the answer rests on."""
         return certificate_lines(self.answer, self.certificate, self.place)
-
-    def json_dict(self) -> Json:
-        """Give the answer as ``foon-asp solve --certificate FILE --format json`` does."""
-        return self.answer.json_dict()
-
-    def foon(self) -> str:
-        """Give the tree as FOON text; empty where there is none."""
-        return self.answer.foon()
-
-    def remark(self, format_: str) -> str:
-        """Say what is said of the answer, and what it rests on."""
-        said = self.answer.remark(format_)
-        return "\n".join([*([said] if said else []), *self._lines()])
-
-    def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
-        return self.answer.drawing()
 
     def written(self, file: File) -> Self:
         """Write the certificate into a file, if there is one; give the same, which says so."""

@@ -10,7 +10,8 @@ from foon_asp.engines import Asked, Check, DisagreementError, Engine, find_engin
 from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
 from foon_asp.problem import Problem
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, answered
+from foon_asp.questions.answer_and_more import AnswerAndMore
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
@@ -21,16 +22,13 @@ from foon_asp.questions.arguments import (
     whole,
 )
 from foon_asp.questions.certify import Certified
-from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.solve import answered
 from foon_asp.questions.solve_soft import SoftAnswer, softly_answered
 from foon_asp.report.disagreement import write_disagreement
-from foon_asp.report.drawing import Drawing
 from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
-class CrossChecked(Result):
+class CrossChecked(AnswerAndMore[Answer | SoftAnswer | Certified]):
     """An ``answer`` and what other engines say of it.
 
     Each of the ``checks`` has the name of its ``engine``, the ``objectives`` by which it finds the tree best,
@@ -38,20 +36,13 @@ class CrossChecked(Result):
     ``package`` may disagree and be ``refuted``. On the command line the answer may come with a certificate.
     """
 
-    answer: Answer | SoftAnswer | Certified
     checks: tuple[Check, ...]
 
-    @property
-    def ending(self) -> Ending:
-        """Done when the tree is proved to be the best, whoever checked it."""
-        return self.answer.ending
-
-    def text(self) -> str:
-        """Give the answer, and a line for each engine."""
-        return self.answer.text() + "".join(f"{line}\n" for line in self._lines())
+    def lines(self) -> list[str]:
+        """Say for each engine by what it agrees, or why it has not checked the answer."""
+        return list(self._lines())
 
     def _lines(self) -> Iterator[str]:
-        """Say for each engine by what it agrees, or why it has not checked the answer."""
         for check in self.checks:
             engine = check.engine if check.package is None else f"{check.engine} ({check.package})"
             if check.reason is not None:
@@ -84,19 +75,6 @@ class CrossChecked(Result):
             for check in self.checks
         ]
         return self.answer.json_dict() | {"cross_check": rows}
-
-    def foon(self) -> str:
-        """Give the tree as FOON text; empty where there is none."""
-        return self.answer.foon()
-
-    def remark(self, format_: str) -> str:
-        """Say what is said of the answer, and for each engine."""
-        said = self.answer.remark(format_)
-        return "\n".join([*([said] if said else []), *self._lines()])
-
-    def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
-        return self.answer.drawing()
 
 
 def cross_check(

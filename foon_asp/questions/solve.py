@@ -3,12 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from foon_asp.asp import Reporter, Settings
-from foon_asp.asp.solver import solve as find
+from foon_asp.asp import Reporter
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
-from foon_asp.problem import Objective, Problem
-from foon_asp.questions.answer import Answer
+from foon_asp.problem import Problem
+from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
@@ -18,7 +17,6 @@ from foon_asp.questions.arguments import (
     settings,
     whole,
 )
-from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Result
@@ -28,17 +26,6 @@ if TYPE_CHECKING:
     from foon_asp.engines import Engine
     from foon_asp.questions.certify import Certified
     from foon_asp.questions.solve_soft import SoftAnswer
-
-
-def answered(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
-) -> Answer:
-    """Solve a problem, and note how long reading took where who asks knows."""
-    who = caller()
-    answer = Answer._make(find(problem, objectives, how, reporter or who.reporter))
-    if who.read_seconds is not None:
-        answer.seconds["read"] = who.read_seconds
-    return answer
 
 
 def solve_and_more(
@@ -154,9 +141,10 @@ def solve(
 ) -> Answer:
     """Find the best task tree, and prove that none is better.
 
-    ``objectives`` are names (``units``, ``inputs``, ``inputs+ingredients``, ``success``, ``kitchen``) of
-    which the first counts most; ``units`` always decides last. ``constraints`` are files, or names of ours,
-    whose ``#const`` are set by ``constants``; ``encodings`` is a folder of encodings to use instead of ours.
+    ``objectives`` are names (``units``, ``inputs``, ``inputs+ingredients``, ``success``, ``kitchen``,
+    ``attempts``) of which the first counts most; ``units`` always decides last. ``constraints`` are files, or
+    names of ours, whose ``#const`` are set by ``constants``; ``encodings`` is a folder of encodings to use
+    instead of ours.
     ``time_limit`` is in seconds; at the limit, or when interrupted, the answer is the best tree so far with
     the proved bound. ``reductions`` (``all``, ``safe``, ``none`` or a list by commas) come before the search;
     ``clingo_options`` go to clingo. ``reporter`` hears of trees, bounds and warnings; without it, faults of

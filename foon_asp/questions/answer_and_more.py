@@ -1,0 +1,48 @@
+"""An answer of which more is said than what was proved by solving."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from foon_asp.questions.result import Ending, Result
+from foon_asp.report.drawing import Drawing
+from foon_asp.text.json_value import Json
+
+A = TypeVar("A", bound=Result)
+
+
+@dataclass(frozen=True, repr=False)
+class AnswerAndMore(Result, Generic[A]):
+    """An ``answer``, and more that is said of it, line by line."""
+
+    answer: A
+
+    def lines(self) -> Sequence[str]:
+        """Say what else is known."""
+        raise NotImplementedError
+
+    @property
+    def ending(self) -> Ending:
+        """Done when the tree is proved to be the best."""
+        return self.answer.ending
+
+    def text(self) -> str:
+        """Give the answer, and what is said of it."""
+        return self.answer.text() + "".join(f"{line}\n" for line in self.lines())
+
+    def json_dict(self) -> Json:
+        """Give the answer."""
+        return self.answer.json_dict()
+
+    def foon(self) -> str:
+        """Give the tree as FOON text; empty where there is none."""
+        return self.answer.foon()
+
+    def remark(self, format_: str) -> str:
+        """Say what is not said in a format, and what is said of the answer."""
+        said = self.answer.remark(format_)
+        return "\n".join([*([said] if said else []), *self.lines()])
+
+    def drawing(self) -> Drawing | None:
+        """Give what the picture shows."""
+        return self.answer.drawing()
