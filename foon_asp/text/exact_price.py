@@ -1,26 +1,25 @@
-"""Prices as they are written, exact decimals from 0; and exact numbers written as decimals."""
+"""Prices and rates as they are written, exact decimals from 0; and exact numbers written as decimals."""
 
 import re
 from fractions import Fraction
 
+from foon_asp.text.line import LineError
+
 _DECIMAL = re.compile(r"\d+(\.\d*)?|\.\d+", re.ASCII)
-_LONGEST = 1000  # letters of a price: nobody means more
+_LONGEST = 1000  # letters of a number: nobody means more
 
 
-class PriceError(ValueError):
-    """What was found in the place of a price, and what was expected."""
-
-    def __init__(self, found: str, expected: str) -> None:
-        super().__init__(f"found {found}, expected {expected}")
-        self.found, self.expected = found, expected
+def read_price(written: str, column: int = 1) -> Fraction:
+    """Read a price; raises :class:`LineError` for anything else, at the column where it stands."""
+    return read_decimal(written, column, "a price from 0, as a decimal such as 1.99")
 
 
-def read_price(written: str) -> Fraction:
-    """Read a price; raises :class:`PriceError` for anything else."""
+def read_decimal(written: str, column: int, expected: str) -> Fraction:
+    """Read a number from 0; raises :class:`LineError` for anything else, with what is expected."""
     if len(written) > _LONGEST:
-        raise PriceError(f"a number of {len(written)} letters", f"at most {_LONGEST}")
+        raise LineError(column, f"a number of {len(written)} letters", (f"at most {_LONGEST}",))
     if not _DECIMAL.fullmatch(written):
-        raise PriceError(repr(written), "a price from 0, as a decimal such as 1.99")
+        raise LineError(column, repr(written), (expected,))
     return Fraction(written)
 
 

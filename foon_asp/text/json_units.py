@@ -13,7 +13,7 @@ from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.exact_price import read_price
 from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import check_keys, number, optional_name, read_object
-from foon_asp.text.line import MotionLine, StateLine
+from foon_asp.text.line import LineError, MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
 
@@ -99,7 +99,7 @@ def _price(value: object) -> str:
         raise ValueError('found no number as "price", expected a price from 0, as a decimal such as 1.99')
     try:
         read_price(written)
-    except ValueError as error:
+    except LineError as error:
         raise ValueError(f'in "price": {error}') from None
     return written
 

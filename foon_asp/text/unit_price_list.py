@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices
-from foon_asp.text.exact_price import PriceError, decimal_text, read_price
+from foon_asp.text.exact_price import decimal_text, read_price
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.table_rows import read_rows
 
@@ -35,10 +35,7 @@ def read_unit_prices(file: Path) -> UnitPriceList:
         column = len(name) + 2 + len(value) - len(written)
         if not motion:
             raise LineError(1, "a price", ("the motion before it",))
-        try:
-            price = read_price(written.strip())
-        except PriceError as error:
-            raise LineError(column, error.found, (error.expected,)) from None
+        price = read_price(written.strip(), column)
         if not fields:
             if found.motions.setdefault(motion, price) != price:
                 raise LineError(column, f"a second price for {motion!r}", ("one",))
