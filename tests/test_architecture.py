@@ -5,6 +5,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -123,6 +124,23 @@ def test_imports_go_downwards(module: str) -> None:
         if name.split(".")[0] == "foon_asp" and not may_import(here, room(name))
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def files_imported(module: str) -> set[str]:
+    """Give the files that a module imports anything from, wherever in it that stands."""
+    found = set()
+    for node in ast.walk(tree(module)):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for name in (node.module, *(f"{node.module}.{alias.name}" for alias in node.names)):
+                found.add(name.replace(".", "/") + ".py")
+    return found & MODULES.keys()
+
+
+def test_no_files_import_each_other_in_a_circle() -> None:
+    try:
+        list(TopologicalSorter({module: files_imported(module) for module in MODULES}).static_order())
+    except CycleError as circle:
+        pytest.fail(" <- ".join(circle.args[1]))
 
 
 def test_every_exception_is_needed() -> None:

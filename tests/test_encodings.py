@@ -3,6 +3,7 @@
 The files are parsed here anew, with clingo's own parser and nothing of ``foon_asp.asp.encoding``.
 """
 
+import ast
 import re
 import shlex
 import subprocess
@@ -18,7 +19,8 @@ from clingo import Control, Model, Number
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 from clingo.symbol import SymbolType
 
-from foon_asp.asp import Settings
+import foon_asp.asp
+from foon_asp.asp import Settings, encoding
 from foon_asp.asp.bare_program import program_facts
 from foon_asp.asp.facts import FACT_PREDICATES
 from foon_asp.network import UnitPrices
@@ -116,12 +118,6 @@ def test_survey_tells_heads_from_bodies() -> None:
 
 # --- What is ours is told from what is the user's by its first letter.
 
-PUBLIC = {
-    ("unit", 1), ("motion", 2), ("input", 2), ("output", 2), ("needs", 2), ("gives", 2), ("object", 1),
-    ("label", 2), ("state", 2), ("ingredient", 2), ("located", 3), ("kitchen", 1), ("goal", 1),
-    ("utensil", 1), ("inputs", 2), ("ingredients", 2), ("rate", 2), ("risk", 2), ("cost", 3), ("optimize", 2),
-    ("source", 2), ("use", 1), ("available", 1), ("allergen", 1), ("allowed", 1),
-}  # fmt: skip
 TERMS = {"units", "inputs", "inputs_and_ingredients", "success", "kitchen"}  # of optimize/2
 
 
@@ -138,10 +134,12 @@ def functions(node: AST) -> Iterator[str]:
                 yield from functions(part)
 
 
-def test_every_predicate_of_ours_that_is_not_public_has_the_prefix() -> None:
-    ours = set(FACT_PREDICATES.items()).union(*map(mentioned, FILES))
-    assert {name for name in ours if not name[0].startswith("_")} <= PUBLIC
-    assert not {name for name in PUBLIC if name[0].startswith("_")}
+def test_files_of_the_users_are_held_against_what_the_headers_say() -> None:
+    """The predicates that they may not define, nor take a name of, are the public ones of all headers."""
+    public = {each for each in in_headers("Facts", "Input", "Output") if not each[0].startswith("_")}
+    assert public == encoding._PUBLIC | encoding._EXTENDED
+    assert not encoding._PUBLIC & encoding._EXTENDED
+    assert {name for name, _ in public} | {each.row.term for each in Objective} == encoding._PUBLIC_NAMES
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -153,7 +151,8 @@ def test_every_other_name_of_ours_has_the_prefix(name: str) -> None:
     for statement in statements:
         if statement.ast_type == ASTType.Program and statement.name != "base":
             named |= {statement.name, *(parameter.name for parameter in statement.parameters)}
-    public = TERMS | {predicate for predicate, _ in PUBLIC} | parsed(name).constants.keys()
+    names = {predicate for predicate, _ in encoding._PUBLIC | encoding._EXTENDED}
+    public = TERMS | names | parsed(name).constants.keys()
     assert not {found for found in named - public if not found.startswith("_")}
 
 
@@ -201,8 +200,8 @@ def predicates() -> dict[Signature, Row]:
 
 
 def test_every_predicate_is_in_the_table_and_the_other_way_round() -> None:
-    in_files = {found for name in FILES for found in mentioned(name)}
-    assert set(predicates()) == in_files | set(FACT_PREDICATES.items())
+    assert set(predicates()) == in_headers("Facts", "Input", "Output")
+    assert set(predicates()) >= {found for name in FILES for found in mentioned(name)}
     assert all(row.meaning for row in predicates().values())
 
 
@@ -210,7 +209,7 @@ def test_every_predicate_is_in_the_table_and_the_other_way_round() -> None:
 def test_written_by_and_read_by_are_what_the_files_say(predicate: Signature) -> None:
     row = predicates()[predicate]
     written = files_where(lambda file: predicate in file.heads)
-    if predicate in FACT_PREDICATES.items():
+    if predicate in by_python():
         written.add("facts")
     assert row.written == written
     assert row.read == files_where(lambda file: predicate in file.read)
@@ -242,7 +241,8 @@ def test_facts_are_what_the_table_says() -> None:
         for predicate, row in predicates().items()
         if "facts" in row.written and "for questions only" in row.meaning
     }
-    everything = set(FACT_PREDICATES.items()) - second_step - for_questions
+    everything = by_python() - second_step - for_questions
+    assert everything == set(FACT_PREDICATES.items()) == in_headers("Facts")
     assert survey(statements).heads == everything - with_constraints
     statements.clear()
     settings = Settings(constraints=(Path("only_sources"),))
@@ -293,12 +293,38 @@ def sections(name: str) -> dict[str, str]:
     return found
 
 
+def in_headers(*names: str) -> set[Signature]:
+    """Give the predicates that some sections of all headers name."""
+    texts = (sections(file).get(name, "") for file in FILES for name in names)
+    return {signature(match[0]) for text in texts for match in ATOM.finditer(text)}
+
+
+def by_python() -> set[Signature]:
+    """Give the predicates that no encoding makes: the facts of every question, and what one of them reads."""
+    return in_headers("Facts") | (in_headers("Input") - in_headers("Output"))
+
+
+def test_facts_are_those_of_the_headers() -> None:
+    """What the Python side writes, be it in facts or in rules, by name; and it writes all of it."""
+    folder = Path(foon_asp.asp.__file__).parent
+    texts = [
+        constant.value
+        for file in ("facts.py", "integrity.py")
+        for constant in ast.walk(ast.parse((folder / file).read_text(encoding="utf-8")))
+        if isinstance(constant, ast.Constant) and isinstance(constant.value, str)
+    ]
+    written = {name for text in texts for name in re.findall(r"(?:^|\n|[ ({:])(_[a-z_]+)\(", text)}
+    told = {name for name, _ in by_python() if name.startswith("_")}
+    assert {name for name in written if name != "_dropped"} == told
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_header_has_a_title_and_its_sections(name: str) -> None:
     lines = header(name)
     assert re.fullmatch(r" [A-Z].*\.", lines[0]), f"{name}: no title"
     assert lines[1] == "", f"{name}: the title is one line, with an empty comment under it"
-    assert list(sections(name)) == ["Purpose", "Input", "Output"]
+    facts = ["Facts"] if name == "task_tree.lp" else []
+    assert list(sections(name)) == ["Purpose", *facts, "Input", "Output"]
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -10,7 +10,8 @@ from foon_asp.escapes import encodable
 from foon_asp.network import Source
 from foon_asp.problem import Objective, Problem, multiplies
 
-# Every predicate written here, with its arity; encodings/README.md gives the meanings.
+# What is said of every question, with arity; encodings/README.md gives the meanings. What an encoding of a
+# question reads beside it, its header says.
 FACT_PREDICATES = {
     "unit": 1,
     "motion": 2,
@@ -33,34 +34,6 @@ FACT_PREDICATES = {
     "risk": 2,
     "cost": 3,
     "optimize": 2,
-    "_exponent": 3,
-    "_product": 3,
-    "_seen": 1,
-    "_wanted": 1,
-    "_for_sale": 2,
-    "_second_choice": 1,
-    "_found_list": 1,
-    "_on_list": 2,
-    "_constraint": 2,
-    "_kept": 1,
-    "_correction": 2,
-    "_soft": 2,
-    "_broken": 2,
-    "_greatest_penalty": 1,
-    "_tree_size": 1,
-    "_in_tree": 1,
-    "_avoid": 2,
-    "_tree": 1,
-    "_distance": 3,
-    "_chosen_trees": 1,
-    "_at_most": 3,
-    "_takes_over": 2,
-    "_at_most_assisted": 1,
-    "_given": 1,
-    "_given_units": 1,
-    "_same_rate": 2,
-    "_most_alike": 2,
-    "_exactly_alike": 2,
 }
 
 _Atom = tuple[str, str]  # the name of the predicate, and the arguments as text
