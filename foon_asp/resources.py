@@ -21,11 +21,6 @@ def encodings_folder() -> Path:
     return _folder("encodings", "task_tree.lp")
 
 
-def schemas_folder() -> Path:
-    """Give the folder of the JSON Schemas."""
-    return _folder("schemas", "defs.json")
-
-
 def published_table() -> Path:
     """Give the file with the published figures of the literature."""
     return _folder("data", "published/table1.json") / "published" / "table1.json"

@@ -13,7 +13,7 @@ import jsonschema
 import pytest
 
 from foon_asp.cli.main import main
-from foon_asp.report.schema import schema
+from foon_asp.document.schema import schema
 from foon_asp.text.json_value import schema_name
 
 ROOT = Path(__file__).resolve().parents[1]

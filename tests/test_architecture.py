@@ -21,7 +21,7 @@ FLOORS = (
     {"errors", "escapes", "resources", "deadline", "python_process", "warning"},
     {"network"},
     {"text", "problem", "bounds"},
-    {"reduce", "grounding", "offered"},
+    {"reduce", "grounding", "document", "offered"},
     {"asp", "search", "proof", "store"},
     {"compare", "lint", "certificate", "engines", "dataset"},
     {"report"},
@@ -192,6 +192,20 @@ def test_nothing_but_the_command_line_prints() -> None:
         and any(isinstance(node, ast.Call) and writes(node) for node in ast.walk(tree(module)))
     }
     assert not printing
+
+
+# Who writes JSON for itself: what checks certificates has nothing of ours, and the others write no text.
+WRITES_JSON = {"foon_asp/text/json_value.py", "foon_asp/proof/verify.py", "foon_asp/offered/worker.py"}
+
+
+def test_json_is_written_in_one_place() -> None:
+    dumping = {
+        module
+        for module in MODULES
+        for node in ast.walk(tree(module))
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in {"json.dumps", "json.dump"}
+    }
+    assert dumping == WRITES_JSON
 
 
 def test_module_names_mean_something() -> None:

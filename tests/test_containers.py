@@ -373,10 +373,10 @@ def test_two_trees_and_two_goals() -> None:
     problem = ask(boil[2][0], kitchen=(WATER, TAP, EMPTY), of=of)
     listed = [(of.unit(unit), of.sources[unit][0]) for unit in (0, 1, 2)]
     kitchen, rule = frozenset((WATER, TAP, EMPTY)), problem.containers
-    tree = side("tree", listed, [POT], kitchen, rule, problem.utensils, None)
+    tree = side("tree", listed, [POT], kitchen, rule, problem.utensils, None, of)
     assert tree.origin(POT) == of.unit(1)
     assert tree.origin(HOT) == of.unit(0)
-    bare = side("bare", listed[:1], [], kitchen, rule, problem.utensils, None)
+    bare = side("bare", listed[:1], [], kitchen, rule, problem.utensils, None, of)
     assert bare.origin(POT) is None
 
     hot = of.object_id(HOT)

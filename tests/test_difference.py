@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.network import FunctionalUnit, Source
+from foon_asp.network import FunctionalUnit, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule
 from foon_asp.questions.diff import Side, diff, side
 from foon_asp.resources import bundled_kitchen
@@ -22,7 +22,9 @@ def tree(goal: str, kitchen: str, *units: str) -> Side:
         listed.append((FunctionalUnit.of(text, inputs, outputs), Source("tree", line)))
     goals = [parse_node(name) for name in goal]
     at_hand = frozenset(parse_node(name) for name in kitchen)
-    return side("tree", listed, goals, at_hand, ContainerRule.STRICT, frozenset(), None)
+    return side(
+        "tree", listed, goals, at_hand, ContainerRule.STRICT, frozenset(), None, NetworkBuilder().build()
+    )
 
 
 def parted(left: Side, right: Side) -> list[tuple[str, str | None, str | None]]:

@@ -120,6 +120,42 @@ def test_rows_of_another_make_no_file_of_ours(
     assert file.read_bytes() == content
 
 
+@pytest.mark.parametrize("verb", ["batch", "compare"])
+@pytest.mark.parametrize("place", [0, 1])
+def test_results_of_another_version_are_refused(
+    cli: Cli, questions: Path, tmp_path: Path, verb: str, place: int
+) -> None:
+    file = tmp_path / "results"
+    assert begin(cli, verb, questions, file)[0] == 0
+    lines = file.read_text().splitlines(keepends=True)
+    name = f"foon-asp/{verb}-row/"
+    assert all(json.loads(line)["schema"] == f"{name}1" for line in lines)
+    lines[place] = lines[place].replace(f"{name}1", f"{name}2")
+    file.write_text(content := "".join(lines))
+    ran = begin(cli, verb, questions, file)
+    assert ran[0] == 2
+    assert (
+        f":{place + 1}: error: found results of foon-asp in the version '{name}2', expected '{name}1'"
+        in ran[2]
+    )
+    assert file.read_text() == content
+
+
+def test_parts_of_another_version_are_refused(cli: Cli, questions: Path, tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    folder = tmp_path / "answers.parquet"
+    assert cli("batch", questions, "--results", folder).code == 0
+    part = folder / "part-000000.parquet"
+    table = parquet.read_table(part, partitioning=None)
+    assert set(table.column("schema").to_pylist()) == {"foon-asp/batch-row/1"}
+    other = table.set_column(0, "schema", [["foon-asp/batch-row/2"] * len(table)])
+    parquet.write_table(other, part)
+    ran = cli("batch", questions, "--results", folder)
+    assert ran.code == 2
+    assert "no part of results of foon-asp" in ran.err
+
+
 WRONG: list[Any] = [-1.5, True, [], [[]], {}, {"x": 1}, float("nan"), 7]
 
 
@@ -173,7 +209,7 @@ def test_any_value_of_a_comparison_may_be_wrong(cli: Cli, tmp_path: Path, wrong:
             may_be |= {
                 "value": [None],
                 "units": [None, []],
-                "executes": [None],
+                "verdict": [None],
                 "order": [[]],
                 "measures": [{}],
             }

@@ -15,11 +15,10 @@ from hypothesis import strategies as st
 
 from foon_asp.asp import Proof, Status
 from foon_asp.cli.verbs import VERBS, verb_command
+from foon_asp.document.schema import SCHEMAS, schema, schema_kinds
 from foon_asp.network import LEVELS, ObjectNode
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof import Verdict
-from foon_asp.report.schema import schema, schema_kinds
-from foon_asp.resources import schemas_folder
 from foon_asp.search import Ending
 from foon_asp.text.json_node import node_json, read_node_json
 from foon_asp.text.json_value import json_text, read_json
@@ -144,12 +143,54 @@ def test_the_head_is_the_same_in_every_verb(printed: Any, verb: str) -> None:
         assert head["items"] == "lasting"
 
 
+def origins(units: list[Any]) -> list[tuple[int, str, Any]]:
+    """Give the step, the node and the origin of every input."""
+    return [(unit["step"], node["node"], node["from"]) for unit in units for node in unit["inputs"]]
+
+
+def test_an_input_says_where_it_comes_from(printed: Any) -> None:
+    plan = printed("solve", "--goal", "macaroni", "--containers", "implied")["units"]
+    assert [unit["step"] for unit in plan] == list(range(1, len(plan) + 1))
+    made: dict[str, int] = {}
+    for unit in plan:
+        for node in unit["inputs"]:
+            if node["node"] in made:
+                assert node["from"] in ({"step": made[node["node"]]}, {"kitchen": True})
+            else:
+                assert node["from"] in ({"kitchen": True}, {"implied": True})
+        for node in unit["outputs"]:
+            if node["made"]:
+                made.setdefault(node["node"], unit["step"])
+    listed = origins(printed("search", "bfs", "--goal", "macaroni")["units"])
+    assert any("later_step" in origin and origin["later_step"] > step for step, _, origin in listed)
+    assert {"missing": True} in [
+        origin for *_, origin in origins(printed("search", "bfs", "--goal", "hot cocoa")["units"])
+    ]
+    shopping = printed("shopping-list", "--goal", "apple pie")
+    bought = {item["node"] for item in shopping["lists"][0]["items"]}
+    found = {node for _, node, origin in origins(shopping["answer"]["units"]) if origin == {"bought": True}}
+    assert found == bought != set()
+
+
+@pytest.mark.parametrize("verb", ["menu", "regret", "shopping-list", "sensitivity", "search"])
+@pytest.mark.sampled(3)
+def test_a_tree_is_read_from_every_document_that_has_one(cli: Cli, tmp_path: Path, verb: str) -> None:
+    file = tmp_path / "document.json"
+    more = {"menu": ("--goal", "tea"), "search": ("ids",)}.get(verb, ())
+    ran = cli(verb, *more, "--goal", "ice", "--format", "json")
+    assert ran.code == 0
+    file.write_text(ran.out, encoding="utf-8")
+    assert cli("check", file, "--goal", "ice").code == 0
+    if verb == "regret":
+        assert cli("certify", "--tree", file, "--goal", "ice").code == 0
+
+
 # --- the schemas
 
 
 @pytest.mark.parametrize("kind", [*schema_kinds(), None])
 def test_a_schema_is_one(kind: str | None) -> None:
-    file = schemas_folder() / f"{kind or 'defs'}.json"
+    file = SCHEMAS / f"{kind or 'defs'}.json"
     for each in (schema(kind) if kind else {}, json.loads(file.read_text(encoding="utf-8"))):
         jsonschema.Draft202012Validator.check_schema(each)
     if kind:
@@ -163,7 +204,7 @@ def test_a_schema_is_one(kind: str | None) -> None:
 
 def test_what_the_schemas_share_is_used() -> None:
     used = {name for kind in schema_kinds() for name in schema(kind).get("$defs", {})}
-    assert used == json.loads((schemas_folder() / "defs.json").read_text(encoding="utf-8"))["$defs"].keys()
+    assert used == json.loads((SCHEMAS / "defs.json").read_text(encoding="utf-8"))["$defs"].keys()
 
 
 def test_the_words_of_the_schemas_are_ours() -> None:
@@ -295,4 +336,4 @@ def test_what_fits_stands_on_one_line() -> None:
         + ",\n    ".join([json.dumps("b" * 30)] * 6)
         + '\n  ],\n  "none": []\n}\n'
     )
-    assert all(len(line) <= 110 for line in json_text([[short] * 9] * 9).splitlines())
+    assert all(len(line) <= 100 for line in json_text([[short] * 9] * 9).splitlines())

@@ -5,9 +5,9 @@ import time
 from foon_asp.asp import Outcome, Settings, solve
 from foon_asp.batch.asked import Asked, Asker
 from foon_asp.deadline import Deadline, LimitError
+from foon_asp.document.json_document import costs_json, figures_json
 from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
-from foon_asp.report.json_document import costs_json, figures_json
 
 Row = dict[str, object]
 

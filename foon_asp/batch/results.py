@@ -11,7 +11,7 @@ from foon_asp.batch.answer_row import Row
 from foon_asp.batch.asked import Asked
 from foon_asp.compare import RowsFile
 from foon_asp.errors import UserError
-from foon_asp.text.json_value import is_other_version, schema_name
+from foon_asp.text.json_value import schema_name
 
 if TYPE_CHECKING:
     import pyarrow
@@ -178,8 +178,6 @@ def _statuses(part: Path) -> dict[str, str]:
         raise UserError(f"{part}: cannot be read: {error}") from None
     try:
         found = [_kept(_of_part(row)) for row in rows]
-    except UserError as other:
-        raise UserError(f"{part}: error: {other}; name another folder") from None
     except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
         raise UserError(f"{part}: error: no part of results of foon-asp; name another folder") from None
     return {kept.key: kept.status for kept in found}
@@ -188,11 +186,9 @@ def _statuses(part: Path) -> dict[str, str]:
 def _of_part(row: dict[str, Any]) -> dict[str, Any]:
     """Give the row of a part, of which what was asked is read, as it is on a line."""
     goal = row["goal"][0] if len(row["goal"]) == 1 else row["goal"]
-    if is_other_version(row["schema"], schema_name(KIND)):
-        raise UserError(
-            f"found {row['schema']}, expected {schema_name(KIND)}: another version of foon-asp wrote this"
-        )
-    return dict.fromkeys(_ANSWERED) | {key: row[key] for key in (*_ASKED, "status")} | {"goal": goal}
+    if row.pop("schema") != schema_name(KIND):
+        raise ValueError("a row of another version")
+    return dict.fromkeys(_ANSWERED) | row | {"goal": goal}
 
 
 def _table(rows: list[dict[str, Any]]) -> "pyarrow.Table":

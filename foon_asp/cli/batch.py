@@ -23,7 +23,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
-from foon_asp.report.json_document import document
+from foon_asp.document.json_document import document
 from foon_asp.text.json_value import json_text
 
 

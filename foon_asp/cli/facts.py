@@ -10,9 +10,9 @@ from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
+from foon_asp.document.json_document import document
 from foon_asp.problem import parse_objectives
 from foon_asp.questions.options import CONSTRAINTS, CONTAINERS, ENCODINGS, GOALS, OBJECTIVES, SOFT
-from foon_asp.report.json_document import document
 from foon_asp.text.json_value import json_text
 
 

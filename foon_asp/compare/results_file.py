@@ -9,53 +9,49 @@ from typing import Any, TypeVar
 from foon_asp.asp import Status
 from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.compare.rows_file import RowsFile
+from foon_asp.document.json_document import figure_json, figures_json, fraction_json
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import Verdict
 from foon_asp.search import Ending, Search, SearchSettings
-from foon_asp.text.json_value import json_line
+from foon_asp.text.json_value import Json, json_line
 
 Plain = TypeVar("Plain")
 
 
-def comparison_json(comparison: Comparison) -> dict[str, object]:
-    """Give a comparison in plain values; numbers that may be fractions are texts such as ``27/1250``."""
+def comparison_json(comparison: Comparison) -> Json:
+    """Give a comparison in plain values, with nodes in one-line notation; positions count from 1."""
     return {
         "goal": comparison.goal,
         "containers": comparison.containers,
         "level": comparison.level,
         "optimum": {
-            str(objective): {"status": optimum.status, "value": _text(optimum.value)}
+            str(objective): {"status": optimum.status, "value": figure_json(objective, optimum.value)}
             for objective, optimum in comparison.optima.items()
         },
         "searches": [_judgement_json(comparison, judgement) for judgement in comparison.judgements],
     }
 
 
-def _judgement_json(comparison: Comparison, judgement: Judgement) -> dict[str, object]:
+def _judgement_json(comparison: Comparison, judgement: Judgement) -> Json:
     obstacle = None
     if judgement.obstacle is not None:
         motion, missing, cycle = judgement.obstacle
         obstacle = {"motion": motion or None, "missing": missing, "cycle": cycle}
+    ratios = {str(each): fraction_json(comparison.ratio(judgement, each)) for each in judgement.measures}
     return {
         "search": judgement.search,
         "ending": judgement.ending,
         "stuck_at": judgement.stuck_at,
         "units": None if judgement.units is None else list(judgement.units),
-        "measures": {str(objective): str(value) for objective, value in judgement.measures.items()},
-        "ratios": {
-            str(objective): _text(comparison.ratio(judgement, objective)) for objective in judgement.measures
-        },
-        "executes": judgement.executes,
-        "order": list(judgement.order),
+        "measures": figures_json(judgement.measures),
+        "ratios": ratios,
+        "verdict": judgement.executes,
+        "order": [position + 1 for position in judgement.order],
         "obstacle": obstacle,
     }
 
 
-def _text(value: Fraction | None) -> str | None:
-    return None if value is None else str(value)
-
-
-def read_comparison(row: dict[str, Any]) -> Comparison:
+def read_comparison(row: Json) -> Comparison:
     """Turn what :func:`comparison_json` gave into a comparison again.
 
     Raises one of the errors that :class:`RowsFile` knows for anything else.
@@ -77,15 +73,15 @@ def read_comparison(row: dict[str, Any]) -> Comparison:
     return comparison
 
 
-def _judgement(row: dict[str, Any]) -> Judgement:
+def _judgement(row: Json) -> Judgement:
     obstacle, stuck_at, units = row["obstacle"], row["stuck_at"], row["units"]
     return Judgement(
         _of(row["search"], str),
         Ending(row["ending"]),
         None if units is None else tuple(_of(unit, int) for unit in units),
         {Objective(name): _fraction(value) for name, value in row["measures"].items()},
-        None if row["executes"] is None else Verdict(row["executes"]),
-        tuple(_of(position, int) for position in row["order"]),
+        None if row["verdict"] is None else Verdict(row["verdict"]),
+        tuple(_of(position, int) - 1 for position in row["order"]),
         None
         if obstacle is None
         else (
@@ -103,8 +99,9 @@ def _of(value: Any, kind: type[Plain]) -> Plain:
     return value
 
 
-def _fraction(text: str) -> Fraction:
-    if not set(_of(text, str)) <= set("0123456789/-"):  # an exponent could stand for any number of digits
+def _fraction(value: Any) -> Fraction:
+    text = str(value) if type(value) is int else _of(value["exact"], str)
+    if not set(text) <= set("0123456789/-"):  # an exponent could stand for any number of digits
         raise ValueError(f"found {text!r}, expected a fraction")
     return Fraction(text)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import IO, Any, Generic, Self, TypeVar
 
 from foon_asp.errors import UserError
-from foon_asp.text.json_value import Json, is_other_version, json_line, read_json, schema_name
+from foon_asp.text.json_value import Json, json_line, read_json, schema_name
 
 Row = TypeVar("Row")
 
@@ -73,7 +73,7 @@ class RowsFile(Generic[Row]):
             return 0, self._line({"question": self.question})
         first, newline, rows = content.partition(b"\n")
         begun = self._value(first, 1) if newline else None
-        if not isinstance(begun, dict) or not self._is_of_version(begun) or begun.keys() != {"question"}:
+        if begun is None or begun.keys() != {"question"}:
             raise UserError(
                 f"{self.path}: holds something else than results of foon-asp, and is left as it is; "
                 "name another file"
@@ -98,27 +98,23 @@ class RowsFile(Generic[Row]):
     def _row(self, line: bytes, number: int) -> Row:
         value = self._value(line, number)
         try:
-            if not self._is_of_version(value):
-                raise self._foreign(number)
             return self._read(value)
         except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
             raise self._foreign(number) from None
 
-    def _value(self, line: bytes, number: int) -> Any:
+    def _value(self, line: bytes, number: int) -> Json:
+        """Parse a line, and take the version from it."""
         try:
-            return read_json(line)
-        except ValueError:
+            value: Json = read_json(line)
+            found = value.pop("schema")
+        except (ValueError, KeyError, TypeError, AttributeError):
             raise self._foreign(number) from None
-
-    def _is_of_version(self, line: Json) -> bool:
-        """Take the version from a line; raises :class:`UserError` where it is another one of ours."""
-        found = line.pop("schema", "no version" if line.keys() == {"question"} else None)
-        if found == "no version" or is_other_version(found, self.schema):
+        if found != self.schema:
             raise UserError(
-                f"{self.path}: holds results of foon-asp with {found}, expected {self.schema}: another "
-                "version wrote them; name another file, or remove this one"
+                f"{self.path}:{number}: error: found results of foon-asp in the version {found!r}, expected "
+                f"{self.schema!r}; name another file, or remove this one"
             )
-        return bool(found == self.schema)
+        return value
 
     def _foreign(self, number: int) -> UserError:
         return UserError(

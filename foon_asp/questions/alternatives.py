@@ -12,6 +12,7 @@ from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import costs_json, document, steps_json
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.arguments import (
@@ -29,9 +30,7 @@ from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, counted, goal_lines, unit_lines
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.json_document import costs_json, document, steps_json
 from foon_asp.report.notebook import page_bundle
-from foon_asp.text.json_value import Json
 
 _SHOWN = 20  # trees that are listed one by one for people
 _PICTURES = 4  # that a notebook shows
@@ -103,7 +102,7 @@ class Alternatives(Result):
         lines = _optimal_lines(self) if self.wanted is None else _lines(self, self.wanted)
         return "\n".join([*goal_lines(self.problem), *lines]) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the trees with what they cost, and the units that all optimal ones or some of them have."""
         number = self.problem.network.unit_number
         return document(

@@ -32,7 +32,9 @@ class AnswerAndMore(Result, Generic[A]):
 
     def json_dict(self) -> Json:
         """Give the answer."""
-        return self.answer.json_dict()
+        found = self.answer.json_dict()
+        assert isinstance(found, dict)
+        return found
 
     def foon(self) -> str:
         """Give the tree as FOON text; empty where there is none."""

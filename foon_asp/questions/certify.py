@@ -29,10 +29,10 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.tree import read_listed
 from foon_asp.report.answer import costs_text, headline
 from foon_asp.report.certified import bound_text, certificate_lines
 from foon_asp.report.whole_file import write_whole
-from foon_asp.text import FoonReader, summarize
 from foon_asp.text.json_value import Json
 
 
@@ -175,11 +175,7 @@ def certify_tree(problem: Problem, objectives: tuple[Objective, ...], file: Path
 
 def _executable(problem: Problem, file: Path, covered: Coverage) -> list[int] | str:
     """Read a tree and put it into an order that executes; say why there is none."""
-    who = caller()
-    reader = FoonReader(who.lenient)
-    tree = [unit_at_level(unit, problem.network.level) for unit, _ in reader.read_tree(file)]
-    for text in summarize(reader.diagnostics):
-        who.reporter.warning(text)
+    tree = [unit_at_level(unit, problem.network.level) for unit, _ in read_listed(file)[0]]
     units = [problem.network.unit_id(unit) for unit in tree]
     known = [unit for unit in units if unit is not None]
     simulation = simulate_for(problem, problem.tree(known))

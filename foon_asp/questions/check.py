@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
 
+from foon_asp.document.json_document import costs_json, document
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Problem
 from foon_asp.proof import Simulation, Verdict, simulate_for
@@ -12,9 +13,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.json_document import costs_json, document
 from foon_asp.report.verdict import Listed, verdict_json, verdict_text
-from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -52,7 +51,7 @@ class Checked(Result):
         """Say whether the tree executes, in which order, and what stops it."""
         return verdict_text(self.problem, self._listed(), self.simulation)
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the same; positions count from 1."""
         problem, ids = self.problem, self._ids()
         known = [unit for unit in ids if unit is not None]

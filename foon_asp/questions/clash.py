@@ -13,6 +13,7 @@ from foon_asp.asp.prepared import prepare
 from foon_asp.asp.search import run
 from foon_asp.asp.solver import solve_prepared
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import document
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer
@@ -31,8 +32,6 @@ from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import counted, goal_lines, headline
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
-from foon_asp.report.json_document import document
-from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,7 +123,7 @@ class Clash(Result):
         if self.outcome is not None and self.outcome.status is not Status.UNKNOWN:
             yield f"without {'it' if len(self.dropped) == 1 else 'them'}: {headline(self.outcome)}"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give all that is known of the clash."""
         return document(
             "clash",

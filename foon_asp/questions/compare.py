@@ -3,20 +3,20 @@
 import contextlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 
 from foon_asp.compare import (
     Comparison,
-    Judgement,
     ResultsFile,
     all_proved,
     compare_goals,
+    comparison_json,
     makeable,
     results_question,
     summarize_comparisons,
 )
 from foon_asp.dataset.paths import File
+from foon_asp.document.json_document import document, goals_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import at_least, limits
@@ -33,14 +33,6 @@ from foon_asp.report.comparison_table import (
     comparisons_markdown,
     comparisons_table,
     summary_lines,
-)
-from foon_asp.report.json_document import (
-    document,
-    figure_json,
-    figures_json,
-    fraction_json,
-    goals_json,
-    nodes_json,
 )
 from foon_asp.report.published_table import PublishedTable, published_markdown, read_published
 from foon_asp.report.renderable import Renderable
@@ -95,37 +87,25 @@ class Compared(Result):
         """Give one line for each goal and search; fractions exact, ratios as decimals too."""
         return comparisons_csv(self.comparisons)
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the comparisons, one for each goal; positions count from 1."""
-        goals, rows = goals_json(self.problem.network, self.problem.goals), []
-        for goal, comparison in zip(goals, self.comparisons, strict=True):
-            optima = {
-                str(objective): {"status": str(best.status), "value": figure_json(objective, best.value)}
-                for objective, best in comparison.optima.items()
-            }
-            searches = [self._judged(comparison, judgement) for judgement in comparison.judgements]
-            rows.append({"goal": goal, "optimum": optima, "searches": searches})
+        network = self.problem.network
+        ids = {str(node): o for o, node in enumerate(network.objects)}
+
+        def name(holder: Json | None, key: str) -> None:
+            if holder and holder[key] is not None:
+                (holder[key],) = nodes_json(network, [ids[holder[key]]])
+
+        rows = list(map(comparison_json, self.comparisons))
+        for row, goal in zip(rows, goals_json(network, self.problem.goals), strict=True):
+            row["goal"] = goal
+            del row["containers"], row["level"]
+            for search in row["searches"]:
+                name(search, "stuck_at")
+                name(search["obstacle"], "missing")
+                search["units"] = search["units"] and list(map(network.unit_number, search["units"]))
         objectives = dict.fromkeys(each for row in self.comparisons for each in row.optima)
         return document("compare", self.problem, objectives, comparisons=rows)
-
-    def _judged(self, comparison: Comparison, judgement: Judgement) -> Json:
-        network, units, obstacle = self.problem.network, judgement.units, None
-        if judgement.obstacle is not None:
-            motion, missing, cycle = judgement.obstacle
-            obstacle = {"motion": motion or None, "missing": self._named(missing), "cycle": cycle}
-        return {
-            "search": judgement.search,
-            "ending": str(judgement.ending),
-            "stuck_at": None if judgement.stuck_at is None else self._named(judgement.stuck_at),
-            "units": None if units is None else list(map(network.unit_number, units)),
-            "measures": figures_json(judgement.measures),
-            "ratios": {
-                str(each): fraction_json(comparison.ratio(judgement, each)) for each in judgement.measures
-            },
-            "verdict": None if judgement.executes is None else str(judgement.executes),
-            "order": [position + 1 for position in judgement.order],
-            "obstacle": obstacle,
-        }
 
     def write_chart(self, file: File) -> None:
         """Draw a bar chart of units into a file, SVG or PNG by its suffix.
@@ -135,14 +115,6 @@ class Compared(Result):
         """
         _hold_readable(self.problem)
         write_chart(comparison_chart(self._labels(), self.comparisons), Path(file))
-
-    @cached_property
-    def _by_notation(self) -> dict[str, int]:
-        """Ids by one-line notation, in which comparisons have nodes."""
-        return {str(node): o for o, node in enumerate(self.problem.network.objects)}
-
-    def _named(self, notation: str) -> Json:
-        return nodes_json(self.problem.network, [self._by_notation[notation]])[0]
 
     def _labels(self) -> list[str]:
         return [node.label for node in self.problem.goal_nodes]

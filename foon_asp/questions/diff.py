@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.dataset import Dataset
+from foon_asp.document.json_document import costs_json, document, head_json, listed_unit_json, named_json
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitPrices, unit_at_level
 from foon_asp.problem import (
     ContainerRule,
@@ -25,9 +26,7 @@ from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NoTreeError, Result
 from foon_asp.questions.tree import Tree, read_listed
 from foon_asp.report.answer import costs_text, counted, headline
-from foon_asp.report.json_document import costs_json, document, head_json, listed_unit_json, named_json
 from foon_asp.text import find_goal
-from foon_asp.text.json_value import Json
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 
@@ -51,7 +50,7 @@ class Side(NamedTuple):
     kitchen: frozenset[ObjectNode]
     costs: Costs
     rule: ContainerRule
-    network: Network | None
+    network: Network
     ending: Ending
     objectives: tuple[Objective, ...]
 
@@ -125,7 +124,7 @@ class Difference(Result):
                 )
         return "\n".join(lines) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the same; ids are those of the network that a tree is of."""
         left, right = self.left, self.right
         return document(
@@ -271,7 +270,7 @@ def side(
     rule: ContainerRule,
     utensils: frozenset[str],
     rates: Mapping[str, Fraction] | None,
-    network: Network | None = None,
+    network: Network,
     ending: Ending = Ending.DONE,
     unit_prices: UnitPrices | None = None,
     objectives: tuple[Objective, ...] = (),
@@ -341,15 +340,13 @@ def _ends(tree: Side) -> list[ObjectNode]:
     return [node for unit in tree.units for node in tree.gives[unit] if node not in needed]
 
 
-def _side_json(tree: Side) -> Json:
-    goals, level = [named_json(tree.network, goal) for goal in tree.goals], 3
-    if tree.network is not None:
-        level = tree.network.level
-    head = head_json(goals, tree.rule, level, tree.objectives)
+def _side_json(tree: Side) -> object:
+    goals = [named_json(tree.network, goal) for goal in tree.goals]
+    head = head_json(goals, tree.rule, tree.network.level, tree.objectives)
     return {"name": tree.name, **head, "costs": costs_json(tree.costs)}
 
 
-def _unit_json(tree: Side, unit: FunctionalUnit) -> Json:
+def _unit_json(tree: Side, unit: FunctionalUnit) -> object:
     return listed_unit_json(tree.network, unit, tree.places[unit])
 
 
@@ -370,7 +367,7 @@ def _origin(tree: Side, unit: FunctionalUnit | None, node: ObjectNode) -> str:
     return "from the kitchen" if node in tree.kitchen else "not made"
 
 
-def _origin_json(tree: Side, unit: FunctionalUnit | None, node: ObjectNode) -> Json:
+def _origin_json(tree: Side, unit: FunctionalUnit | None, node: ObjectNode) -> object:
     if unit is not None:
         return {"unit": _unit_json(tree, unit)}
     return {"kitchen" if node in tree.kitchen else "missing": True}

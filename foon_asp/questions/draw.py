@@ -28,7 +28,6 @@ from foon_asp.report.picture import png_picture, svg_picture
 from foon_asp.report.tree_drawing import given_tree, solved_tree
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text import Data
-from foon_asp.text.json_value import Json
 
 _MERMAID_PAGE = ".md"
 
@@ -58,7 +57,7 @@ class Drawn(Result):
         """Give the picture in DOT, or why there is none."""
         return self.remark("text") + "\n" if self.picture is None else self.dot()
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Raise :class:`UserError`: a picture is written in its own formats."""
         raise UserError("there is no JSON of a picture; that of the answer has its tree")
 

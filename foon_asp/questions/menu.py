@@ -7,6 +7,7 @@ from fractions import Fraction
 from foon_asp.asp import Reporter, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import document, figure_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer
@@ -17,8 +18,6 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RU
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import counted, headline, steps, success_text
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.json_document import document, figure_json, nodes_json
-from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -58,7 +57,7 @@ class Menu(Result):
         """Give the costs together and one by one, what is shared, and the tree for all."""
         return "\n".join(_lines(self)) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give all answers, the sum of the separate ones, and which goals each unit serves."""
         problem, objectives = self.together.problem, self.together.objectives
         network = problem.network

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from foon_asp.asp import solve as find
 from foon_asp.deadline import Deadline
+from foon_asp.document.json_document import document
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import chosen_objectives, limits, settings
@@ -13,10 +14,8 @@ from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, OBJECTIVES
 from foon_asp.questions.posing import each_goal
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.json_document import document
 from foon_asp.report.optima_table import optima_table
 from foon_asp.report.renderable import Renderable, plain_text
-from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -40,7 +39,7 @@ class Optima(Result):
         """Give the table, as wide and in such colours as a console has."""
         return optima_table(self.outcomes)
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the answers; the objectives are all that were asked about."""
         objectives = dict.fromkeys(each for outcome in self.outcomes for each in outcome.objectives)
         answers = [outcome.json_dict() for outcome in self.outcomes]

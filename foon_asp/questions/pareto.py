@@ -12,6 +12,7 @@ from foon_asp.asp import Reporter, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import costs_json, document, figures_json, steps_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
@@ -29,8 +30,6 @@ from foon_asp.report.answer import (
     success_texts,
     unit_lines,
 )
-from foon_asp.report.json_document import costs_json, document, figures_json, steps_json
-from foon_asp.text.json_value import Json
 
 _FEWEST, _MOST = 2, 3  # objectives
 
@@ -98,7 +97,7 @@ class Front(Result):
                 lines += ["", f"point {number + 1}: {costs_text(point.costs)}", *_units(self, number)]
         return "\n".join(line.rstrip() for line in lines) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the points, each with its measures, all that its tree costs, and its units."""
         network = self.problem.network
         points = []

@@ -10,6 +10,7 @@ from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.asp import solve as find
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import costs_json, document, figures_json, mention_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer
@@ -20,8 +21,6 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RU
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import costs_text, goal_lines, headline, success_text
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.json_document import costs_json, document, figures_json, mention_json, nodes_json
-from foon_asp.text.json_value import Json
 
 
 class Part(StrEnum):
@@ -83,7 +82,7 @@ class Regrets(Result):
                 lines += ["", title, *(line for regret in regrets for line in _lines(self.outcome, regret))]
         return "\n".join(lines) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the answer and the regrets."""
         best = self.outcome
         regrets = [_json(best, regret) for regret in self.regrets]
@@ -203,7 +202,7 @@ def _loss(best: Answer, regret: Regret) -> str:
     return f"{int(loss):+} {first}"  # less by ``kitchen`` where an item is made that is not at hand
 
 
-def _json(best: Answer, regret: Regret) -> Json:
+def _json(best: Answer, regret: Regret) -> object:
     network = best.problem.network
     assert best.costs is not None
     losses = {}

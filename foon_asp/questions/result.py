@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
-from foon_asp.text.json_value import Json, json_text, read_json
+from foon_asp.text.json_value import json_text, read_json
 
 if TYPE_CHECKING:
     from foon_asp.report.drawing import Drawing
@@ -50,7 +50,7 @@ class Result:
         """Give the result in words, as the command line does."""
         raise NotImplementedError
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the result as plain values, in the order in which JSON has them."""
         raise NotImplementedError
 

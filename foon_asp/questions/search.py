@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from foon_asp.document.json_document import costs_json, document, nodes_json, steps_json
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof import Simulation, Verdict, simulate_for
 from foon_asp.questions.arguments import begin
@@ -12,12 +13,10 @@ from foon_asp.questions.searching import SEARCHING, search_settings, searched
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, goal_lines, steps
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.json_document import costs_json, document, nodes_json, steps_json
 from foon_asp.report.verdict import Listed, verdict_json, verdict_text
 from foon_asp.search import Ending as Searched
 from foon_asp.search import Retrieval, Search, search_names
 from foon_asp.text import write_units
-from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,7 +62,7 @@ class Retrieved(Result):
         lines.append(verdict_text(self.problem, self._listed(), self.simulation).rstrip("\n"))
         return "\n".join([*lines, "", *steps(self.problem, self.retrieval.units)]) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the same; positions count from 1."""
         problem, found, simulation = self.problem, self.retrieval, self.simulation
         stuck = () if found.stuck_at is None else (found.stuck_at,)

@@ -15,6 +15,7 @@ from foon_asp.asp.facts import write_for_sale, write_list
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import document, fraction_json, nodes_json
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source
 from foon_asp.problem import Number, Objective, Problem, exact
@@ -28,9 +29,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RU
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import answer_json, counted, goal_lines, headline, steps
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.json_document import document, fraction_json, nodes_json
 from foon_asp.text import LineError, parse_node
-from foon_asp.text.json_value import Json
 from foon_asp.text.price_list import Price, read_prices
 
 
@@ -133,7 +132,7 @@ class Shopping(Result):
             lines.append(tree or "nothing to do")
         return "\n".join(lines) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the lists and the answer that the first makes possible."""
         answer, bought = self.outcome, self.lists[0].items if self.lists else ()
         return document(
@@ -349,7 +348,7 @@ def _item_lines(shopping: Shopping, o: int) -> Iterator[str]:
             yield f"    for {places}"
 
 
-def _item_json(shopping: Shopping, o: int) -> Json:
+def _item_json(shopping: Shopping, o: int) -> object:
     price = Fraction(1) if shopping.prices is None else shopping.prices[o]
     return nodes_json(shopping.problem.network, [o])[0] | {"price": fraction_json(price)}
 

@@ -6,6 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import Network
@@ -15,8 +16,6 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.certified import verified_json, verified_text
-from foon_asp.report.json_document import document
-from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
     from foon_asp.certificate import Certificate
@@ -34,7 +33,7 @@ class VerifiedCertificate(Result):
         """Say what is proved, as ``foon-asp verify`` does."""
         return verified_text(self.verified, self.network, dict(self.content))
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Say what is proved, as ``foon-asp verify --format json`` does."""
         return verified_json(self.verified, self.network)
 
@@ -54,7 +53,7 @@ class Refused(Result):
         """Say why."""
         return f"refused: {self.reason}\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Say why."""
         return document("verify", verified=False, reason=self.reason)
 

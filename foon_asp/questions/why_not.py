@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import document, mention_json, nodes_json, unit_json
 from foon_asp.foon import Foon
 from foon_asp.network import Network, ObjectNode, pattern_at_level
 from foon_asp.network.near_nodes import nearest, slip_between
@@ -15,9 +16,7 @@ from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import counted, goal_lines
-from foon_asp.report.json_document import document, mention_json, nodes_json, unit_json
 from foon_asp.text import ListedObject
-from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # clingo, which is needed where rules have a say
     from foon_asp.questions.clash import Clash
@@ -88,7 +87,7 @@ class Explanation(Result):
             yield f"{more} behind other units; --format json lists all"
         yield "foon-asp shopping-list with the same options says what to add to the kitchen"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give everything that is known of the dead ends, without the bounds of the text."""
         network = self.problem.network
         return document(
@@ -313,7 +312,7 @@ def _had(problem: Problem, o: int) -> str:
     return f"{problem.network.objects[o]} ({'in the kitchen' if o in problem.kitchen else 'can be made'})"
 
 
-def _root_json(network: Network, root: Root) -> Json:
+def _root_json(network: Network, root: Root) -> object:
     steps = None if root.cycle is None else root.cycle.steps
     return {
         "object": nodes_json(network, [root.object])[0],

@@ -6,9 +6,7 @@ from decimal import Context, Decimal
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
-from foon_asp.network import Network
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
-from foon_asp.report.json_document import (
+from foon_asp.document.json_document import (
     approximate,
     costs_json,
     document,
@@ -16,6 +14,8 @@ from foon_asp.report.json_document import (
     input_origins,
     steps_json,
 )
+from foon_asp.network import Network
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
 from foon_asp.text import write_units
 from foon_asp.text.json_value import Json
 

@@ -5,11 +5,11 @@ from decimal import Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from foon_asp.document.json_document import document, figures_json, goals_json, head_json
 from foon_asp.escapes import escaped
 from foon_asp.network import Network
 from foon_asp.problem import Objective
 from foon_asp.proof.verify import Verified
-from foon_asp.report.json_document import document, figures_json, goals_json, head_json
 from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # the rest of these rooms takes clingo along, which `verify` has to do without

@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Sequence
 
 from foon_asp.asp.constraint_library import LibraryConstraint
-from foon_asp.report.json_document import document
+from foon_asp.document.json_document import document
 from foon_asp.text.json_value import Json
 
 _WIDTH = 100
@@ -25,23 +25,10 @@ def constraints_text(constraints: Sequence[LibraryConstraint]) -> str:
 
 def constraints_json(constraints: Sequence[LibraryConstraint]) -> Json:
     """Give each; an own value of ``null`` means that the parameter is not set by the file."""
-    listed = [
-        {
-            "name": constraint.name,
-            "file": str(constraint.file),
-            "title": constraint.title,
-            "purpose": constraint.purpose,
-            "parameters": [
-                {
-                    "name": parameter.name,
-                    "own_value": None
-                    if parameter.own_value in {'""', "#sup", "#inf"}
-                    else parameter.own_value,
-                    "example": parameter.example,
-                }
-                for parameter in constraint.parameters
-            ],
-        }
-        for constraint in constraints
-    ]
+    listed = [constraint._asdict() | {"file": str(constraint.file)} for constraint in constraints]
+    for each in listed:
+        each["parameters"] = [parameter._asdict() for parameter in each["parameters"]]
+        for parameter in each["parameters"]:
+            if parameter["own_value"] in {'""', "#sup", "#inf"}:
+                parameter["own_value"] = None
     return document("constraints", constraints=listed)

@@ -10,12 +10,12 @@ from foon_asp.asp.assembly import find_constraint
 from foon_asp.asp.encoding import read_encoding
 from foon_asp.asp.own_encodings import ENCODING_FILES
 from foon_asp.certificate import coverage
+from foon_asp.document.json_document import costs_json
 from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import printed_command
 from foon_asp.errors import UserError
 from foon_asp.proof.verify import digests
 from foon_asp.report.answer import answer_json
-from foon_asp.report.json_document import costs_json
 from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import encodings_folder
 from foon_asp.text import decimal_text, write_unit_prices, write_units

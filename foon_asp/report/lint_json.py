@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from foon_asp.report.json_document import document
+from foon_asp.document.json_document import document
 from foon_asp.text import Diagnostic, Severity
 from foon_asp.text.json_value import Json
 

@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 
+from foon_asp.document.json_document import document, nodes_json
 from foon_asp.escapes import escaped
 from foon_asp.network import Network
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
-from foon_asp.report.json_document import document, nodes_json
 from foon_asp.text.json_value import Json
 
 _SHOWN = 10

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
+from foon_asp.document.json_document import listed_unit_json, named_json
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.proof import Obstacle, Simulation, Verdict
 from foon_asp.report.answer import costs_text
-from foon_asp.report.json_document import listed_unit_json, named_json
 from foon_asp.text.json_value import Json
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
@@ -75,12 +75,10 @@ def verdict_json(problem: Problem, listed: Listed, simulation: Simulation | None
 def _obstacle_json(problem: Problem, listed: Listed, obstacle: Obstacle | None) -> Json | None:
     if obstacle is None:
         return None
-    position, unit = obstacle.unit, None
-    if position is not None:
-        unit = listed_unit_json(problem.network, *listed[position])
+    network, position = problem.network, obstacle.unit
     return {
         "position": None if position is None else position + 1,
-        "unit": unit,
-        "missing": named_json(problem.network, obstacle.missing),
+        "unit": None if position is None else listed_unit_json(network, *listed[position]),
+        "missing": named_json(network, obstacle.missing),
         "cycle": [position + 1 for position in obstacle.cycle],
     }

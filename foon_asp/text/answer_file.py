@@ -58,16 +58,16 @@ def _document(text: str) -> Json | None:
 
 
 def _with_tree(found: Json) -> Json:
-    """Give the document with the tree: what other questions found has the answer within."""
-    name = found.get("schema")
-    kind = name.split("/")[1] if isinstance(name, str) and name.count("/") == 2 else ""
-    if name != schema_name(kind):
-        raise ValueError(f"it is {name!r}, expected {schema_name('answer')!r}")
-    if isinstance(found.get("answer"), dict):
-        return _with_tree(found["answer"])
+    """Give the document with the tree: what other questions found has an answer within."""
+    within = found.get("answer")
+    answer, kind = within if isinstance(within, dict) else found, ""
+    for name in (found.get("schema"), answer.get("schema")):
+        kind = str(name).removeprefix("foon-asp/").rpartition("/")[0]
+        if name != schema_name(kind):
+            raise ValueError(f"it is {name!r}, expected {schema_name('answer')!r}")
     if kind not in _WITH_TREE:
-        raise ValueError(f"{name!r} has no tree, or more than one")
-    return found
+        raise ValueError(f"{schema_name(kind)!r} has no tree, or more than one")
+    return answer
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:

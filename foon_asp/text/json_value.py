@@ -1,46 +1,34 @@
 """JSON texts and plain values, and the names of what we write, with the version in them."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 Json = dict[str, Any]
 """An object as plain values, in the order in which JSON has them."""
 
-_OURS = "foon-asp/"
-_WIDTH = 110  # of a line of a text
+_WIDTH = 95  # of a line of a text, without the key before it
 _VERSION = 1  # of all that is written; what changes the meaning of a key, or takes one away, is another
 
 
 def schema_name(kind: str) -> str:
     """Give the name of a kind of JSON, ``foon-asp/answer/1``; ``foon-asp schema`` says what is in it."""
-    return f"{_OURS}{kind}/{_VERSION}"
-
-
-def is_other_version(found: object, name: str) -> bool:
-    """Whether this names something that we write, and not what ``name`` says."""
-    return isinstance(found, str) and found.startswith(_OURS) and found != name
+    return f"foon-asp/{kind}/{_VERSION}"
 
 
 def json_text(value: object) -> str:
     """Write plain values as a JSON text of their own; a list or an object that fits stands on one line."""
-    return "".join(_laid_out(value, "", 0)) + "\n"
+    return _laid_out(value, "\n") + "\n"
 
 
-def _laid_out(value: object, margin: str, before: int) -> Iterator[str]:
-    """Give a value piece by piece; so many letters of its line stand before it."""
-    line = json_line(value)
-    if not isinstance(value, dict | list | tuple) or before + len(line) <= _WIDTH:
-        yield line
-        return
-    named = isinstance(value, dict)
-    between, inner = "{" if named else "[", f"\n{margin}  "
-    for key, part in value.items() if isinstance(value, dict) else (("", part) for part in value):
-        start = f"{json_line(str(key))}: " if named else ""
-        yield f"{between}{inner}{start}"
-        yield from _laid_out(part, f"{margin}  ", len(inner) + len(start))
-        between = ","
-    yield f"\n{margin}{'}' if named else ']'}"
+def _laid_out(value: object, newline: str) -> str:
+    line, inner = json_line(value), f"{newline}  "
+    if len(newline) + len(line) <= _WIDTH or not isinstance(value, dict | list | tuple):
+        return line
+    if isinstance(value, dict):
+        pairs = (f"{json_line(str(key))}: {_laid_out(part, inner)}" for key, part in value.items())
+        return f"{{{inner}{f',{inner}'.join(pairs)}{newline}}}"
+    return f"[{inner}{f',{inner}'.join(_laid_out(part, inner) for part in value)}{newline}]"
 
 
 def json_line(value: object, default: Callable[[Any], object] | None = None) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from foon_asp.asp import Status
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.problem import Number, Objective, Problem, success_rate
 from foon_asp.questions.arguments import Constants, asked_with, at_least, settings
 from foon_asp.questions.assist.assistant import Assistant, Assisted
@@ -17,9 +18,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, counted, goal_lines, steps, success_text
-from foon_asp.report.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.text import read_rates
-from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,7 +82,7 @@ class Assistance(Result):
         """
         return "\n".join([*goal_lines(self.problem), *_lines(self)]) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give all rows with their trees, and who does each unit."""
         person = self.person
         return document(
@@ -252,7 +251,7 @@ def _name(found: Assistance, unit: int) -> str:
     return f"{network.unit_number(unit)} {network.motions[unit]}"
 
 
-def _row_json(found: Assistance, row: Assisted) -> Json:
+def _row_json(found: Assistance, row: Assisted) -> object:
     units = None if row.units is None else steps_json(found.problem, row.units)
     for step, unit in zip(units or (), row.units or (), strict=True):
         step["by"] = "person" if unit in row.helped else "robot"

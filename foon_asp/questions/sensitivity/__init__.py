@@ -9,6 +9,7 @@ from fractions import Fraction
 from foon_asp.asp import Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.dataset.paths import File, Files
+from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, Root, success_rate
 from foon_asp.questions.answer import Answer
@@ -21,8 +22,6 @@ from foon_asp.questions.sensitivity.envelope import Envelope
 from foon_asp.questions.sensitivity.interval import End, Flip, Interval
 from foon_asp.report.answer import changes_text, counted, goal_lines, headline, success_text
 from foon_asp.report.drawing import Drawing
-from foon_asp.report.json_document import costs_json, document, fraction_json, steps_json
-from foon_asp.text.json_value import Json
 
 _SUCCESS = (Objective.SUCCESS,)
 _SHORT = Fraction(1, 10**9)  # from which on a number is written without an exponent
@@ -60,7 +59,7 @@ class Sensitivity(Result):
         """Give the motions whose rates can make another tree the best, then those whose rates cannot."""
         return "\n".join([*goal_lines(self.outcome.problem), headline(self.outcome), *_lines(self)]) + "\n"
 
-    def json_dict(self) -> Json:
+    def json_dict(self) -> object:
         """Give the answer and the intervals, with the trees beyond their ends."""
         best, first = self.outcome, self.first
         side = first and {"motion": first.interval.motion, "side": "above" if first.above else "below"}
@@ -242,7 +241,7 @@ def _wrapped(text: str, indent: str) -> list[str]:
     )
 
 
-def _interval_json(best: Answer, interval: Interval) -> Json:
+def _interval_json(best: Answer, interval: Interval) -> object:
     flips = {flip.above: flip for flip in interval.flips}
     return {
         "motion": interval.motion,
@@ -253,9 +252,9 @@ def _interval_json(best: Answer, interval: Interval) -> Json:
     }
 
 
-def _end_json(best: Answer, end: End, flip: Flip | None) -> Json:
+def _end_json(best: Answer, end: End, flip: Flip | None) -> object:
     network = best.problem.network
-    known: Json = {"proved": end.proved, "at": None, "beyond": None}
+    known: dict[str, object] = {"proved": end.proved, "at": None, "beyond": None}
     if flip is None or end.beyond is None:
         return known
     gone, new = _gone_and_new(best, end)

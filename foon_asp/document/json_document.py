@@ -1,6 +1,6 @@
 """What every verb prints with ``--format json``: one head, and units, steps and figures in one form.
 
-docs/json.md describes it, and ``foon_asp/schemas`` says it for programs.
+docs/json.md describes it, and the schemas say it for programs.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -17,25 +17,17 @@ def document(
     kind: str, problem: Problem | None = None, objectives: Iterable[str] = (), /, **fields: object
 ) -> Json:
     """Give a document of a kind; one about a problem begins with what was asked."""
-    start = {} if problem is None else problem_json(problem, objectives)
-    return {"schema": schema_name(kind), **start, **fields}
+    head: Json = {}
+    if problem is not None:
+        network = problem.network
+        head = head_json(goals_json(network, problem.goals), problem.containers, network.level, objectives)
+    return {"schema": schema_name(kind), **head, **fields}
 
 
-def problem_json(problem: Problem, objectives: Iterable[str] = ()) -> Json:
-    """Give what was asked: goals, rules, level and objectives."""
-    network = problem.network
-    return head_json(goals_json(network, problem.goals), problem.containers, network.level, objectives)
-
-
-def head_json(goals: list[Json], containers: str, level: int, objectives: Iterable[str] = ()) -> Json:
+def head_json(goals: list[Json], containers: str, level: int, objectives: Iterable[str]) -> Json:
     """Give what every document about goals begins with."""
-    return {
-        "goals": goals,
-        "containers": str(containers),
-        "items": "lasting",
-        "level": level,
-        "objectives": list(map(str, objectives)),
-    }
+    head = {"goals": goals, "containers": str(containers), "items": "lasting", "level": level}
+    return {**head, "objectives": list(map(str, objectives))}
 
 
 def goals_json(network: Network, goals: Iterable[int]) -> list[Json]:
@@ -53,44 +45,41 @@ def nodes_json(network: Network, ids: Iterable[int]) -> list[Json]:
     return [node_json(network.objects[o], network.object_number(o)) for o in ids]
 
 
-def named_json(network: Network | None, node: ObjectNode) -> Json:
+def named_json(network: Network, node: ObjectNode) -> Json:
     """Give a node that a network may have or not."""
-    o = None if network is None else network.object_id(node)
-    return node_json(node, None if network is None or o is None else network.object_number(o))
+    o = network.object_id(node)
+    return node_json(node, None if o is None else network.object_number(o))
 
 
 def mention_json(network: Network, unit: int) -> Json:
     """Give what a unit is known by: its id, motion and places."""
-    return {
-        "id": network.unit_number(unit),
-        "motion": network.motions[unit],
-        "source": list(map(place_json, network.sources[unit])),
-    }
+    shown = unit_json(network, unit)
+    return {key: shown[key] for key in ("id", "motion", "source")}
 
 
 def unit_json(network: Network, unit: int) -> Json:
     """Give a unit; below level 3 with the level-3 units that it stands for."""
-    mention = mention_json(network, unit)
     shown = {
-        "id": mention["id"],
-        "motion": mention["motion"],
+        "id": network.unit_number(unit),
+        "motion": network.motions[unit],
         "inputs": nodes_json(network, network.inputs[unit]),
         "outputs": nodes_json(network, network.outputs[unit]),
-        "source": mention["source"],
+        "source": list(map(place_json, network.sources[unit])),
     }
     if network.detailed is not None:
         shown["stands_for"] = [unit_json(network.detailed, detail) for detail in network.stands_for[unit]]
     return shown
 
 
-def listed_unit_json(network: Network | None, unit: FunctionalUnit, place: Source) -> Json:
+def listed_unit_json(network: Network, unit: FunctionalUnit, place: Source) -> Json:
     """Give a unit that was listed somewhere, and that a network may have or not."""
-    id_ = None if network is None else network.unit_id(unit)
+    number = network.unit_id(unit)
+    inputs, outputs = ([named_json(network, node) for node in side] for side in (unit.inputs, unit.outputs))
     return {
-        "id": None if network is None or id_ is None else network.unit_number(id_),
+        "id": None if number is None else network.unit_number(number),
         "motion": unit.motion,
-        "inputs": [named_json(network, node) for node in unit.inputs],
-        "outputs": [named_json(network, node) for node in unit.outputs],
+        "inputs": inputs,
+        "outputs": outputs,
         "source": [place_json(place)],
     }
 
@@ -117,7 +106,6 @@ def input_origins(
     ``bought`` are the items of the kitchen, by id, that were not there before. In a list that does not
     execute as it is, a needed input may be made by a later step only, or by none.
     """
-    units = tuple(units)
     makers: dict[int, list[int]] = {}
     for step, unit in enumerate(units, 1):
         for o in problem.gives[unit]:
@@ -125,16 +113,17 @@ def input_origins(
     for step, unit in enumerate(units, 1):
         origins: list[Json] = []
         for o in problem.network.inputs[unit]:
-            makes = makers.get(o, ())
-            later = next((maker for maker in makes if maker > step), None)
             if o in problem.kitchen:
                 origins.append({"bought" if o in bought else "kitchen": True})
-            elif makes and makes[0] < step:
+                continue
+            makes = makers.get(o, ())
+            if makes and makes[0] < step:
                 origins.append({"step": makes[0]})
             elif o not in problem.needs[unit]:
                 origins.append({"implied": True})
             else:
-                origins.append({"missing": True} if later is None else {"later_step": later})
+                later = next((maker for maker in makes if maker > step), 0)
+                origins.append({"later_step": later} if later else {"missing": True})
         yield unit, origins
 
 
@@ -160,9 +149,9 @@ def approximate(value: Fraction) -> float | None:
 
 def figure_json(objective: Objective, figure: int | Fraction | None) -> object:
     """Give what an objective measures: a whole number, or an exact fraction; ``None`` stays ``None``."""
-    if figure is None or not objective.row.whole:
-        return fraction_json(None if figure is None else Fraction(figure))
-    return int(figure)
+    if figure is None or objective.row.whole:
+        return None if figure is None else int(figure)
+    return fraction_json(Fraction(figure))
 
 
 def costs_json(costs: Costs | None) -> Json | None:
