@@ -30,6 +30,7 @@ from foon_asp.problem.problem import require_rates as require_rates
 from foon_asp.problem.relevance import Reached as Reached
 from foon_asp.problem.relevance import backwards as backwards
 from foon_asp.problem.relevance import first_tree as first_tree
+from foon_asp.problem.relevance import follow as follow
 from foon_asp.problem.relevance import reach as reach
 from foon_asp.problem.relevance import relevant as relevant
 from foon_asp.problem.root import Root as Root

@@ -1,7 +1,7 @@
 """What can be made from the kitchen, and what of it can matter for the goals; both in linear time."""
 
 from collections import deque
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from foon_asp.problem.problem import Problem
@@ -95,13 +95,27 @@ def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
 
     It promises nothing about costs: it is what a search stopped at once still has in hand.
     """
-    if not all(reached.available[o] for o in problem.goals):
-        return None
+    chosen = follow(problem.goals, reached.makers, problem.needs, problem.kitchen)
+    return None if chosen is None else tuple(unit for unit in reached.units if unit in chosen)
+
+
+def follow(
+    objects: Iterable[int],
+    maker: Mapping[int, int],
+    needs: Sequence[Iterable[int]],
+    start: Container[int],
+) -> set[int] | None:
+    """Give all that makes the objects, by one maker each, down to the start; ``None`` where one has none."""
     chosen: set[int] = set()
-    stack = list(problem.goals)
+    stack = list(objects)
     while stack:
-        unit = reached.makers.get(stack.pop())
-        if unit is not None and unit not in chosen:
-            chosen.add(unit)
-            stack.extend(problem.needs[unit])
-    return tuple(unit for unit in reached.units if unit in chosen)
+        o = stack.pop()
+        if o in start:
+            continue
+        found = maker.get(o)
+        if found is None:
+            return None
+        if found not in chosen:
+            chosen.add(found)
+            stack.extend(needs[found])
+    return chosen

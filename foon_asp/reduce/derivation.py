@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
+from foon_asp.problem import follow
 from foon_asp.reduce.graph import Graph
 
 
@@ -21,20 +22,7 @@ class Derivations(NamedTuple):
 
     def tree(self, graph: Graph, objects: Iterable[int]) -> set[int] | None:
         """Give the actions that make the objects by following the makers; ``None`` if one is not made."""
-        maker, start, needs = self.maker, graph.start, graph.needs
-        chosen: set[int] = set()
-        stack = list(objects)
-        while stack:
-            o = stack.pop()
-            if o in start:
-                continue
-            action = maker.get(o)
-            if action is None:
-                return None
-            if action not in chosen:
-                chosen.add(action)
-                stack.extend(needs[action])
-        return chosen
+        return follow(objects, self.maker, graph.needs, graph.start)
 
 
 def derive(

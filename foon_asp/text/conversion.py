@@ -142,7 +142,7 @@ class Converter:
         parts: list[str] = []
         for block in blocks:
             try:
-                self._add([self._block(block, 1)], [block.source], parts, lost)
+                parts += _counted([(self._block(block, 1), block.source)], lost)
             except CannotHoldError as problem:
                 self._cannot_hold(problem, block.source)
         return written_list(parts, 0) + "\n" if self.target.is_json else "".join(parts)
@@ -153,13 +153,12 @@ class Converter:
         listed = list(self._reader.listed_units(text, file))
         videos = self._videos(text, listed, lost)
         for unit in listed:
-            inputs, motion, outputs = list[str](), list[str](), list[str]()
-            sides = ((unit.inputs, inputs), (unit.outputs, outputs))
             try:
-                self._add([self._motion(unit.motion, level + 1)], [unit.motion_source], motion, lost)
-                for blocks, side in sides:
-                    written = [self._block(block, level + 2) for block in blocks]
-                    self._add(written, [block.source for block in blocks], side, lost)
+                motion = _counted([(self._motion(unit.motion, level + 1), unit.motion_source)], lost)
+                inputs, outputs = (
+                    _counted([(self._block(block, level + 2), block.source) for block in side], lost)
+                    for side in (unit.inputs, unit.outputs)
+                )
             except CannotHoldError as problem:
                 self._cannot_hold(problem, unit.motion_source)
                 continue
@@ -192,11 +191,6 @@ class Converter:
         else:
             lost.comments(text, kept)
         return kept
-
-    def _add(self, parts: list[_Part], places: list[Source], to: list[str], lost: "_Tally") -> None:
-        for (text, losses), place in zip(parts, places, strict=True):
-            to.append(text)
-            lost.add(losses, place)
 
     def _block(self, block: ObjectBlock, level: int) -> _Part:
         key = block.object, block.states, self._is_list
@@ -272,6 +266,13 @@ class Converter:
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message = f"{self.target} cannot hold this: {problem}" + ("; left out" if self.lenient else "")
         self.diagnostics.append(Diagnostic(severity, "cannot-hold", message, source))
+
+
+def _counted(parts: list[tuple[_Part, Source]], lost: "_Tally") -> list[str]:
+    """Give the texts of parts, and count what is lost of each."""
+    for (_, losses), place in parts:
+        lost.add(losses, place)
+    return [text for (text, _), _ in parts]
 
 
 def _raise_first_error(diagnostics: list[Diagnostic]) -> None:
