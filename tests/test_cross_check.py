@@ -61,7 +61,11 @@ def test_every_engine_agrees_with_brute_force(engine: Solve, rule: ContainerRule
         problem = random_problem(seed, rule)
         found = list(oracle.trees(problem))
         for objective in Objective:
-            answer = engine(problem, levels((objective,)), frozenset(), 60.0)
+            try:
+                answer = engine(problem, levels((objective,)), frozenset(), 60.0)
+            except NotCheckedError:  # and only then
+                assert max(problem.figure(objective, unit) for unit in range(len(problem.network))) > 10**9
+                continue
             assert answer.finished
             judged = [str(looked_at) for looked_at in answer.objectives]
             keys = [tuple(oracle.measure(problem, tree, o) for o in judged) for tree in found]
@@ -72,7 +76,7 @@ def test_every_engine_agrees_with_brute_force(engine: Solve, rule: ContainerRule
             assert oracle.makes(problem, tree)
             mine = tuple(oracle.measure(problem, tree, o) for o in judged)
             if not objective.row.whole:  # in floats: rates that differ in the ninth digit are one
-                assert float(mine[0]) == pytest.approx(float(min(keys)[0]), rel=1e-4)
+                assert float(mine[0]) == pytest.approx(float(min(keys)[0]), rel=1e-4, abs=1e-6)
             else:
                 assert mine == min(keys)
             trees += bool(tree)
