@@ -60,7 +60,7 @@ class Objective(StrEnum):
     ``inputs+ingredients``: the same plus the ingredients of those nodes (the published heuristic's
     measure). ``success``: greatest product of success rates. ``kitchen``: fewest distinct kitchen items
     among the inputs that the units need. ``attempts``: least expected number of executions of units, when one
-    that fails is tried again until it succeeds.
+    that fails is tried again until it succeeds. ``price``: least sum of the prices of units.
     """
 
     row: Row
@@ -104,6 +104,10 @@ class Objective(StrEnum):
             is_fact=True,
             whole=False,
         ),
+    )
+    PRICE = (
+        "price",
+        Row("price", "price", lambda unit: unit.price, needs=Known.PRICES, is_fact=True, whole=False),
     )
 
 

@@ -30,7 +30,7 @@ from foon_asp.network import Network, UnitPrices, node_at_level
 FORMAT = "foon-asp certificate"
 VERSION = 3
 _WITH_PRICES = 3  # the first version with a digest of them
-OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts")
+OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts", "price")
 
 _KEYS = {
     *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "forbidden"),
@@ -177,7 +177,8 @@ def verify(
         stated = _object(certificate["digests"], tuple(found))
         for name, digest in found.items():
             _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
-        return _Check(certificate, network, kitchen, rates, utensils).claim()
+        priced = prices if version >= _WITH_PRICES else None
+        return _Check(certificate, network, kitchen, rates, utensils, priced).claim()
     except RecursionError:
         raise RefusedError("branches within branches without end") from None
 
@@ -196,6 +197,7 @@ class _Check:
         kitchen: frozenset[int],
         rates: Mapping[str, Fraction] | None,
         utensils: frozenset[str],
+        prices: UnitPrices | None,
     ) -> None:
         self.allowed = _STEPS + _STEPS_EACH * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
@@ -210,6 +212,7 @@ class _Check:
         by_rates = {"success", "attempts"} & set(self.objectives)
         self.rates = self._rates(rates) if by_rates else []
         self.costly = frozenset(self.rates) - {0, 1}
+        self.prices = self._prices(prices) if "price" in self.objectives else []
         self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
         _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         forbidden = _object(certificate["forbidden"], ("motions", "objects"))
@@ -230,6 +233,20 @@ class _Check:
         _require(all(rate <= 1 for rate in found), "a rate is above 1")
         _require("attempts" not in self.objectives or 0 not in found, "a unit that never succeeds has no end")
         return found
+
+    def _prices(self, given: UnitPrices | None) -> list[Fraction]:
+        """Give the price of each unit, its own or its motion's; below level 3 it is the least."""
+        if given is None:
+            return self._known(None, "prices")
+        network = self.network
+        whole = network.detailed or network
+        own = {whole.unit_id(unit): price for unit, price in given.units.items()}
+        prices = [own.get(unit, given.motions.get(motion)) for unit, motion in enumerate(whole.motions)]
+        if network.detailed is not None:
+            each = [[prices[detail] for detail in details] for details in network.stands_for]
+            known = [[price for price in found if price is not None] for found in each]
+            prices = [min(k) if len(k) == len(e) else None for k, e in zip(known, each, strict=True)]
+        return self._known(prices, "prices")
 
     def _known(self, values: Sequence[Fraction | None] | None, what: str) -> list[Fraction]:
         """Give values of all units, by what they are and where all are there."""
@@ -307,7 +324,7 @@ class _Check:
                 figure = total.get((level, None), Fraction(0))
                 if max(figure.numerator, figure.denominator).bit_length() > _WRITTEN:
                     raise LimitError("what the tree costs is too long a number to be written")
-                costs.append(figure if objective == "attempts" else int(figure))
+                costs.append(figure if objective in {"attempts", "price"} else int(figure))
         return total, costs
 
     def _prove(self, proof: Any, least: Amount) -> None:
@@ -445,6 +462,8 @@ class _Check:
                 cost[level, self.rates[member]] = Fraction(1)
             elif objective == "attempts":
                 cost[level, None] = 1 / self.rates[member]
+            elif objective == "price":
+                cost[level, None] = self.prices[member]
             else:
                 _require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
                 inputs = network.inputs[member]
