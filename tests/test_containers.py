@@ -16,7 +16,7 @@ import pytest
 import foon_asp
 from foon_asp import why_not
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.bare_program import program_facts
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify, certify_infeasible
 from foon_asp.engines.highs import solve_with_highs
@@ -109,9 +109,11 @@ def test_what_is_needed_and_put_out_is_given_and_what_is_new_is() -> None:
 
 
 def test_facts_say_both_what_is_put_out_and_what_is_made() -> None:
-    facts = program_facts(ask(HOT), (Objective.UNITS,), Settings())
+    facts = bare_program(ask(HOT), (Objective.UNITS,), Settings(), {}).facts
     assert "output(0,1). output(0,2). gives(0,2)." in facts
-    strict = program_facts(ask(HOT, ContainerRule.STRICT, (WATER, POT)), (Objective.UNITS,), Settings())
+    strict = bare_program(
+        ask(HOT, ContainerRule.STRICT, (WATER, POT)), (Objective.UNITS,), Settings(), {}
+    ).facts
     assert "output(0,1). output(0,2). gives(0,1). gives(0,2)." in strict
 
 

@@ -21,7 +21,7 @@ from clingo.symbol import SymbolType
 
 import foon_asp.asp
 from foon_asp.asp import Settings, encoding
-from foon_asp.asp.bare_program import program_facts
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.facts import FACT_PREDICATES
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -226,7 +226,7 @@ def test_facts_are_what_the_table_says() -> None:
     given = data.network, data.kitchen, (goal,), data.rates, data.utensils, ContainerRule.STRICT
     problem = Problem(*given, unit_prices=UnitPrices(dict.fromkeys(data.network.motions, Fraction(2)), {}))
     statements: list[AST] = []
-    parse_string(program_facts(problem, OBJECTIVES, Settings()), statements.append)
+    parse_string(bare_program(problem, OBJECTIVES, Settings(), {}).facts, statements.append)
     second_step = {
         predicate
         for predicate, row in predicates().items()
@@ -246,7 +246,7 @@ def test_facts_are_what_the_table_says() -> None:
     assert survey(statements).heads == everything - with_constraints
     statements.clear()
     settings = Settings(constraints=(Path("only_sources"),))
-    parse_string(program_facts(problem, OBJECTIVES, settings), statements.append)
+    parse_string(bare_program(problem, OBJECTIVES, settings, {}).facts, statements.append)
     assert survey(statements).heads == everything
     assert second_step == {("_exponent", 3), ("_product", 3), ("_seen", 1), ("_wanted", 1)}
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings
-from foon_asp.asp.bare_program import program_facts
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.facts import write_product
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
@@ -63,7 +63,7 @@ def test_the_facts_say_what_the_table_says() -> None:
     kitchen = frozenset(o for o in range(3))
     rates = {"stir\\in": Fraction(1), "unrelated": Fraction(1)}
     problem = Problem(network, kitchen, (3,), rates, frozenset({"cup", "pot"}), ContainerRule.IMPLIED)
-    text = program_facts(problem, (Objective.SUCCESS,), Settings())
+    text = bare_program(problem, (Objective.SUCCESS,), Settings(), {}).facts
     facts = set(re.findall(r"[a-z]+\((?:\"(?:\\.|[^\"\\])*\"|[^()\"])*\)(?=\.)", text))
     assert facts == {
         *(f"unit({unit})", r'motion(0,"stir\\in")', "inputs(0,3)", "ingredients(0,1)"),
@@ -77,7 +77,7 @@ def test_the_facts_say_what_the_table_says() -> None:
         *('utensil("cup")', "goal(3)", "optimize(success,2)", "optimize(units,1)"),
     }
     other = replace(problem, rates={**rates, "stir\\in": Fraction(1, 2)}, as_seen=problem)
-    text = program_facts(other, (Objective.SUCCESS,), Settings())
+    text = bare_program(other, (Objective.SUCCESS,), Settings(), {}).facts
     assert ("rate(0,1000000)" in text, "risk(0,0)" in text) == (True, False)  # the first is for rules to see
 
 

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import pytest
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
-from foon_asp.asp.at_most import at_most, better_than
-from foon_asp.asp.bare_program import program_facts
+from foon_asp.asp.at_most import better_than
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.scales import Scales
 from foon_asp.asp.session import Session
 from foon_asp.deadline import Deadline
@@ -24,6 +24,7 @@ from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.reduce import NONE, Reduced, Reduction, reduce
 from foon_asp.resources import encodings_folder
+from tests.test_bounded import at_most
 from tests.test_objectives import NEW
 from tests.ways_problem import GOAL, ways
 
@@ -274,13 +275,21 @@ def test_the_facts_of_a_question() -> None:
     ]
     asked = ["goal(2).", "optimize(success,2).", "optimize(units,1)."]
     at_hand = [f"{objects[0]} kitchen(0).", *objects[1:]]
-    assert program_facts(problem, (SUCCESS,), Settings()).splitlines() == [*units[:2], *at_hand[:3], *asked]
+    assert bare_program(problem, (SUCCESS,), Settings(), {}).facts.splitlines() == [
+        *units[:2],
+        *at_hand[:3],
+        *asked,
+    ]
     nowhere = dataclasses.replace(problem, kitchen=frozenset())
-    assert program_facts(nowhere, (SUCCESS,), Settings()).splitlines() == [*units[:2], *objects[:3], *asked]
+    assert bare_program(nowhere, (SUCCESS,), Settings(), {}).facts.splitlines() == [
+        *units[:2],
+        *objects[:3],
+        *asked,
+    ]
     ruled = Settings(constraints=(Path("at_most_units"),), constants=("max_units=3",))
     places = [f'source({number},"{name}").' for number, name in enumerate(("way 0", "way 0", "ways"))]
     sourced = [f"{unit} {place}" for unit, place in zip(units, places, strict=True)]
-    assert program_facts(problem, (SUCCESS,), ruled).splitlines() == [*sourced, *at_hand, *asked]
+    assert bare_program(problem, (SUCCESS,), ruled, {}).facts.splitlines() == [*sourced, *at_hand, *asked]
 
 
 def test_facts_where_some_goals_can_be_made() -> None:
@@ -288,9 +297,9 @@ def test_facts_where_some_goals_can_be_made() -> None:
     problem = ways(["0.5"], ["0.5", "0.5"])
     (start,) = problem.kitchen
     half = dataclasses.replace(problem, kitchen=frozenset({2}), goals=(*problem.goals, start))
-    assert "unit(0)." in program_facts(half, (UNITS,), Settings())
+    assert "unit(0)." in bare_program(half, (UNITS,), Settings(), {}).facts
     whole = dataclasses.replace(half, goals=problem.goals)
-    assert "unit(0)." not in program_facts(whole, (UNITS,), Settings())
+    assert "unit(0)." not in bare_program(whole, (UNITS,), Settings(), {}).facts
 
 
 def test_without_reductions_the_best_tree_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -867,7 +876,7 @@ def test_answers_are_about_the_numbers_of_the_whole_network(tmp_path: Path) -> N
         outcome = solve(part, (SUCCESS,), settings, heard)
         assert outcome.units == (5,)
         assert heard.trees[-1] == part.costs((5,))
-    assert 'unit(8). motion(8,"go 3 0")' in program_facts(part, (UNITS,), Settings())
+    assert 'unit(8). motion(8,"go 3 0")' in bare_program(part, (UNITS,), Settings(), {}).facts
     rule = tmp_path / "rule.lp"
     rule.write_text(":- use(8).\n")
     assert optimum(part, (UNITS,), Settings(constraints=(rule,))) == (2, 3, 4)

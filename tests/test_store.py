@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Settings, solve
-from foon_asp.asp.bare_program import program_facts
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -257,8 +257,9 @@ def test_the_cone_has_the_optimum_of_the_whole(rule: ContainerRule, tmp_path: Pa
             for objectives in ([Objective.UNITS], [Objective.SUCCESS], [Objective.KITCHEN, Objective.INPUTS]):
                 # The same text goes to clingo, ids and all, so that everything that follows is the same.
                 settings = Settings()
-                assert program_facts(part, objectives, settings) == program_facts(
-                    problem, objectives, settings
+                assert (
+                    bare_program(part, objectives, settings, {}).facts
+                    == bare_program(problem, objectives, settings, {}).facts
                 )
                 found, expected = solve(part, objectives), solve(problem, objectives)
                 assert (found.status, found.costs) == (expected.status, expected.costs), seed
@@ -795,7 +796,10 @@ def test_the_real_universal_foon(universal: Path, tmp_path: Path, rule: Containe
         problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
         part = cone_problem(store, problem, own_kitchen=True)
         chosen = (Objective.SUCCESS, Objective.INPUTS)
-        assert program_facts(part, chosen, Settings()) == program_facts(problem, chosen, Settings())
+        assert (
+            bare_program(part, chosen, Settings(), {}).facts
+            == bare_program(problem, chosen, Settings(), {}).facts
+        )
 
 
 @pytest.mark.slow

@@ -8,22 +8,11 @@ from foon_asp.asp.settings import Bounded
 from foon_asp.problem import Costs, Objective
 
 
-def at_most(bounds: Mapping[Objective, int]) -> Bounded:
-    """Ask for trees that cost no more than so much by each of some objectives that count whole numbers.
-
-    For :class:`foon_asp.asp.Settings`. Raises ``ValueError`` for other objectives, and :class:`UserError` for
-    numbers that clingo does not have.
-    """
-    fractions = [str(objective) for objective in bounds if not objective.row.whole]
-    if fractions:
-        raise ValueError(f"{' and '.join(fractions)} is no whole number that a bound could be put on")
-    return _bounded({objective: bound} for objective, bound in bounds.items())
-
-
 def better_than(known: Iterable[Costs], objectives: Iterable[Objective]) -> Bounded:
     """Ask for trees that are better than each of some known ones by one of some objectives.
 
-    ``success`` is none of the objectives. Raises like :func:`at_most`.
+    For :class:`foon_asp.asp.Settings`. ``success`` is none of the objectives. Raises :class:`UserError` for
+    numbers that clingo does not have.
     """
     by = tuple(objectives)
     if all(objective.row.whole for objective in by):

@@ -8,7 +8,6 @@ from typing import NamedTuple
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.facts import write_least_penalty, write_objectives
 from foon_asp.asp.prepared import prepare
-from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.problem import Objective, Problem, levels, reach, relevant
 
@@ -44,24 +43,10 @@ def bare_program(
         settings = settings._replace(relaxed=relaxed)
         penalty = write_least_penalty(len(levels(tuple(objectives))) + 1)
     program = assemble(settings, lambda _: None)
-    return BareProgram(
-        program.files, program.constants, _facts(problem, objectives, settings, program) + penalty
-    )
-
-
-def program_facts(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> str:
-    """Give the facts that :func:`foon_asp.asp.solve` without reductions hands to clingo first, as text.
-
-    With them, bare clingo finds the same optimum. Where a goal cannot be made, units that cannot run are
-    there, too: bare clingo is to see that for itself.
-    """
-    return _facts(problem, objectives, settings, assemble(settings, lambda _: None))
-
-
-def _facts(problem: Problem, objectives: Sequence[Objective], settings: Settings, program: Program) -> str:
     first = prepare(problem, objectives, settings, program)
-    if first.tree is None:
+    if first.tree is None:  # bare clingo is to see for itself that a goal cannot be made
         everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
         units = relevant(problem, everything) if program.own else everything.units
         first = replace(first, units=units)
-    return first.facts + program.rules + write_objectives(first.levels)
+    facts = first.facts + program.rules + write_objectives(first.levels) + penalty
+    return BareProgram(program.files, program.constants, facts)
