@@ -142,9 +142,9 @@ def solve(
     """Find the best task tree, and prove that none is better.
 
     ``objectives`` are names (``units``, ``inputs``, ``inputs+ingredients``, ``success``, ``kitchen``,
-    ``attempts``) of which the first counts most; ``units`` always decides last. ``constraints`` are files, or
-    names of ours, whose ``#const`` are set by ``constants``; ``encodings`` is a folder of encodings to use
-    instead of ours.
+    ``attempts``, ``price``) of which the first counts most; ``units`` always decides last.
+    ``constraints`` are files, or names of ours, whose ``#const`` are set by ``constants``; ``encodings`` is a
+    folder of encodings to use instead of ours.
     ``time_limit`` is in seconds; at the limit, or when interrupted, the answer is the best tree so far with
     the proved bound. ``reductions`` (``all``, ``safe``, ``none`` or a list by commas) come before the search;
     ``clingo_options`` go to clingo. ``reporter`` hears of trees, bounds and warnings; without it, faults of
