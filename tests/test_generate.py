@@ -16,6 +16,7 @@ from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Problem, first_tree, reach, relevant
 from foon_asp.proof import Verdict, simulate
 from foon_asp.text import Data, FoonReader, find_data, find_goal, read_data
+from foon_asp.text.plain_file import read_plain_text
 from tests.conftest import Cli
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
@@ -140,7 +141,9 @@ def test_as_many_distinct_units_as_asked(family: str, units: int, seed: int, wri
     folder = written(family, units, seed)
     data = read(folder)
     assert len(data.network) == units
-    assert len(FoonReader().read_tree(folder / "FOON.txt")) == units  # without merging
+    assert (
+        len(FoonReader().tree_units(read_plain_text(folder / "FOON.txt"), str(folder / "FOON.txt"))) == units
+    )  # without merging
     assert not data.warnings
     assert not data.left_out
     assert len(data.kitchen) == len(json.loads((folder / "kitchen.json").read_text(encoding="utf-8")))

@@ -241,6 +241,11 @@ class Dataset:
                 raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
 
 
+def left_out(count: int) -> str:
+    """Say that lines were left out."""
+    return f"warning: {'1 line' if count == 1 else f'{count} lines'} left out"
+
+
 def _whole_goals(problem: Problem) -> tuple[int, ...]:
     """Give the goals of a problem by id in the whole network."""
     return tuple(problem.network.object_number(goal) for goal in problem.goals)

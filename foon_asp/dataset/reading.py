@@ -2,7 +2,7 @@
 
 import time
 
-from foon_asp.dataset.dataset import Dataset
+from foon_asp.dataset.dataset import Dataset, left_out
 from foon_asp.text import DataFiles, is_store, read_data, summarize
 
 
@@ -20,6 +20,5 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
     data = read_data(files, lenient, level)
     remarks = summarize(data.warnings)
     if data.left_out:
-        lines = "1 line" if data.left_out == 1 else f"{data.left_out} lines"
-        remarks.append(f"warning: {lines} left out")
+        remarks.append(left_out(data.left_out))
     return Dataset(data, time.perf_counter() - began, tuple(remarks), files.kitchen is not None)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
 
-from foon_asp.dataset.dataset import Dataset, ask
+from foon_asp.dataset.dataset import Dataset, ask, left_out
 from foon_asp.dataset.names import changed_prices, changed_rates
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, UnitPrices, network_at_level, pattern_at_level
@@ -62,8 +62,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         prices = _StoredPrices(read.motions, units, listed=False)
     remarks = summarize(warnings)
     if store.left_out:
-        lines = "1 line" if store.left_out == 1 else f"{store.left_out} lines"
-        remarks.append(f"warning: {lines} left out when the store was made")
+        remarks.append(f"{left_out(store.left_out)} when the store was made")
     dataset = StoredDataset(store, kitchen, goals, rates, utensils, prices, began, tuple(remarks))
     if level == 3:
         return dataset

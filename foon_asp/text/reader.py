@@ -79,10 +79,6 @@ class FoonReader:
         self.raise_errors(earlier)
         return builder.build()
 
-    def read_tree(self, file: Path) -> list[tuple[FunctionalUnit, Source]]:
-        """Read one file as units in listed order, copies kept; raises :class:`InputError`."""
-        return self.tree_units(read_plain_text(file), str(file))
-
     def tree_units(self, text: str, file: str) -> list[tuple[FunctionalUnit, Source]]:
         """Give the units of a text in listed order, copies kept; raises :class:`InputError`."""
         earlier = len(self.diagnostics)

@@ -13,6 +13,7 @@ from foon_asp.text import FoonReader, InputError, Severity
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine, parse_line
 from foon_asp.text.listed_unit import ListedUnit
 from foon_asp.text.merged_network import merged_text
+from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.writer import write_line
 from tests.text.foon_strategies import steady, units
 
@@ -153,7 +154,10 @@ def test_either_form_is_what_its_lines_are_as_foon_text(
     as_json.write_text((start + text).replace("\n", end), "utf-8", newline="")
     as_text.write_text("\n".join(lines(only(text))) + "\n//\n")
     reader = FoonReader()
-    (by_json, source), (by_text, _) = reader.read_tree(as_json)[0], reader.read_tree(as_text)[0]
+    (by_json, source), (by_text, _) = (
+        reader.tree_units(read_plain_text(as_json), str(as_json))[0],
+        reader.tree_units(read_plain_text(as_text), str(as_text))[0],
+    )
     assert by_json == by_text
     assert source.line == only(text).sources[0].line + start.count("\n")
     assert reader.diagnostics == []

@@ -11,6 +11,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.text import Diagnostic, FoonReader, InputError, Severity, write_units
 from foon_asp.text.line import Line
+from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import ReadUnit
 from foon_asp.text.writer import write_line
 from tests.text.foon_strategies import steady, texts, unit_texts, units
@@ -109,7 +110,7 @@ def test_a_byte_order_mark_and_the_last_line_end_do_not_matter(tmp_path: Path, s
     file = tmp_path / "f.txt"
     file.write_text(start + TEA.rstrip("\n") + end, "utf-8")
     reader = FoonReader()
-    assert reader.read_tree(file) == [(TEA_UNIT, Source(str(file), 1))]
+    assert reader.tree_units(read_plain_text(file), str(file)) == [(TEA_UNIT, Source(str(file), 1))]
     assert reader.diagnostics == []
 
 
@@ -306,7 +307,7 @@ def test_units_that_differ_in_motion_input_or_output_are_not_merged(tmp_path: Pa
 def test_a_tree_keeps_its_copies_in_their_order(tmp_path: Path) -> None:
     file = tmp_path / "f.txt"
     file.write_text(MIX + TEA + MIX)
-    tree = FoonReader().read_tree(file)
+    tree = FoonReader().tree_units(read_plain_text(file), str(file))
     assert [(unit, source.line) for unit, source in tree] == [(MIX_UNIT, 1), (TEA_UNIT, 5), (MIX_UNIT, 15)]
 
 
@@ -579,9 +580,9 @@ def test_a_tree_with_errors_is_refused_and_lenient_reads_the_rest(tmp_path: Path
     file = tmp_path / "f.txt"
     file.write_text(MIX + "?\n" + MIX)
     with pytest.raises(InputError, match=r"f\.txt:5:1: error: found '\?'"):
-        FoonReader().read_tree(file)
+        FoonReader().tree_units(read_plain_text(file), str(file))
     reader = FoonReader(lenient=True)
-    assert [unit for unit, _ in reader.read_tree(file)] == [MIX_UNIT, MIX_UNIT]
+    assert [unit for unit, _ in reader.tree_units(read_plain_text(file), str(file))] == [MIX_UNIT, MIX_UNIT]
     assert len(reader.read_network([file])) == 1
     assert reader.left_out == 2
 
@@ -686,9 +687,9 @@ def test_a_file_that_is_not_utf_8_does_not_hide_the_errors_of_others(tmp_path: P
 
 def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
     for path in (tmp_path / "nothing.txt", tmp_path):
-        for read_it in (lambda p: FoonReader().read_network([p]), FoonReader(lenient=True).read_tree):
+        for lenient in (False, True):
             with pytest.raises(UserError, match="cannot be read") as caught:
-                read_it(path)
+                FoonReader(lenient).read_network([path])
             assert str(path) in str(caught.value)
 
 
@@ -710,8 +711,8 @@ def test_a_reader_that_met_an_error_reads_the_next_file(tmp_path: Path) -> None:
     good.write_text(MIX)
     reader = FoonReader()
     with pytest.raises(InputError):
-        reader.read_tree(bad)
-    assert [unit for unit, _ in reader.read_tree(good)] == [MIX_UNIT]
+        reader.tree_units(read_plain_text(bad), str(bad))
+    assert [unit for unit, _ in reader.tree_units(read_plain_text(good), str(good))] == [MIX_UNIT]
     with pytest.raises(InputError):
         reader.read_network([good, bad])
     assert len(reader.read_network([good])) == 1
@@ -922,7 +923,7 @@ def test_the_real_subgraphs_are_read_and_written_and_read_again() -> None:
     unfinished: list[Diagnostic] = []
     for file in files:
         reader = FoonReader()
-        tree = reader.read_tree(file)
+        tree = reader.tree_units(read_plain_text(file), str(file))
         assert tree
         unfinished += [d for d in reader.diagnostics if d.code == "no-motion"]
         assert (reader.left_out > 0) == any(d.code == "no-motion" for d in reader.diagnostics)
