@@ -27,16 +27,34 @@ def load(
     level: int = 3,
     lenient: bool = False,
 ) -> "Foon":
-    """Load a FOON and what stands beside it.
+    """Load a FOON, a kitchen and the files that belong to them.
 
-    ``source`` is a folder with all of it, a network (FOON text or JSON), several of them, which are merged,
-    or a store; without it, the bundled kitchen. The other files take the place of those of the folder.
-    ``level`` says what counts of an object node: 3 all of it, 2 without contents, 1 the label. With
-    ``lenient`` lines that are not understood are left out.
+    Of a store, only the indexes are read; :meth:`Foon.problem` reads what can matter for its goals.
+    Assumptions made while reading are warnings (:class:`FoonWarning`), which :attr:`Foon.warnings` lists
+    too.
 
-    Of a store, nothing but its indexes is read yet; :meth:`Foon.problem` reads what can matter for the
-    goals. What was assumed while reading is warned of (:class:`FoonWarning`) and in :attr:`Foon.warnings`.
-    Raises :class:`UserError` for what cannot be read.
+    Parameters:
+        source: A folder with all files; or a network (FOON text or JSON), several networks to merge, or a
+            store. Without it, the bundled kitchen is loaded.
+        kitchen: The file with the object nodes at hand, instead of that of the folder.
+        rates: The file with the success rates of motions, instead of that of the folder.
+        utensils: The file with the labels of utensils, instead of that of the folder.
+        goals: The file with goals, instead of that of the folder.
+        unit_prices: The file with the prices of units, instead of that of the folder.
+        level: How object nodes are compared: by label (1), by label, states and relations (2), or by
+            everything (3).
+        lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
+
+    Returns:
+        The data, from which problems are made.
+
+    Raises:
+        UserError: for a file that is missing or cannot be read, or another level.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> foon.network
+        <Network: 220 units, 418 object nodes, level 3>
     """
     if level not in {1, 2, 3}:
         raise UserError(f"found level={level!r}, expected 1, 2 or 3")
@@ -62,11 +80,27 @@ def build(
     utensils: Iterable[str] = (),
     unit_prices: UnitPricesNamed | None = None,
 ) -> "Foon":
-    """Give a network that was put together by hand, with what stands beside it, as data to ask.
+    """Combine a network that was built in Python with a kitchen, rates and the rest.
 
-    ``kitchen`` is at hand, ``rates`` are the success rates of all motions, ``utensils`` the labels that the
-    container rule ``implied`` looks at, ``unit_prices`` prices by motion and of single units. Raises
-    :class:`UserError` for names that mean nothing or too much.
+    Parameters:
+        network: The network, made by a :class:`NetworkBuilder`.
+        kitchen: The object nodes at hand, by label, in one-line notation, or as :class:`ObjectNode`.
+        rates: The success rates of all motions, above 0 and at most 1.
+        utensils: The labels of the utensils that the container rule ``implied`` is about.
+        unit_prices: Prices, from 0, by the name of a motion or of single units.
+
+    Returns:
+        The data, from which problems are made.
+
+    Raises:
+        UserError: for a name that means no object node or several, or a rate or price out of range.
+
+    Example:
+        >>> builder = foon_asp.NetworkBuilder()
+        >>> water, tea = foon_asp.parse_node("water"), foon_asp.parse_node("tea; hot")
+        >>> unit = builder.add("brew", [water], [tea], foon_asp.Source("by hand", 1))
+        >>> foon_asp.solve(foon_asp.build(builder.build(), kitchen="water").problem("tea"))
+        <Answer: optimal by units (strict containers): 1 unit, 1 input>
     """
     data = Data(network, frozenset(), (), (), None, frozenset(utensils), (), 0)
     return Foon(Dataset(data, 0.0).vary(Changes(kitchen, rates=rates, unit_prices=unit_prices)), "a network")

@@ -6,6 +6,7 @@ import inspect
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 
 import foon_asp
 from foon_asp.cli.verbs import VERBS
-from foon_asp.questions import index
+from foon_asp.questions import contract, index
 from foon_asp.questions.contract import Option, Part, Question
 from foon_asp.questions.index import INDEX, module_name, question_name
 from foon_asp.questions.result import Result
@@ -29,6 +30,7 @@ BESIDE = {
     "arguments",
     "caller",
     "contract",
+    "docstring",
     "cross_check",
     "index",
     "options",
@@ -51,7 +53,7 @@ network: functional_unit level network node_pattern object_node source spelling 
     unit_prices
 problem: containers costs number objective order problem relevance root
 proof: simulation
-questions: answer arguments caller contract index options posing result solve
+questions: answer arguments caller contract docstring index options posing result solve
 reduce: derivation dominance exact_costs forced graph narrow near reduction reductions upper_bound
 report: answer
 text: data_folder diagnostics exact_price goal_name grammar json_fault json_list json_node
@@ -63,10 +65,14 @@ ALONE = {"deadline", "errors", "escapes", "resources", "warning"}
 PYTHON_ONLY = {"problem", "about", "data", "left", "right", "reporter"}
 
 
-def question_of(verb: str) -> Question[..., Result]:
+def function_of(verb: str) -> Callable[..., Result]:
     module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
-    found: Question[..., Result] = getattr(module, question_name(verb))
+    found: Callable[..., Result] = getattr(module, question_name(verb))
     return found
+
+
+def question_of(verb: str) -> Question:
+    return contract.question_of(function_of(verb))
 
 
 def parameters(verb: str) -> dict[str, inspect.Parameter]:
@@ -118,7 +124,7 @@ def test_defaults_are_the_same(verb: str) -> None:
 
 @pytest.mark.parametrize("verb", INDEX)
 def test_a_command_has_what_python_has(verb: str) -> None:
-    theirs = inspect.signature(question_of(verb)).parameters
+    theirs = inspect.signature(function_of(verb)).parameters
     for name in theirs.keys() - PYTHON_ONLY:
         assert parameters(verb)[name].default == theirs[name].default, name
 
@@ -142,7 +148,7 @@ def test_help_begins_with_the_line_of_the_index(verb: str, cli: Cli) -> None:
 @pytest.mark.parametrize("verb", INDEX)
 def test_text_parameters_are_those_of_the_text(verb: str) -> None:
     text = [option.name for option in question_of(verb).options if option.part & Part.TEXT]
-    result = inspect.signature(question_of(verb)).return_annotation
+    result = inspect.signature(function_of(verb)).return_annotation
     assert text == [name for name in inspect.signature(result.text).parameters if name != "self"]
 
 

@@ -17,28 +17,27 @@ from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.questions.caller import Caller, asked_by
-from foon_asp.questions.contract import Part, Question
+from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.index import module_name, question_name
 from foon_asp.questions.result import Result
 
 _DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
 
 
-def find_question(verb: str) -> Question[..., Result]:
+def find_question(verb: str) -> Question:
     """Give a question; its module is imported only then."""
     module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
-    question: Question[..., Result] = getattr(module, question_name(verb))
-    return question
+    return question_of(getattr(module, question_name(verb)))
 
 
-def parameters(question: Question[..., Result], given: Mapping[str, Any], parts: Part) -> dict[str, Any]:
+def parameters(question: Question, given: Mapping[str, Any], parts: Part) -> dict[str, Any]:
     """Give the values of the options that belong to some parts."""
     own = (option.name for option in question.options if option.part & parts)
     return {name: given[name] for name in own if name in given}
 
 
 def ask(
-    question: Question[..., Result],
+    question: Question,
     given: Mapping[str, Any],
     deadline: Deadline | None,
     command_of: Callable[[str], click.Command],

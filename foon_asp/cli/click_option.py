@@ -79,5 +79,5 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         show_default=option.default is not None,
         metavar=option.metavar,
         callback=_weights if option.kind is Kind.WEIGHTS else _STANDING.get(option.name),
-        help=option.help,
+        help=f"{option.help[:-1]}; repeatable." if option.many else option.help,
     )

@@ -22,20 +22,24 @@ _PATH = click.Path(path_type=NamedPath)
 
 
 _DATA_OPTIONS = (
-    click.option("--data", "folder", type=_PATH, metavar="DIR", help="Folder with all of the following."),
+    click.option("--data", "folder", type=_PATH, metavar="DIR", help="A folder with all of the following."),
     click.option(
         "--network",
         multiple=True,
         type=_PATH,
         metavar="FILE|DIR|STORE",
-        help="FOON text or JSON, repeatable; or one store.",
+        help="FOON text or JSON, repeatable; or a single store.",
     ),
-    click.option("--kitchen", type=_PATH, metavar="FILE", help="What is at hand: JSON, or FOON objects."),
+    click.option(
+        "--kitchen", type=_PATH, metavar="FILE", help="Object nodes at hand: JSON, or FOON objects."
+    ),
     click.option("--rates", type=_PATH, metavar="FILE", help="Success rates of motions."),
     click.option("--utensils", type=_PATH, metavar="FILE", help="Labels of utensils."),
-    click.option("--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name, likewise."),
-    click.option("--unit-prices", type=_PATH, metavar="FILE", help="Prices of units, by motion or single."),
-    click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning."),
+    click.option(
+        "--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name: JSON, or FOON objects."
+    ),
+    click.option("--unit-prices", type=_PATH, metavar="FILE", help="Prices of motions and of single units."),
+    click.option("--lenient", is_flag=True, help="Skip lines that are not understood, with a warning."),
 )
 
 _LEVEL_OPTION = click.option(
@@ -43,11 +47,11 @@ _LEVEL_OPTION = click.option(
     type=click.IntRange(1, 3),
     default=3,
     show_default=True,
-    help="What counts of an object node: 3 all of it, 2 without contents, 1 the label.",
+    help="Compare object nodes by label (1), by label, states and relations (2), or by everything (3).",
 )
 
 debug_option = click.option(
-    "--debug", is_flag=True, expose_value=False, help="Show where an error was raised."
+    "--debug", is_flag=True, expose_value=False, help="Show where in the code an error was raised."
 )
 
 

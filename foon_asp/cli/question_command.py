@@ -43,7 +43,7 @@ def question_command(verb: str) -> click.Command:
     return click.command(verb, help=help_)(command)
 
 
-def _answering(question: "Question[..., Result]") -> Callable[..., ExitCode]:
+def _answering(question: Question) -> Callable[..., ExitCode]:
     def answer(
         format_: str | None = None,
         output: Path | None = None,
@@ -78,7 +78,7 @@ def _answering(question: "Question[..., Result]") -> Callable[..., ExitCode]:
     return answer
 
 
-def _format_options(question: "Question[..., Result]") -> list[Callable[[Command], Command]]:
+def _format_options(question: Question) -> list[Callable[[Command], Command]]:
     """Make ``--format``, and ``--output`` for a question whose result can be written into a file."""
     if len(question.formats) == 1:
         return []
@@ -102,7 +102,7 @@ def _format_options(question: "Question[..., Result]") -> list[Callable[[Command
     ]
 
 
-def _form(question: "Question[..., Result]", named: str | None, output: Path | None) -> str:
+def _form(question: Question, named: str | None, output: Path | None) -> str:
     """Choose the format, before anything is read or solved."""
     form = named or (question.formats[0] if output is None else question.format_of(output))
     if form == "png" and output is None and sys.stdout.isatty():

@@ -135,17 +135,25 @@ class Alternatives(Result):
     GOALS,
     OBJECTIVES,
     CONTAINERS,
-    Option("best", "The K best trees, in order.", Kind.WHOLE, metavar="K", least=1),
-    Option("different", "K trees that differ most from each other.", Kind.WHOLE, metavar="K", least=2),
+    Option("best", "Find this many of the best trees, in order.", Kind.WHOLE, metavar="K", least=1),
+    Option(
+        "different",
+        "Find this many trees that differ most from each other.",
+        Kind.WHOLE,
+        metavar="K",
+        least=2,
+    ),
     Option(
         "within",
-        "With --different: how much worse by the first objective a tree may be.",
+        "Among different trees, how much worse by the first objective a tree may be, in percent.",
         Kind.WHOLE,
         default=0,
         metavar="PERCENT",
         least=0,
     ),
-    Option("limit", "Trees to look at, at most.", Kind.WHOLE, default=100, metavar="N", least=1),
+    Option(
+        "limit", "The greatest number of trees to look at.", Kind.WHOLE, default=100, metavar="N", least=1
+    ),
     *RULES,
     *LIMITS,
     help_="""
@@ -175,13 +183,27 @@ def alternatives(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Alternatives:
-    """Find all optimal trees; or with ``best`` so many of the best; or with ``different`` so unlike ones.
+    """Find all optimal trees, the best few, or those that differ most from each other.
 
-    With ``different``, so many trees are chosen that differ most, among those whose first objective is worse
-    by no more than ``within`` percent: 10 allows 11 units where 10 are best, and a success of 0.9 times the
-    best. The two chosen trees that are most alike differ as much as can be (in how many units only one of
-    them has). At most ``limit`` trees are looked at; ``complete`` says that these were all, and that no
-    choice among them is better. The limits are for all of it. Otherwise as :func:`foon_asp.solve`.
+    Trees that differ most are chosen so that the two most alike differ in as many units as possible. The
+    limits are for the whole question.
+
+    Parameters:
+        best: The number of best trees to find, in order.
+        different: The number of trees to choose that differ most.
+        within: How much worse by the first objective a tree may be among ``different`` ones, in percent: 10
+            allows 11 units if 10 are best, or 0.9 times the best success.
+
+    Returns:
+        The ``trees``; ``complete`` tells whether they are all that were asked for, proved.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or if both ``best`` and ``different`` are given.
+
+    Example:
+        >>> found = foon_asp.alternatives(foon_asp.load().problem("macaroni"), best=3)
+        >>> [tree.costs.units for tree in found.trees]
+        [9, 10, 10]
     """
     if best is not None and different is not None:
         raise UserError("best and different ask for different things; give one of them")

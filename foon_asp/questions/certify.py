@@ -195,9 +195,9 @@ def _write(certificate: Certificate | None, file: Path) -> None:
 
 @question(
     GOALS,
-    Option("tree", "A task tree to prove best.", Kind.FILE, metavar="TREE.txt"),
+    Option("tree", "A task tree to prove the best.", Kind.FILE, metavar="TREE.txt"),
     Option(
-        "file", "Where to write it; stdout by default.", Kind.FILE, flags=("-o", "--output"), metavar="FILE"
+        "file", "The file to write; by default stdout.", Kind.FILE, flags=("-o", "--output"), metavar="FILE"
     ),
     OBJECTIVES,
     CONTAINERS,
@@ -225,10 +225,20 @@ def certify(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Certified:
-    """Solve a problem, and find a certificate of the answer: a proof that :func:`verify` checks.
+    """Solve a problem, and find a certificate: a proof of the answer, which :func:`foon_asp.verify` checks.
 
-    A certificate speaks about the whole network, which of a store is read for it. Otherwise as
-    :func:`foon_asp.solve`.
+    A certificate is about the whole network, so all of a store is read.
+
+    Returns:
+        The ``answer``, and the ``certificate``, which is ``None`` if no proof was found.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or an objective that needs rates or prices not given.
+
+    Example:
+        >>> certified = foon_asp.certify(foon_asp.load().problem("greek salad"), "success")
+        >>> certified.certificate.claim
+        'optimal'
     """
     chosen = chosen_objectives(problem, objectives)
     return certified(problem, chosen, settings(constraints, constants, encodings, time_limit, memory_limit))

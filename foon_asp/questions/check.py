@@ -95,10 +95,25 @@ class Checked(Result):
     """,
 )
 def check(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Checked:
-    """Simulate a tree for the goals of a problem, and say whether and in which order it executes.
+    """Simulate a task tree for the goals of a problem: does it execute, and in which order?
 
-    ``tree`` is the path of a file, FOON text or an answer in JSON, or functional units in the order listed,
-    such as a :class:`~foon_asp.TaskTree`.
+    Parameters:
+        tree: The path of a file (FOON text, or an answer in JSON), or functional units in the order listed,
+            such as a :class:`TaskTree`.
+
+    Returns:
+        Whether the tree ``executes``, the tree ``in_order``, and the ``simulation`` with what stops it.
+
+    Raises:
+        UserError: if the file cannot be read or contains no tree.
+
+    Example:
+        >>> problem = foon_asp.load().problem("macaroni")
+        >>> checked = foon_asp.check(problem, foon_asp.retrieve(problem, "bfs").tree)
+        >>> checked.simulation.verdict
+        <Verdict.REORDERED: 'executes in another order'>
+        >>> checked.simulation.as_listed.missing.label
+        'stove'
     """
     given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
     return Checked(given, simulate_for(given.problem, given))

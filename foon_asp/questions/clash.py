@@ -152,7 +152,7 @@ class Clash(Result):
     CONTAINERS,
     Option(
         "weights",
-        "What it costs to drop a constraint of that file; else 1.",
+        "What it costs to drop a constraint of a file, 1 if not given.",
         Kind.WEIGHTS,
         flags=("--weight",),
         many=True,
@@ -185,9 +185,26 @@ def clash(
 ) -> Clash:
     """Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.
 
-    Every rule without a head in the files of ``constraints`` is a constraint of its own; ``weights`` says
-    what it costs to drop one of a file, else 1. Of a store, the whole network is read. Otherwise as
-    :func:`foon_asp.solve`.
+    Every rule without a head (``:- ...``) in the files is one constraint. All of a store is read.
+
+    Parameters:
+        weights: What it costs to drop one constraint of a file, by file; 1 if not given.
+
+    Returns:
+        The ``smallest`` clash, the constraints to be ``dropped``, and the best tree without them as the
+        ``outcome``.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or if there are no constraints.
+
+    Example:
+        >>> found = foon_asp.clash(
+        ...     foon_asp.load().problem("ice"),
+        ...     constraints=["forbid_motion", "require_motion"],
+        ...     constants={"forbidden_motion": "crush", "required_motion": "crush"},
+        ... )
+        >>> len(found.smallest), len(found.dropped)
+        (2, 1)
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)

@@ -175,14 +175,14 @@ def _hold_readable(problem: Problem) -> None:
     EACH_GOAL,
     Option(
         "all_makeable",
-        "Every object that can be made; prints a summary.",
+        "Compare for every object that can be made, and print a summary.",
         Kind.FLAG,
         Part.PROBLEM | Part.QUESTION,
         default=False,
     ),
     Option(
         "searches",
-        "A search to run; repeatable. By default all, those of other packages too.",
+        "A search to run; by default all of them, including those of other packages.",
         flags=("--search",),
         many=True,
         choices=search_names,
@@ -190,23 +190,23 @@ def _hold_readable(problem: Problem) -> None:
     *SEARCHING,
     Option(
         "published",
-        "Lay the published table beside what is measured.",
+        "Show the published figures beside the measured ones.",
         Kind.FLAG,
         Part.PROBLEM | Part.QUESTION,
         default=False,
     ),
     CONTAINERS,
     *EACH_LIMITS,
-    Option("jobs", "Processes to use.", Kind.WHOLE, default=1, least=1),
+    Option("jobs", "How many processes to use.", Kind.WHOLE, default=1, least=1),
     Option(
         "results",
-        "JSON Lines, written as results come; run again to go on after an interruption.",
+        "A file to which results are added, as JSON Lines; goals that it already has are not searched again.",
         Kind.FILE,
         metavar="FILE",
     ),
     Option(
         "charts",
-        "Bar chart of units (.svg or .png); repeatable.",
+        "A file for a bar chart of units (.svg or .png).",
         Kind.FILE,
         Part.CHART | Part.PROBLEM,
         flags=("--chart",),
@@ -240,14 +240,27 @@ def compare_searches(
     jobs: int = 1,
     results: File | None = None,
 ) -> Compared:
-    """Run searches for each goal of a problem, a question of its own each, and prove the optima beside them.
+    """Run searches for each goal of a problem by itself, and prove the optimum beside them.
 
-    Without ``searches`` all are run, those that other packages offer too.
-    With ``all_makeable`` the goals are all objects that can be made, and the text is a summary.
-    ``published`` runs ids as published, and the text has the published figures beside ours, where all goals
-    have some. The limits are for each optimum and each search; ``jobs`` are processes to use. ``results`` is
-    a file that is written as results come, JSON Lines; what is in it already is not done again. Otherwise as
-    :func:`foon_asp.retrieve`.
+    The limits are for each search and each optimum.
+
+    Parameters:
+        searches: Names of searches, as for :func:`foon_asp.retrieve`; without any, all that are known.
+        all_makeable: Whether to search for every object that can be made, and to print a summary.
+        published: Whether to run ids as published, and to show the published figures beside the measured
+            ones if all goals have some.
+
+    Returns:
+        One comparison for each goal, with figures for each search and the optimum.
+
+    Raises:
+        UserError: for a wrong argument, or a file of results that belongs to another question.
+
+    Example:
+        >>> compared = foon_asp.compare_searches(foon_asp.load().problem("macaroni"), ["bfs"])
+        >>> bfs = compared.comparisons[0].judgements[0]
+        >>> len(bfs.units), bfs.executes
+        (10, 'executes in another order')
     """
     chosen = searched(searches)
     how = search_settings(ties, count, depth_limit, published, *limits(time_limit, memory_limit))

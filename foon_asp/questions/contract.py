@@ -1,16 +1,17 @@
 """What a question is: a function that Python calls, with options that a command line is made from."""
 
-import functools
 from collections.abc import Callable, Mapping
 from enum import Flag, StrEnum, auto
 from pathlib import Path
-from typing import Generic, NamedTuple, ParamSpec, TypeVar
+from typing import NamedTuple, ParamSpec, TypeVar
 
 from foon_asp.errors import UserError
+from foon_asp.questions.docstring import complete_docstring
 from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
 
 P = ParamSpec("P")
+T = TypeVar("T")
 R = TypeVar("R", bound=Result)
 
 
@@ -45,10 +46,11 @@ class Part(Flag):
 class Option(NamedTuple):
     """One thing that can be chosen, as plain data.
 
-    ``name`` is the parameter; ``flags`` are those of the command line, by default ``--name``, where dashes
-    stand for underscores; a ``positional`` one has none and has to be given, unless it is ``many``. ``many``
-    says that it is given again and again, ``choices`` that it is one of them, which a function gives where
-    not all are ours, ``least`` how small a number may be, ``metavar`` what stands for the value in help.
+    ``name`` is the parameter. ``flags`` are those of the command line, by default ``--name`` with dashes for
+    underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: such an option
+    may be repeated. ``help`` describes the option on the command line and in Python; ``python`` adds what
+    only Python accepts. ``choices`` are the values allowed, or a function that lists them, if other packages
+    may add some. ``least`` is the smallest number allowed, ``metavar`` the word for the value in help.
     """
 
     name: str
@@ -62,36 +64,31 @@ class Option(NamedTuple):
     choices: tuple[str, ...] | Callable[[], tuple[str, ...]] = ()
     least: int | None = None
     positional: bool = False
+    python: str = ""
 
 
-class Question(Generic[P, R]):
-    """A question: called, it gives what was found. ``options`` and ``help`` are for a command line.
+class Question:
+    """What a function that answers a question says of itself for a command line.
 
-    ``help`` is what follows after the line of the index, with examples and what it exits with. ``formats``
-    are those that the result has, the first by default. ``suffixes`` say by the name of a file in which of
-    them it is written, for a result that has a ``write``. ``pose`` makes for a command line what the function
-    is asked about, of the options of the problem. ``command`` is what a command asks, with all options: the
-    function itself, or another one where a command can choose more, or what Python raises is an answer there.
+    ``help`` follows the line of the index, with examples and exit codes. ``formats`` are those of the result,
+    the default first. ``suffixes`` are the endings of file names, with the format that each stands for, if a
+    result can be written into a file. ``pose`` makes the first arguments of the function from the options of
+    the problem. ``command`` is what a command calls with all options: the function itself, or another one if
+    a command has more options, or answers where Python raises an exception.
     """
 
     def __init__(
         self,
-        ask: Callable[P, R],
         options: tuple[Option, ...],
         help_: str,
         formats: tuple[str, ...],
         suffixes: Mapping[str, str],
         pose: Pose,
-        command: Callable[..., Result] | None,
+        command: Callable[..., Result],
     ) -> None:
-        functools.update_wrapper(self, ask)
-        self.ask, self.options, self.help, self.formats, self.pose = ask, options, help_, formats, pose
+        self.options, self.help, self.formats, self.pose = options, help_, formats, pose
         self.suffixes = suffixes
-        self.command = command or ask
-
-    def __call__(self, *args: P.args, **named: P.kwargs) -> R:
-        """Ask, as Python does."""
-        return self.ask(*args, **named)
+        self.command = command
 
     def format_of(self, file: Path) -> str:
         """Give the format that the name of a file says; raises :class:`UserError` where it says none."""
@@ -101,8 +98,16 @@ class Question(Generic[P, R]):
             raise UserError(f"{file}: the name says no format: end it in {ends}, or name one (--format)")
         return form
 
-    def __repr__(self) -> str:
-        return f"<question {self.ask.__name__}>"
+
+def described(*options: Option) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Make a decorator that completes the docstring of a function by the help of options."""
+
+    def decorate(ask: Callable[P, T]) -> Callable[P, T]:
+        texts = {option.name: f"{option.help} {option.python}".rstrip() for option in options}
+        ask.__doc__ = complete_docstring(ask, texts)
+        return ask
+
+    return decorate
 
 
 def question(
@@ -112,10 +117,17 @@ def question(
     suffixes: Mapping[str, str] | None = None,
     pose: Pose = one_problem,
     command: Callable[..., Result] | None = None,
-) -> Callable[[Callable[P, R]], Question[P, R]]:
-    """Make a question of a function."""
+) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Make a decorator that lets a function be asked on a command line, too: :func:`question_of` says how."""
 
-    def decorate(ask: Callable[P, R]) -> Question[P, R]:
-        return Question(ask, options, help_, formats, suffixes or {}, pose, command)
+    def decorate(ask: Callable[P, R]) -> Callable[P, R]:
+        ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, command or ask)
+        return described(*options)(ask)
 
     return decorate
+
+
+def question_of(ask: Callable[..., object]) -> Question:
+    """Give what a function says of itself for a command line."""
+    found: Question = ask.__dict__["question"]
+    return found

@@ -22,6 +22,8 @@ from foon_asp.questions.arguments import (
     whole,
 )
 from foon_asp.questions.certify import Certified
+from foon_asp.questions.contract import described
+from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.solve_soft import SoftAnswer, softly_answered
 from foon_asp.report.disagreement import write_disagreement
 from foon_asp.text.json_value import Json
@@ -77,6 +79,7 @@ class CrossChecked(AnswerAndMore[Answer | SoftAnswer | Certified]):
         return self.answer.json_dict() | {"cross_check": rows}
 
 
+@described(OBJECTIVES, SOFT, *RULES, *LIMITS)
 def cross_check(
     problem: Problem,
     objectives: Objectives = "units",
@@ -90,11 +93,20 @@ def cross_check(
 ) -> CrossChecked:
     """Solve a problem, and ask other engines the same question.
 
-    Those that other packages offer are asked too, in processes of their own. ``soft`` gives constraint files
-    that may be broken, as for :func:`foon_asp.solve_soft`. Every engine has ``time_limit`` seconds of its
-    own, or a minute. Raises :class:`BugError` where one says otherwise; the
-    command ``foon-asp solve --cross-check`` then writes down all that is needed to look into it. Otherwise as
-    :func:`foon_asp.solve`.
+    Engines of other packages are asked too, each in a process of its own. Every engine has ``time_limit``
+    seconds for itself, or a minute if there is no limit.
+
+    Returns:
+        The ``answer`` with its ``checks``: by which objectives each engine agrees, or why it did not check.
+
+    Raises:
+        BugError: if bare clingo or another built-in engine finds a different optimum.
+        UserError: for a wrong argument or constraint.
+
+    Example:
+        >>> checked = foon_asp.cross_check(foon_asp.load().problem("ice"))
+        >>> checked.checks[0].engine, checked.checks[0].reason
+        ('clingo', None)
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)

@@ -187,9 +187,13 @@ def _file_side(file: Path, dataset: Dataset, goals_named: Sequence[str], contain
 
 @question(
     Option(
-        "left", "A tree: a file, or a question in quotes.", part=Part.PROBLEM, metavar="A", positional=True
+        "left",
+        "A tree: a file, or a solve command in quotes.",
+        part=Part.PROBLEM,
+        metavar="A",
+        positional=True,
     ),
-    Option("right", "Another tree.", part=Part.PROBLEM, metavar="B", positional=True),
+    Option("right", "The other tree, in the same way.", part=Part.PROBLEM, metavar="B", positional=True),
     GOALS,
     CONTAINERS,
     help_="""
@@ -211,9 +215,24 @@ def _file_side(file: Path, dataset: Dataset, goals_named: Sequence[str], contain
 def diff(left: Answer | Tree | Side, right: Answer | Tree | Side) -> Difference:
     """Compare two trees: what both have, what only one has, what each costs, and where they part.
 
-    They part at an object node that both come to from the goals and have from elsewhere: from another unit,
-    or one of them from the kitchen. A tree in a file is read by :meth:`foon_asp.Tree.read`. Raises
-    :class:`UserError` for an answer without a tree.
+    They part at an object node that both need on the way to the goals but get in different ways: from
+    another unit, or one of them from the kitchen.
+
+    Parameters:
+        left: An answer, or a tree; :meth:`foon_asp.Tree.read` reads one from a file.
+        right: The same.
+
+    Returns:
+        The units of ``only_left``, ``only_right`` and ``both``, and the ``partings``.
+
+    Raises:
+        UserError: for an answer without a tree.
+
+    Example:
+        >>> problem = foon_asp.load().problem("macaroni")
+        >>> found = foon_asp.diff(foon_asp.retrieve(problem, "bfs").tree, foon_asp.solve(problem))
+        >>> [unit.motion for unit in found.only_left]
+        ['drain', 'pour']
     """
     left, right = _side("left", left), _side("right", right)
     in_left, in_right = set(left.units), set(right.units)

@@ -14,7 +14,7 @@ from foon_asp.problem import ContainerRule, Problem, container_rule
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.contract import Kind, Option, Part, question, question_of
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
@@ -83,9 +83,10 @@ class Drawn(Result):
         A file with the suffix ``.md`` is a page with the flowchart.
         """
         file = Path(file)
-        form = format_ or draw.format_of(file)
-        if form not in draw.formats:
-            raise UserError(f"found the format {form!r}, expected one of {', '.join(draw.formats)}")
+        how = question_of(draw)
+        form = format_ or how.format_of(file)
+        if form not in how.formats:
+            raise UserError(f"found the format {form!r}, expected one of {', '.join(how.formats)}")
         page = form == "mermaid" and file.suffix.lower() == _MERMAID_PAGE
         content: str | bytes = mermaid_markdown(self._shown()) if page else getattr(self, form)()
         write_whole(file, utf_8(content) if isinstance(content, str) else content)
@@ -123,7 +124,7 @@ def _posed(
     Option("tree", "A task tree to draw.", Kind.FILE, Part.PROBLEM | Part.QUESTION, metavar="TREE.txt"),
     Option(
         "units",
-        "A unit to draw; repeatable.",
+        "The id of a unit to draw.",
         Kind.WHOLE,
         Part.PROBLEM | Part.QUESTION,
         flags=("--unit",),
@@ -157,12 +158,29 @@ def draw(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Drawn:
-    """Draw the optimal task tree of a problem, or the network of data that were loaded.
+    """Draw the optimal task tree of a problem, a given tree, some units, or a whole network.
 
-    With ``tree`` that tree is drawn and nothing is solved: the path of a file, FOON text or an answer in
-    JSON, or functional units. With ``units`` those are drawn, by id. The goals of a problem are then shown as
-    goals. ``containers`` is the rule for a tree without goals; a problem has its own. ``objectives`` and the
-    limits are for what is solved, as for :func:`foon_asp.solve`.
+    Only the first of these is solved, and only for that are there ``objectives`` and limits.
+
+    Parameters:
+        about: A problem, whose goals are marked in the picture; or data that were loaded, whose whole
+            network is drawn.
+        tree: A tree to draw: the path of a file (FOON text, or an answer in JSON), or functional units.
+        units: Ids of units to draw, as in ``json()``.
+        containers: The container rule for a tree that is drawn with data: ``strict`` or ``implied``. A
+            problem has its own.
+
+    Returns:
+        The drawing, which gives ``svg()``, ``png()``, ``dot()`` and ``mermaid()``, and can ``write`` a file.
+
+    Raises:
+        UserError: for a wrong argument, a file that cannot be read, or a unit that the network does not
+            have.
+
+    Example:
+        >>> drawn = foon_asp.draw(foon_asp.load().problem("ice"))
+        >>> drawn.dot().splitlines()[0]
+        'digraph foon {'
     """
     wanted = tuple(dict.fromkeys(units))
     if tree is not None and wanted:

@@ -106,9 +106,24 @@ def menu(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Menu:
-    """Solve several goals by one tree, and goal by goal, and say what is shared.
+    """Solve several goals with one tree and each by itself, and find the units they share.
 
-    The limits are for all of it. Otherwise as :func:`foon_asp.solve`.
+    The limits are for the whole question.
+
+    Parameters:
+        problem: A problem with two goals or more, made by :meth:`foon_asp.Foon.problem`.
+
+    Returns:
+        The best tree for all goals (``together``), those for single goals (``separate``), and the units that
+        serve several goals (``shared``).
+
+    Raises:
+        UserError: for a wrong argument or constraint, or a single goal.
+
+    Example:
+        >>> found = foon_asp.menu(foon_asp.load().problem("ice", "tea"))
+        >>> found.together.costs.units, [answer.costs.units for answer in found.separate]
+        (9, [2, 7])
     """
     if len(problem.goals) < 2:
         raise UserError("a menu has several goals: name two or more")

@@ -70,10 +70,23 @@ def optima(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Optima:
-    """Solve every goal of a problem by itself, under several objectives.
+    """Find the best tree for each goal of a problem by itself, under several objectives.
 
-    Each of ``objectives`` is one, or a list by commas of which the first counts most. The limits are for each
-    answer. Raises :class:`UserError` where ``success`` is asked for and no rates are known.
+    The limits are for each answer.
+
+    Parameters:
+        objectives: Several objectives; each is one name, or a list separated by commas.
+
+    Returns:
+        The ``outcomes``: for each goal in order, one :class:`Answer` for each objective.
+
+    Raises:
+        UserError: for a wrong argument, or an objective that needs rates or prices not given.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice", "tea")
+        >>> [answer.costs.units for answer in foon_asp.optima(problem, ["units", "success"]).outcomes]
+        [2, 3, 7, 7]
     """
     texts = [objectives] if isinstance(objectives, str) else objectives
     lists = [chosen_objectives(problem, text) for text in texts]

@@ -5,74 +5,79 @@ from foon_asp.questions.contract import Kind, Option, Part
 
 GOALS = Option(
     "goals_named",
-    "Label or one-line notation of a goal; repeat for one tree that makes all.",
+    "A goal, by label or in one-line notation; one tree makes all the goals given.",
     part=Part.PROBLEM,
     flags=("--goal",),
     many=True,
     metavar="NAME",
 )
-EACH_GOAL = GOALS._replace(help="A goal by label or notation, a question of its own; repeatable.")
+EACH_GOAL = GOALS._replace(help="A goal, by label or in one-line notation; each goal is answered by itself.")
 CONTAINERS = Option(
     "containers",
-    "Whether a unit needs every input, or takes utensils that hold one of them as given.",
+    "Whether a unit needs all its inputs, or not the containers whose only ingredient is an input too.",
     part=Part.PROBLEM,
     default="strict",
     choices=tuple(map(str, ContainerRule)),
 )
 OBJECTIVES = Option(
     "objectives",
-    f"What is best, most important first: {', '.join(Objective)}.",
+    f"What is best, the most important first: {', '.join(Objective)}.",
     default=("units",),
     flags=("--objective",),
     many=True,
     metavar="LIST",
+    python="A name, names separated by commas, or several names. The number of units decides last.",
 )
 CONSTRAINTS = Option(
     "constraints",
-    "Add an encoding of yours, or one of ours by name; repeatable.",
+    "A file with rules of yours, or the name of a ready-made constraint.",
     Kind.FILE,
     Part.COMMAND,
     flags=("--constraint",),
     many=True,
     metavar="FILE.lp",
+    python="One or several of them.",
 )
 ENCODINGS = Option(
     "encodings",
-    "Use the encodings of a folder instead of ours.",
+    "A folder of encodings to use instead of the built-in ones.",
     Kind.FILE,
     Part.COMMAND,
     metavar="DIR",
 )
 CONSTANTS = Option(
     "constants",
-    "Set a #const of an encoding; repeatable.",
+    "The value of a #const in a constraint or an encoding.",
     part=Part.COMMAND,
     flags=("-c",),
     many=True,
     metavar="NAME=VALUE",
+    python="Values by name, or texts NAME=VALUE.",
 )
 RULES = (CONSTRAINTS, ENCODINGS, CONSTANTS)
 SOFT = Option(
     "soft",
-    "Constraints that may be broken, each way at that price; the least sum comes first.",
+    "Constraints that may be broken, each way at this price; the lowest sum comes before all objectives.",
     Kind.WEIGHTS,
     many=True,
     metavar="FILE.lp=WEIGHT",
+    python="Weights, whole numbers from 1, by file or by the name of a ready-made constraint.",
 )
 LIMITS = (
     Option(
         "time_limit",
-        "Stop after this time, with the best known and its bound.",
+        "Stop after this many seconds, with what was found by then.",
         Kind.SECONDS,
         Part.COMMAND,
         metavar="SECONDS",
     ),
     Option(
         "memory_limit",
-        "Stop likewise at this much memory: 500M, 2G. On Linux only.",
+        "Stop at this much memory (500M, 2G), with what was found by then; on Linux only.",
         Kind.SIZE,
         Part.COMMAND,
         metavar="SIZE",
+        python="A number counts bytes.",
     ),
 )
 EACH_LIMITS = tuple(limit._replace(part=Part.QUESTION) for limit in LIMITS)

@@ -143,10 +143,10 @@ class Front(Result):
     GOALS,
     OBJECTIVES._replace(help=f"Two or three of {', '.join(Objective)}.", default=("units,success",)),
     CONTAINERS,
-    Option("trees", "List the units of the trees too.", Kind.FLAG, Part.TEXT),
+    Option("trees", "Also list the units of the trees.", Kind.FLAG, Part.TEXT),
     Option(
         "charts",
-        "Draw the front (.svg or .png); repeatable.",
+        "A file for a chart of the front (.svg or .png).",
         Kind.FILE,
         Part.CHART,
         flags=("--chart",),
@@ -178,9 +178,23 @@ def pareto(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Front:
-    """Find the whole Pareto front of two or three objectives, with a tree for every point.
+    """Find all trade-offs between two or three objectives (the Pareto front), with a tree for each.
 
-    The limits are for all of it. Otherwise as :func:`foon_asp.solve`.
+    The limits are for the whole question.
+
+    Parameters:
+        objectives: Two or three names, or a list separated by commas.
+
+    Returns:
+        The ``points`` of the front; ``complete`` tells whether they are proved to be all.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or another number of objectives.
+
+    Example:
+        >>> front = foon_asp.pareto(foon_asp.load().problem("macaroni"))
+        >>> [(point.costs.units, round(float(point.costs.success), 4)) for point in front.points]
+        [(9, 0.4988), (10, 0.5955), (11, 0.6293)]
     """
     asked = chosen_objectives(problem, objectives)
     if not _FEWEST <= len(asked) <= _MOST:

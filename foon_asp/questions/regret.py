@@ -99,7 +99,7 @@ class Regrets(Result):
     CONTAINERS,
     Option(
         "units",
-        "Ask about this unit too; repeatable.",
+        "The id of a unit to ask about as well.",
         Kind.WHOLE,
         flags=("--unit",),
         many=True,
@@ -127,10 +127,24 @@ def regret(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Regrets:
-    """Find the optimum without each unit of the best tree, and without each kitchen item it takes.
+    """Find the optimum without each unit of the best tree, and without each kitchen item that it uses.
 
-    ``units`` are ids, as in ``json()``, of further units to ask about. The limits are for all of it.
-    Otherwise as :func:`foon_asp.solve`.
+    The limits are for the whole question.
+
+    Parameters:
+        units: Ids of other units to ask about, as in ``json()``.
+
+    Returns:
+        The best tree as the ``outcome``, and the ``regrets``, of which the greatest loss comes first.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or a unit that the network does not have.
+
+    Example:
+        >>> found = foon_asp.regret(foon_asp.load().problem("ice"))
+        >>> worst = found.regrets[0]
+        >>> str(worst.part), str(worst.status)
+        ('item', 'infeasible')
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)

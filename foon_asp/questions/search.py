@@ -115,10 +115,15 @@ class Retrieved(Result):
 
 
 @question(
-    Option("search", "Which search.", positional=True, choices=search_names),
+    Option("search", "The search to run.", positional=True, choices=search_names),
     GOALS,
     *SEARCHING,
-    Option("published", "Run ids as published: the first unit everywhere, as bfs.", Kind.FLAG, default=False),
+    Option(
+        "published",
+        "Run ids as published: it takes the first unit everywhere, as bfs does.",
+        Kind.FLAG,
+        default=False,
+    ),
     CONTAINERS,
     *LIMITS,
     help_="""
@@ -146,14 +151,21 @@ def retrieve(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Retrieved:
-    """Retrieve a tree as the literature does, and say whether it executes.
+    """Retrieve a task tree with a search of the literature, and find out whether it executes.
 
-    ``search`` is ``bfs``, ``dfs``, ``ids``, ``greedy-success``, ``greedy-inputs``, or one that another
-    package offers, which runs in a process of its own. ``ties`` says which of
-    equally good units is taken, the ``first`` or the ``last``; ``count`` what greedy-inputs counts,
-    ``ingredients`` or ``nodes``; ``depth_limit`` how deep ids looks; ``published`` makes ids the published
-    one. The limits are as for :func:`foon_asp.solve`. Raises :class:`UserError` for other names,
-    and where a search of another package raises or gives what is no tree.
+    Parameters:
+        search: ``bfs``, ``dfs``, ``ids``, ``greedy-success``, ``greedy-inputs``, or the name of a search
+            that another package offers, which runs in a process of its own.
+
+    Returns:
+        The tree, its ``costs``, and the ``simulation`` that says whether it executes.
+
+    Raises:
+        UserError: for a wrong argument, or if a search of another package fails or returns no valid tree.
+
+    Example:
+        >>> foon_asp.retrieve(foon_asp.load().problem("macaroni"), "bfs")
+        <Retrieved: bfs, executes in another order>
     """
     (wanted,) = searched([search])
     deadline = begin(time_limit, memory_limit)

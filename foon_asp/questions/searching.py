@@ -10,17 +10,23 @@ from foon_asp.search import Count, Search, SearchSettings, Ties, find_searches
 SEARCHING = (
     Option(
         "ties",
-        "Which of equally good units is taken, in file order.",
+        "Which of several equally good units to take, in the order of the files: first or last.",
         default="first",
         choices=tuple(map(str, Ties)),
     ),
     Option(
         "count",
-        "What greedy-inputs counts: input nodes with their ingredients, or nodes alone.",
+        "What greedy-inputs counts: ingredients (input nodes and their ingredients) or nodes (without them).",
         default="ingredients",
         choices=tuple(map(str, Count)),
     ),
-    Option("depth_limit", "How deep ids looks before it gives up.", Kind.WHOLE, metavar="N", least=0),
+    Option(
+        "depth_limit",
+        "The greatest depth that ids tries before it gives up.",
+        Kind.WHOLE,
+        metavar="N",
+        least=0,
+    ),
 )
 
 

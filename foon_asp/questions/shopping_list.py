@@ -163,11 +163,11 @@ class Shopping(Result):
     CONTAINERS,
     Option(
         "prices",
-        "Buy only what has a price: lines of an object node, a tab and a price.",
+        "A price list: lines of an object node, a tab and a price; only what has a price can be bought.",
         Kind.FILE,
         metavar="FILE",
     ),
-    Option("lists", "How many lists at most.", Kind.WHOLE, default=3, least=1),
+    Option("lists", "How many lists to find, at most.", Kind.WHOLE, default=3, least=1),
     *RULES,
     *LIMITS,
     help_="""
@@ -198,11 +198,26 @@ def shopping_list(
 ) -> Shopping:
     """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
 
-    With ``prices``, only what has one can be bought: the path of a price list, or prices by label or one-line
-    notation, where a label stands for its nodes that would be for sale; else every node counts one. At most
-    ``lists`` lists are given, each proved: no list that could stand there is cheaper. Of lists that cost the
-    same, one with fewer second choices (what units make, and mixtures) comes first, then one with a smaller
-    tree. Of a store, the whole network is read. Otherwise as :func:`foon_asp.solve`.
+    Every list is proved: there is no shorter or cheaper one, except those that contain all of an earlier
+    list. Among lists of the same cost, one with fewer mixtures and objects that units make comes first, then
+    one with a smaller tree. All of a store is read.
+
+    Parameters:
+        prices: The path of a price list, or prices by name; only what has a price can be bought. A label
+            stands for all its nodes that would be for sale. Without prices, every node counts one.
+
+    Returns:
+        The ``lists``, the ``items`` of the first one, and the best tree with these as its ``outcome``.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or a price list that cannot be read.
+
+    Example:
+        >>> shopping = foon_asp.shopping_list(foon_asp.load().problem("hot cocoa"))
+        >>> print(*shopping.items)
+        cocoa tin; contains {cocoa powder}
+        >>> shopping.outcome.costs.units
+        11
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)

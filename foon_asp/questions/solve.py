@@ -85,7 +85,7 @@ def solve_and_more(
     *LIMITS,
     Option(
         "reductions",
-        f"What comes before the search; safe keeps every optimal tree. LIST of: {', '.join(Reduction)}.",
+        f"Reductions before the search; safe keeps every optimal tree. LIST: {', '.join(Reduction)}.",
         default="all",
         flags=("--reduce",),
         metavar="all|safe|none|LIST",
@@ -104,7 +104,7 @@ def solve_and_more(
     ),
     Option(
         "clingo_options",
-        "Options that go to clingo as they are.",
+        "Options to pass to clingo unchanged.",
         Kind.OPTIONS,
         many=True,
         metavar="[-- CLINGO OPTIONS]",
@@ -139,16 +139,29 @@ def solve(
     clingo_options: Sequence[str] = (),
     reporter: Reporter | None = None,
 ) -> Answer:
-    """Find the best task tree, and prove that none is better.
+    """Find the best task tree for the goals of a problem, and prove that no other is better.
 
-    ``objectives`` are names (``units``, ``inputs``, ``inputs+ingredients``, ``success``, ``kitchen``,
-    ``attempts``, ``price``) of which the first counts most; ``units`` always decides last.
-    ``constraints`` are files, or names of ours, whose ``#const`` are set by ``constants``; ``encodings`` is a
-    folder of encodings to use instead of ours.
-    ``time_limit`` is in seconds; at the limit, or when interrupted, the answer is the best tree so far with
-    the proved bound. ``reductions`` (``all``, ``safe``, ``none`` or a list by commas) come before the search;
-    ``clingo_options`` go to clingo. ``reporter`` hears of trees, bounds and warnings; without it, faults of
-    constraints that stop nothing are warned of (:class:`FoonWarning`). Raises :class:`UserError`.
+    At a limit, or when interrupted, the answer is the best tree so far, with a bound on the best one.
+
+    Parameters:
+        reductions: What reduces the network before the search: ``all``, ``none``, ``safe`` (all that keep
+            every optimal tree), or names of reductions separated by commas.
+        clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.
+        reporter: Receives trees, bounds and warnings during the search. Without it, a warning about a
+            constraint is a :class:`FoonWarning`.
+
+    Returns:
+        The answer, with its ``status``, ``costs`` and ``tree``.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or an objective that needs rates or prices not given.
+
+    Example:
+        >>> answer = foon_asp.solve(foon_asp.load().problem("macaroni"), "success")
+        >>> answer
+        <Answer: optimal by success (strict containers): 11 units, 26 inputs, success ≈ 0.6293>
+        >>> [unit.motion for unit in answer.tree][:3]
+        ['open', 'turn on', 'fill']
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(

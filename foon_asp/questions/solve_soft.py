@@ -19,6 +19,8 @@ from foon_asp.questions.arguments import (
     whole,
 )
 from foon_asp.questions.caller import caller
+from foon_asp.questions.contract import described
+from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import counted, headline, outcome_text
 from foon_asp.report.drawing import Drawing
@@ -98,6 +100,7 @@ def softly_answered(
     return SoftAnswer(Answer._make(outcome), penalty, constraints)
 
 
+@described(OBJECTIVES, SOFT, *RULES, *LIMITS)
 def solve_soft(
     problem: Problem,
     objectives: Objectives = "units",
@@ -109,10 +112,21 @@ def solve_soft(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> SoftAnswer:
-    """Find the tree that pays least for the constraints it breaks, and the best among those.
+    """Find the best tree of those that pay least for the constraints they break.
 
-    ``soft`` gives the constraint files that may be broken, or names of ours, with their weights: each way of
-    breaking a rule costs that much. Otherwise as :func:`foon_asp.solve`.
+    Returns:
+        The answer, with the ``penalty`` paid and, for each of the ``constraints``, in how many ways it is
+        broken.
+
+    Raises:
+        UserError: for a wrong argument, constraint or weight.
+
+    Example:
+        >>> ice = foon_asp.load().problem("ice")
+        >>> forbidden = {"forbidden_motion": "crush"}
+        >>> found = foon_asp.solve_soft(ice, soft={"forbid_motion": 3}, constants=forbidden)
+        >>> found.penalty, found.outcome.costs.units
+        (0, 3)
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)

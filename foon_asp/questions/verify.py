@@ -82,10 +82,24 @@ def verify_or_refuse(data: Foon, certificate: Path) -> VerifiedCertificate | Ref
     """,
 )
 def verify(data: Foon | Problem, certificate: "Certificate | str | PathLike[str]") -> VerifiedCertificate:
-    """Check a certificate against the data it speaks about, without any solver, and say what it proves.
+    """Check a certificate against the data it is about, without any solver.
 
-    ``certificate`` is one that was found, or the path of a file. Raises :class:`RefusedError` for one that is
-    wrong, with the first fault that is found.
+    Parameters:
+        data: The data, as loaded, or a problem made from them.
+        certificate: The path of a certificate, or one that :func:`foon_asp.certify` found.
+
+    Returns:
+        What the certificate proves, as ``verified``.
+
+    Raises:
+        RefusedError: for a certificate that is wrong or is about other data, with the first fault found.
+        UserError: for a file that cannot be read.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> certificate = foon_asp.certify(foon.problem("ice")).certificate
+        >>> foon_asp.verify(foon, certificate).verified.cuts
+        2
     """
     if isinstance(certificate, str | PathLike):
         try:

@@ -137,11 +137,21 @@ def why_not(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Explanation:
-    """Explain why there is no task tree.
+    """Explain why there is no task tree: what is missing, and which cycles feed only themselves.
 
-    Takes time about linear in the network, which of a store is read as a whole. Where all goals can be made
-    and there are ``constraints`` or ``encodings``, says like :func:`foon_asp.clash` whether these leave a
-    tree.
+    The time grows about linearly with the network, and all of a store is read. If every goal can be made and
+    there are ``constraints`` or ``encodings``, it is found out which of them clash, as by
+    :func:`foon_asp.clash`.
+
+    Returns:
+        The ``goals`` that cannot be made, the ``roots`` of that, and the ``clash``.
+
+    Raises:
+        UserError: for a wrong argument or constraint.
+
+    Example:
+        >>> foon_asp.why_not(foon_asp.load().problem("apple pie"))
+        <Explanation: no task tree exists (strict containers): 1 cycle feeds only itself>
     """
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     problem = whole(problem)

@@ -147,9 +147,21 @@ def parse_lines(texts: Sequence[str]) -> list[Line | LineError]:
 
 
 def parse_node(notation: str) -> ObjectNode:
-    """Read the one-line notation of an object node: ``sweet potato; chopped; in [cutting board]``.
+    """Read an object node in one-line notation.
 
-    Raises :class:`LineError` when the grammar does not accept it.
+    Parameters:
+        notation: For example ``sweet potato; chopped; in [cutting board]``.
+
+    Returns:
+        The object node.
+
+    Raises:
+        LineError: for text that is not in the notation, with the column and what was expected.
+
+    Example:
+        >>> node = foon_asp.parse_node("sweet potato; chopped; in [cutting board]")
+        >>> node.label, sorted(node.states)
+        ('sweet potato', ['chopped'])
     """
     return cast(ObjectNode, _parse("node", notation.rstrip(" ")))
 

@@ -41,7 +41,20 @@ def write_unit(unit: FunctionalUnit) -> str:
 
 
 def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -> str:
-    """Give a whole FOON text: comment lines, ``//``, and the units in order."""
+    """Write functional units as FOON text.
+
+    Parameters:
+        units: The units, in the order in which they are written.
+        comments: Lines of comment to put before them.
+
+    Returns:
+        The FOON text.
+
+    Example:
+        >>> tree = foon_asp.solve(foon_asp.load().problem("ice")).tree
+        >>> foon_asp.write_units(tree, ["a tree for ice"]).splitlines()[:2]
+        ['# a tree for ice', '//']
+    """
     return (
         "".join(f"# {line}\n" for comment in comments for line in re.split("\r\n|\r|\n", comment))
         + "//\n"

@@ -104,16 +104,16 @@ class Assistance(Result):
     CONTAINERS,
     Option(
         "most",
-        "How many units the person does at most.",
+        "The greatest number of units that the person does.",
         Kind.WHOLE,
         flags=("--assist",),
         metavar="M",
         least=0,
     ),
-    Option("reach", "The success that is wanted: the fewest units that reach it.", metavar="SUCCESS"),
+    Option("reach", "A success to reach with the fewest units done by the person.", metavar="SUCCESS"),
     Option(
         "person",
-        "Success rates of the motions that the person can do; without it all, never failing.",
+        "A file with success rates of what the person can do; without it, everything, never failing.",
         Kind.FILE,
         metavar="FILE",
     ),
@@ -144,16 +144,31 @@ def assist(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Assistance:
-    """Find the best success when a person does at most 0, 1, 2, ... of the units, and which.
+    """Find the best success if a person does at most 0, 1, 2, ... units, and which ones these are.
 
-    The rows end with ``most`` units, with the first that succeeds as often as ``reach``, or where more help
-    changes nothing. ``person`` has the rates of the motions that the person can do: a rates file, or rates by
-    motion; without it the person can do all and never fails. The person takes over only what has a greater
-    rate than the robot's. Among trees that succeed as often one with the fewest units is best. The limits are
-    for all of it. Otherwise as :func:`foon_asp.solve`.
+    The person takes over only motions with a higher rate than the robot's. The rows end with ``most`` units,
+    with the first that reaches ``reach``, or where more help changes nothing. The limits are for the whole
+    question.
 
-    The question is that of the weighted FOON, a tree with M human-assisted motions (Paulius, Dong and Sun,
-    Task planning with a weighted functional object-oriented network, 2021), answered for all trees.
+    The question comes from the weighted FOON: a tree with M human-assisted motions (Paulius, Dong and Sun,
+    Task planning with a weighted functional object-oriented network, 2021). Here it is answered over all
+    trees.
+
+    Parameters:
+        reach: A success, above 0 and at most 1, to reach with the fewest units done by the person.
+        person: The path of a file with success rates, or rates by motion, of what the person can do. Without
+            it the person can do everything and never fails.
+
+    Returns:
+        The ``rows``, one for each number of units that makes a difference.
+
+    Raises:
+        UserError: for a wrong argument or constraint, or if the robot's rates are not given.
+
+    Example:
+        >>> helped = foon_asp.assist(foon_asp.load().problem("macaroni"), 2)
+        >>> [(row.most, round(float(row.success), 4)) for row in helped.rows]
+        [(0, 0.6293), (1, 0.7122), (2, 0.7742)]
     """
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     how = how._replace(session=None)  # every number of units has programs that no other question can use

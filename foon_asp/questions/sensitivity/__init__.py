@@ -103,10 +103,21 @@ def sensitivity(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Sensitivity:
-    """Find for each motion the interval of its success rate in which the best tree by ``success`` stays it.
+    """Find how wrong each success rate may be before another tree is the best by ``success``.
 
-    Constraints that look at success rates see those that are given, whatever rate is asked about. The limits
-    are for all of it. Otherwise as :func:`foon_asp.solve`.
+    One rate varies while the others stay as given. Constraints see the rates as given. The limits are for
+    the whole question.
+
+    Returns:
+        The best tree as the ``outcome``, and an interval for each motion, that with the nearest end first.
+
+    Raises:
+        UserError: for a wrong argument or constraint, for rates not given, or for rules about ``risk/2``.
+
+    Example:
+        >>> found = foon_asp.sensitivity(foon_asp.load().problem("macaroni"))
+        >>> found.first.interval.motion, float(found.first.interval.rate)
+        ('pour', 0.95)
     """
     problem.require_known_for(_SUCCESS)
     for motion in sorted(set(problem.network.motions)):

@@ -1,0 +1,128 @@
+"""Docstrings of what is public: they say all that a caller has to know, and their examples run."""
+
+import ast
+import builtins
+import doctest
+import functools
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+import foon_asp
+from foon_asp import BugError, UserError
+from foon_asp.dataset import read_dataset
+from foon_asp.questions.contract import Option, described
+from foon_asp.questions.options import LIMITS
+
+PUBLIC: dict[str, Any] = {name: getattr(foon_asp, name) for name in foon_asp.__all__}
+FUNCTIONS = {name: found for name, found in PUBLIC.items() if inspect.isfunction(found)}
+SECTION = re.compile(r"^(Parameters|Returns|Raises|Example):\n((?:    .*\n|\n(?=    ))+)", re.MULTILINE)
+ENTRY = re.compile(r"^    (\w+): \S", re.MULTILINE)
+
+
+def sections(docstring: str) -> dict[str, str]:
+    return dict(SECTION.findall(inspect.cleandoc(docstring) + "\n"))
+
+
+def parameters(function: Callable[..., Any]) -> list[str]:
+    return [name for name in inspect.signature(function).parameters if name not in {"self", "cls"}]
+
+
+def raised(function: Callable[..., Any]) -> Iterator[type]:
+    """Give the errors of callers that the code of a function itself raises."""
+    (node,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
+    known = {**vars(builtins), **inspect.unwrap(function).__globals__}
+    for each in ast.walk(node):
+        if isinstance(each, ast.Raise) and isinstance(each.exc, ast.Call):
+            error = known.get(ast.unparse(each.exc.func))
+            if inspect.isclass(error) and error not in {BugError, NotImplementedError}:
+                yield error
+
+
+def lacking(function: Callable[..., Any], *docstrings: str) -> Iterator[str]:
+    """Name what the docstrings of a function, its own and those of methods it overrides, leave out."""
+    found: dict[str, str] = {}
+    for docstring in reversed(docstrings):
+        found |= sections(docstring)
+    if ENTRY.findall(found.get("Parameters", "")) != parameters(function):
+        yield "Parameters"
+    named = ENTRY.findall(found.get("Raises", ""))
+    for error in raised(function):
+        if not any(base.__name__ in named for base in error.__mro__):
+            yield error.__name__
+
+
+@pytest.fixture(autouse=True, scope="module")
+def read_once() -> Iterator[None]:
+    """Read the bundled kitchen once for all examples."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("foon_asp.foon.read_dataset", functools.cache(read_dataset))
+        yield
+
+
+def failures(name: str, docstring: str) -> str:
+    """Run the examples of a docstring, and give what was not as it says."""
+    test = doctest.DocTestParser().get_doctest(docstring, {"foon_asp": foon_asp}, name, None, 0)
+    said: list[str] = []
+    doctest.DocTestRunner(verbose=False).run(test, out=said.append)
+    return "".join(said)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_function_is_described(name: str) -> None:
+    function = FUNCTIONS[name]
+    docstring = inspect.getdoc(function) or ""
+    first, blank, *_ = docstring.split("\n")
+    assert re.fullmatch(r"[A-Z].*[.?]", first)
+    assert not blank
+    assert not [*lacking(function, docstring)]
+    assert {"Returns", "Example"} <= sections(docstring).keys()
+    assert ">>> " in sections(docstring)["Example"]
+    # the help of options is part of it, and must not speak of a command line
+    assert not re.search(r" --\w|[Rr]epeat", docstring)
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_an_example_runs(name: str) -> None:
+    assert not failures(name, PUBLIC[name].__doc__)
+
+
+@pytest.mark.parametrize("name", [name for name in FUNCTIONS if "objectives" in parameters(FUNCTIONS[name])])
+def test_an_unknown_objective_is_an_error_that_is_named(name: str) -> None:
+    given: dict[str, Any] = {"soft": {}} if name == "solve_soft" else {}
+    with pytest.raises(UserError, match="'speed'"):
+        FUNCTIONS[name](foon_asp.load().problem("ice", "tea"), "speed", **given)
+    assert "UserError" in ENTRY.findall(sections(inspect.getdoc(FUNCTIONS[name]) or "")["Raises"])
+
+
+def test_a_parameter_without_a_description_is_found() -> None:
+    def forgetful(problem: str, most: int, time_limit: int, pace: int = 1) -> int:
+        """Count.
+
+        Parameters:
+            most: How far to count, which
+                is said here.
+
+        Returns:
+            The last number.
+        """
+        if pace < 1:
+            raise UserError(problem)
+        return most // time_limit
+
+    asked = described(*LIMITS, Option("most", "Not this."))(forgetful)
+    docstring = inspect.getdoc(asked) or ""
+    assert [*lacking(asked, docstring)] == ["Parameters", "UserError"]
+    shown = docstring.split("\n")
+    assert shown[3].startswith("    problem: ")
+    assert shown[4] == "    most: How far to count, which is said here."
+    assert shown[5] == f"    time_limit: {LIMITS[0].help}"
+    assert shown[6:] == ["", "Returns:", "    The last number."]
+
+
+def test_an_example_that_is_wrong_is_found() -> None:
+    assert "Expected" in failures("wrong", ">>> 1 + 1\n3\n")
