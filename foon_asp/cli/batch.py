@@ -19,11 +19,13 @@ from foon_asp.batch import (
 )
 from foon_asp.cli import options
 from foon_asp.cli.batch_data import Opening, digest
+from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
 from foon_asp.document.json_document import document
+from foon_asp.questions.options import EACH_LIMITS, JOBS
 from foon_asp.text.json_value import json_text
 
 
@@ -37,9 +39,9 @@ from foon_asp.text.json_value import json_text
     metavar="FILE",
     help="JSON Lines, or for a name in .parquet a folder of Parquet files; run again to go on.",
 )
-@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes to use.")
+@click_options(JOBS)
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of a Dask cluster: tcp://HOST:PORT.")
-@options.each_limit_options
+@click_options(*EACH_LIMITS)
 @options.format_option("text", "json")
 @options.data_options
 def command(

@@ -8,7 +8,6 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
@@ -28,7 +27,7 @@ class _Task(NamedTuple):
 
 
 @click.command("convert")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
+@options.files_argument(required=True)
 @click.option(
     "--to",
     "target",
@@ -36,14 +35,8 @@ class _Task(NamedTuple):
     type=click.Choice([str(dialect) for dialect in Dialect]),
     help="The dialect to write.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=NamedPath, allow_dash=True),
-    metavar="FILE|DIR",
-    help="Where to write one file (stdout, if not given), or the folder for several.",
-)
-@click.option("--lenient", is_flag=True, help="Leave out what is not understood, with a warning.")
+@options.output_option("FILE|DIR", "Where to write one file (stdout, if not given), or a folder for several.")
+@options.lenient_option
 @options.debug_option
 def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: bool) -> ExitCode:
     """Write FOON files in another dialect, and list what it cannot hold.

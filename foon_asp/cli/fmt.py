@@ -6,7 +6,6 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import write_data
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import write_whole
@@ -17,17 +16,11 @@ from foon_asp.text.plain_file import read_plain_text
 
 
 @click.command("fmt")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
+@options.files_argument(required=True)
 @click.option(
     "--check", is_flag=True, help="Write nothing; list the files that would change, and exit with 1."
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=NamedPath, allow_dash=True),
-    metavar="FILE",
-    help="Write the one file there, or with - to stdout, and leave it as it is.",
-)
+@options.output_option("FILE", "Write the one file there, or with - to stdout, and leave it as it is.")
 @click.option("--lenient", is_flag=True, help="Leave lines that are not understood as they are.")
 @options.debug_option
 def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: bool) -> ExitCode:

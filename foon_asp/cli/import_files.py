@@ -13,7 +13,7 @@ from foon_asp.text import find_data, summarize
 
 
 @click.command("import")
-@click.argument("paths", nargs=-1, type=click.Path(path_type=NamedPath), metavar="[FILE|DIR]...")
+@options.files_argument(required=False)
 @click.option(
     "--store",
     required=True,

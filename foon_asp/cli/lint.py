@@ -7,7 +7,6 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import write_data
 from foon_asp.errors import UserError
 from foon_asp.lint import CATALOG, lint, mended
@@ -23,7 +22,7 @@ _CODE = click.Choice(list(CATALOG))
 
 
 @click.command("lint")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
+@options.files_argument(required=True)
 @click.option("--fix", is_flag=True, help="Mend what is beyond doubt, each file in its place.")
 @click.option(
     "--select", multiple=True, type=_CODE, metavar="CODE", help="Report this kind only; repeatable."

@@ -18,21 +18,15 @@ from foon_asp.text.merged_network import merged_text
 
 
 @click.command("merge")
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=NamedPath), metavar="FILE|DIR...")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=NamedPath, allow_dash=True),
-    metavar="FILE",
-    help="Where to write the merged network; stdout, if not given.",
-)
+@options.files_argument(required=True)
+@options.output_option("FILE", "Where to write the merged network; stdout, if not given.")
 @click.option(
     "--unit-prices",
     type=click.Path(path_type=NamedPath),
     metavar="FILE",
     help="Prices of single units, which choose where copies of a unit have different ones.",
 )
-@click.option("--lenient", is_flag=True, help="Leave out lines that are not understood, with a warning.")
+@options.lenient_option
 @options.debug_option
 def command(
     paths: tuple[Path, ...], output: Path | None, unit_prices: Path | None, lenient: bool

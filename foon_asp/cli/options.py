@@ -21,6 +21,10 @@ _DEADLINE = "foon_asp.deadline"
 _PATH = click.Path(path_type=NamedPath)
 
 
+lenient_option = click.option(
+    "--lenient", is_flag=True, help="Skip lines that are not understood, with a warning."
+)
+
 _DATA_OPTIONS = (
     click.option("--data", "folder", type=_PATH, metavar="DIR", help="A folder with all of the following."),
     click.option(
@@ -39,7 +43,7 @@ _DATA_OPTIONS = (
         "--goals", type=_PATH, metavar="FILE", help="Goals that --goal can name: JSON, or FOON objects."
     ),
     click.option("--unit-prices", type=_PATH, metavar="FILE", help="Prices of motions and of single units."),
-    click.option("--lenient", is_flag=True, help="Skip lines that are not understood, with a warning."),
+    lenient_option,
 )
 
 _LEVEL_OPTION = click.option(
@@ -62,6 +66,18 @@ def format_option(*formats: str) -> Callable[[Command], Command]:
     )
 
 
+def files_argument(required: bool) -> Callable[[Command], Command]:
+    """Make an argument for files and folders, ``paths``."""
+    words = "FILE|DIR..." if required else "[FILE|DIR]..."
+    return click.argument("paths", nargs=-1, required=required, type=_PATH, metavar=words)
+
+
+def output_option(words: str, help_: str) -> Callable[[Command], Command]:
+    """Make ``--output`` of a verb that writes FOON, for which ``-`` is stdout."""
+    path = click.Path(path_type=NamedPath, allow_dash=True)
+    return click.option("-o", "--output", type=path, metavar=words, help=help_)
+
+
 def network_options(command: Command) -> Command:
     """Add the options that name the data."""
     return functools.reduce(lambda f, option: option(f), reversed((*_DATA_OPTIONS, debug_option)), command)
@@ -70,11 +86,6 @@ def network_options(command: Command) -> Command:
 def data_options(command: Command) -> Command:
     """Add the options that name the data, and the level at which it is taken."""
     return network_options(_LEVEL_OPTION(command))
-
-
-def each_limit_options(command: Command) -> Command:
-    """Add the limits of each answer that a command gives: ``time_limit`` and ``memory_limit``."""
-    return click_options(*LIMITS)(command)
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
@@ -93,7 +104,7 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
             click.echo(f"stopped at {deadline.stopped}: {deadline.advice}", err=True)
         return code
 
-    return each_limit_options(limited)
+    return click_options(*LIMITS)(limited)
 
 
 def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:

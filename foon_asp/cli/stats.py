@@ -7,7 +7,6 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.named_path import NamedPath
 from foon_asp.network import LEVELS, network_at_level
 from foon_asp.network.statistics import count
 from foon_asp.report.statistics_table import statistics_json, statistics_text
@@ -16,7 +15,7 @@ from foon_asp.text.json_value import json_text
 
 
 @click.command("stats")
-@click.argument("paths", nargs=-1, type=click.Path(path_type=NamedPath), metavar="[FILE|DIR]...")
+@options.files_argument(required=False)
 @options.format_option("text", "json")
 @options.network_options
 def command(

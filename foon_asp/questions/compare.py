@@ -22,7 +22,7 @@ from foon_asp.problem import Problem
 from foon_asp.questions.arguments import at_least, limits
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, JOBS
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import SEARCHING, search_settings, searched
@@ -197,7 +197,7 @@ def _hold_readable(problem: Problem) -> None:
     ),
     CONTAINERS,
     *EACH_LIMITS,
-    Option("jobs", "How many processes to use.", Kind.WHOLE, default=1, least=1),
+    JOBS,
     Option(
         "results",
         "A file to which results are added, as JSON Lines; goals that it already has are not searched again.",
