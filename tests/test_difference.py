@@ -140,10 +140,16 @@ def test_the_answer_that_is_broken_above_is_one(cli: Cli, tmp_path: Path) -> Non
         ({**ANSWER, "units": 3}, "expected an answer of foon-asp"),
         ({**ANSWER, "goals": None}, "expected an answer of foon-asp"),
         ({"units": []}, "expected 'foon-asp/answer/1'"),
-        ({**ANSWER, "schema": "foon-asp/answer/2"}, "'foon-asp/answer/2', expected 'foon-asp/answer/1'"),
+        (
+            {**ANSWER, "schema": "foon-asp/answer/2"},
+            "found the schema 'foon-asp/answer/2', expected 'foon-asp/answer/1'",
+        ),
         ({**ANSWER, "schema": 1}, "expected 'foon-asp/answer/1'"),
         ({"schema": "foon-asp/optima/1", "answers": [ANSWER]}, "has no tree, or more than one"),
-        ({"schema": "foon-asp/menu/1", "answer": {**ANSWER, "schema": "x"}}, "it is 'x'"),
+        (
+            {"schema": "foon-asp/menu/1", "answer": {**ANSWER, "schema": "x"}},
+            "found the schema 'x', expected",
+        ),
     ],
 )
 def test_what_is_no_answer(cli: Cli, tmp_path: Path, content: object, message: str) -> None:

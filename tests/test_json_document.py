@@ -22,7 +22,7 @@ from foon_asp.proof import Verdict
 from foon_asp.search import Ending
 from foon_asp.text.json_node import node_json, read_node_json
 from foon_asp.text.json_value import json_text, read_json
-from tests.conftest import Cli, valid
+from tests.conftest import ROOT, Cli, valid
 
 FORBID = ("--constraint", "forbid_motion", "-c", 'forbidden_motion="crush"')
 SOFT = ("--soft", "forbid_motion=3", "-c", 'forbidden_motion="crush"')
@@ -141,6 +141,17 @@ def test_the_head_is_the_same_in_every_verb(printed: Any, verb: str) -> None:
         assert [key for key in head if key in HEAD] == [*HEAD]
         assert "ice" in {goal["label"] for goal in head["goals"]} or verb in {"why-not", "shopping-list"}
         assert head["items"] == "lasting"
+
+
+def test_the_page_has_every_verb() -> None:
+    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+    headings = " ".join(re.findall(r"^## (.*)", page, re.MULTILINE)).split()
+    assert {*ASKED, "certify"} <= {*headings}
+
+
+def test_facts_in_json_are_those_in_text(cli: Cli) -> None:
+    asked = ("facts", "--goal", "ice", *SOFT[:2])
+    assert "\n".join(cli(*asked, "--format", "json").json["facts"]) + "\n" == cli(*asked).out
 
 
 def origins(units: list[Any]) -> list[tuple[int, str, Any]]:

@@ -64,7 +64,7 @@ def _with_tree(found: Json) -> Json:
     for name in (found.get("schema"), answer.get("schema")):
         kind = str(name).removeprefix("foon-asp/").rpartition("/")[0]
         if name != schema_name(kind):
-            raise ValueError(f"it is {name!r}, expected {schema_name('answer')!r}")
+            raise ValueError(f"found the schema {name!r}, expected {schema_name('answer')!r}")
     if kind not in _WITH_TREE:
         raise ValueError(f"{schema_name(kind)!r} has no tree, or more than one")
     return answer
