@@ -246,7 +246,7 @@ def test_prices_from_a_file_and_by_name(foon: Foon, tmp_path: Path) -> None:
     assert timeless(by_name.json()) == timeless(foon_asp.shopping_list(problem, prices=file).json())
     assert [str(node) for node in by_name.items] == [*prices][:2]
     assert by_name.lists[0].price == 6
-    with pytest.warns(FoonWarning, match="no node that one can buy has this label: unicorn"):
+    with pytest.warns(FoonWarning, match="no node for sale has this label: unicorn"):
         foon_asp.shopping_list(problem, prices={**prices, "unicorn": 1})
 
 
@@ -789,7 +789,10 @@ FAULTS: dict[str, tuple[Callable[[Foon], object], str]] = {
         lambda f: foon_asp.alternatives(f.problem("ice"), best=1, different=2),
         "best and different ask for different things",
     ),
-    "within": (lambda f: foon_asp.alternatives(f.problem("ice"), within=5), "within goes with different"),
+    "within": (
+        lambda f: foon_asp.alternatives(f.problem("ice"), within=5),
+        "within is only for different trees",
+    ),
     "none": (
         lambda f: foon_asp.alternatives(f.problem("ice"), best=0),
         "found best=0, expected a whole number",

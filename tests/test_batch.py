@@ -258,8 +258,8 @@ def test_ctrl_c_keeps_what_is_there(tmp_path: Path) -> None:
         running.send_signal(signal.SIGINT)
         out, err = running.communicate(timeout=30)
     assert running.returncode == 3
-    assert b"run the same command again to go on" in err
-    assert b"all in all: " in out
+    assert b"run the same command again to continue" in err
+    assert b"in total: " in out
     assert len(rows_of(file)) >= 3
 
 

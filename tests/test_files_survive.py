@@ -362,7 +362,7 @@ def test_convert_onto_its_own_source(cli: Cli, tmp_path: Path) -> None:
     for name in (file, link, twin):
         ran = cli("convert", file, "--to", "plain", "-o", name)
         assert ran.code == 2
-        assert "would be written over by a file without its ids" in ran.err
+        assert "would be overwritten by a file without its ids" in ran.err
         assert file.read_text() == lossy
     ran = cli("convert", file, "--to", "ids", "-o", file)
     assert ran.code == 0

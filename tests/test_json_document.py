@@ -237,7 +237,7 @@ def test_the_verb_prints_them(cli: Cli) -> None:
     )
     ran = cli("schema", "sovle")
     assert (ran.code, ran.out) == (2, "")
-    assert "found 'sovle', expected what has a schema: alternatives, answer, " in ran.err
+    assert "found 'sovle', expected a verb that has a schema: alternatives, answer, " in ran.err
 
 
 # What may have other keys, or lack one: what is by objective, phase, motion or code, and what only some have.

@@ -183,7 +183,7 @@ def test_a_price_list_decides(cli: Cli, tmp_path: Path) -> None:
     short = cli("shopping-list", "--goal", "hot cocoa", "--goal", "apple pie", "--prices", file)
     assert short.code == 1
     assert "no list of things with a price" in short.out
-    assert "no node that one can buy has this label: wisk" in short.err
+    assert "no node for sale has this label: wisk" in short.err
 
 
 @pytest.mark.parametrize(

@@ -1,1 +1,1 @@
-"""The command line; nothing else prints."""
+"""The command line, the only part that prints."""

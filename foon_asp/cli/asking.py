@@ -1,4 +1,4 @@
-"""How a command asks a question: it reads data, poses what is asked about, and asks."""
+"""How a command asks a question: it reads the data, makes the problem, and asks."""
 
 import importlib
 import shlex
@@ -31,7 +31,7 @@ def find_question(verb: str) -> Question:
 
 
 def parameters(question: Question, given: Mapping[str, Any], parts: Part) -> dict[str, Any]:
-    """Give the values of the options that belong to some parts."""
+    """Give the values of the options that belong to these parts."""
     own = (option.name for option in question.options if option.part & parts)
     return {name: given[name] for name in own if name in given}
 
@@ -42,7 +42,7 @@ def ask(
     deadline: Deadline | None,
     command_of: Callable[[str], click.Command],
 ) -> Result:
-    """Pose a question by the parameters of a command, and ask it.
+    """Ask a question with the parameters of a command.
 
     ``deadline`` is that of the command. ``command_of`` gives the commands of other questions, which a
     question may ask.
@@ -58,7 +58,7 @@ def ask(
 
 
 class _Command:
-    """What poses a question is given: the data, other questions, and the limits of reading."""
+    """What a question may use of its command: the data, other questions, and the limits of reading."""
 
     def __init__(self, data: dict[str, Any], command_of: Callable[[str], click.Command]) -> None:
         self._data, self._command_of = data, command_of
@@ -66,16 +66,16 @@ class _Command:
 
     @cached_property
     def dataset(self) -> Dataset:
-        """The data that is named; read when it is first looked at."""
+        """The data that the options name; read when first used."""
         return options.read_dataset(**self._data)
 
     @property
     def read_seconds(self) -> float | None:
-        """How long reading took, ``None`` where nothing was read."""
+        """How long reading took; ``None`` if nothing was read."""
         return self.dataset.read_seconds if "dataset" in self.__dict__ else None
 
     def given(self, option: str) -> bool:
-        """Whether an option, by name, stands in its own words, and not in the session or by default."""
+        """Whether an option was given in the command itself, and not by the session or by default."""
         return _is_given(self._context, option)
 
     def reading(self) -> AbstractContextManager[object]:
@@ -83,7 +83,7 @@ class _Command:
         return options.reading()
 
     def ask(self, words: str, without: Sequence[str]) -> Result:
-        """Ask a question that is put as the words of a command, without some options, by name."""
+        """Ask a question that is written as a command; ``without`` names options that it must not have."""
         here = self._context
         try:
             verb, *rest = shlex.split(words)

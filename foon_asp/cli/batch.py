@@ -37,7 +37,7 @@ from foon_asp.text.json_value import json_text
     required=True,
     type=click.Path(path_type=NamedPath),
     metavar="FILE",
-    help="JSON Lines, or for a name in .parquet a folder of Parquet files; run again to go on.",
+    help="A file for the rows, as JSON Lines; if its name ends in .parquet, a folder of Parquet files.",
 )
 @click_options(JOBS)
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of a Dask cluster: tcp://HOST:PORT.")
@@ -54,7 +54,7 @@ def command(
     format_: str,
     **data: object,
 ) -> ExitCode:
-    """Answer every question of a file, and keep each answer as soon as it is there.
+    """Answer every question of a file, and write each answer as soon as it is found.
 
     \b
     foon-asp batch questions.jsonl --results answers.jsonl --jobs 2
@@ -67,13 +67,13 @@ def command(
     {"goal": "@makeable", "containers": ["strict", "implied"], "kitchen": "small.json"}
     {"goal": [["ice", "macaroni"]], "time_limit": 10}
 
-    @goals is the goals file, @makeable all that can be made; a list within the list is one tree for several
-    goals; kitchens are files beside the questions. --time-limit is for each question that names none,
-    --memory-limit for each process that answers.
+    @goals stands for the goals file, @makeable for everything that can be made; a list within the list is one
+    tree for several goals; kitchens are files in the folder of the questions. --time-limit is for each
+    question without a limit of its own, --memory-limit for each process that answers.
 
-    What was answered is not asked again when the same command is run again. A question that fails is a row
-    that says why. Exits with 0 when every answer is proved, 1 when some failed, and with 3 when a limit
-    stopped some, or ctrl-C the run.
+    When the same command is run again, it continues: what has an answer is not asked again. A question that
+    fails becomes a row with the reason. Exits with 0 when every answer is proved, 1 when some failed, and
+    with 3 when a limit stopped some, or ctrl-C the run.
     """
     check_outputs()
     lines = read_questions(questions, time_limit)
@@ -102,7 +102,7 @@ def command(
             click.echo(line)
         click.echo(f"results: {results_file}")
     if interrupted:
-        click.echo("interrupted: run the same command again to go on", err=True)
+        click.echo("interrupted: run the same command again to continue", err=True)
     return _exit_code(tally, interrupted)
 
 
@@ -118,7 +118,7 @@ def _in_words(summary: dict[str, object], tally: Tally) -> Iterator[str]:
     before = tally.before.total()
     yield f"{summary['questions']:,} questions" + (f", {before:,} of them answered before" if before else "")
     counts = tally.statuses + tally.before
-    yield "all in all: " + (", ".join(f"{n:,} {status}" for status, n in sorted(counts.items())) or "none")
+    yield "in total: " + (", ".join(f"{n:,} {status}" for status, n in sorted(counts.items())) or "none")
     if tally.statuses:
         yield f"answered {tally.statuses.total():,} in {summary['seconds']:.1f} s"
         proofs = ", ".join(f"{count:,} by {proof}" for proof, count in sorted(tally.proofs.items()))

@@ -1,4 +1,4 @@
-"""The data of a batch, opened once in every process that answers questions."""
+"""The data of a batch, opened once in each process that answers questions."""
 
 import contextlib
 import hashlib
@@ -20,7 +20,7 @@ from foon_asp.text import find_data, read_object_list
 
 @dataclass(frozen=True)
 class Opening:
-    """How to open the data: the options that name them, and a digest of what is in the files.
+    """How to open the data: the options that name it, and a digest of the files.
 
     Equal ones open the same data.
     """
@@ -29,13 +29,13 @@ class Opening:
     digest: str
 
     def __call__(self, quiet: bool = True) -> "BatchData":
-        """Open the data; warnings are shown once, and not by every worker."""
+        """Open the data; warnings are shown once, not by every worker."""
         with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
             return BatchData(options.read_dataset(**dict(self.named)))
 
 
 class BatchData:
-    """Opened data, and the kitchens that were asked about."""
+    """The open data, and the kitchens read so far."""
 
     def __init__(self, dataset: Dataset) -> None:
         self._datasets: dict[Path | None, Dataset] = {None: dataset}
@@ -67,13 +67,13 @@ class BatchData:
 
 
 def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
-    """Give a digest of everything in the files that the options name, and of kitchens beside them."""
+    """Give a digest of all files that the options name, and of the kitchens."""
     named = {key: value for key, value in named.items() if key not in {"level", "lenient"}}
     files = find_data(**named)
     found = hashlib.sha256()
     for file in (*files.network, *filter(None, files[1:]), *sorted(set(kitchens))):
         if not file.is_file():
-            raise UserError(f"{file}: expected a file, since every process reads it anew")
+            raise UserError(f"{file}: expected a file, since every process reads it again")
         with file.open("rb") as opened:
             found.update(hashlib.file_digest(opened, "sha256").digest())
     return found.hexdigest()[:16]

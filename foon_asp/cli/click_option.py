@@ -1,4 +1,4 @@
-"""Options of questions, which are plain data, as parameters of click."""
+"""Parameters of click, made from the options of questions."""
 
 import functools
 from collections.abc import Callable
@@ -32,14 +32,14 @@ def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...
 def _options_alone(
     context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Refuse words that stand where only options of another program can."""
+    """Refuse words where only options of another program are allowed."""
     if value and not value[0].startswith("-"):
         raise UserError(f"found {value[0]!r}, expected an option; a goal is named by --goal NAME")
     return value
 
 
 def click_options(*options: Option) -> Callable[[Command], Command]:
-    """Make parameters of click of several options, in that order."""
+    """Make parameters of click from several options, in that order."""
 
     def decorate(command: Command) -> Command:
         return functools.reduce(lambda f, option: click_option(option)(f), reversed(options), command)
@@ -48,7 +48,7 @@ def click_options(*options: Option) -> Callable[[Command], Command]:
 
 
 def click_option(option: Option) -> Callable[[Command], Command]:
-    """Make a parameter of click of an option."""
+    """Make a parameter of click from an option."""
     choices = option.choices() if callable(option.choices) else option.choices
     kinds: dict[Kind, Any] = {
         Kind.TEXT: click.Choice(choices) if choices else None,

@@ -13,7 +13,7 @@ from foon_asp.text.json_value import json_text
 @options.format_option("text", "json")
 @options.debug_option
 def command(format_: str) -> ExitCode:
-    """List the ready-made constraints: what each demands, and how it is called.
+    """List the ready-made constraints: what each demands, and how to use it.
 
     Add the last line of an entry to solve, why-not, shopping-list or clash. A constraint is a file of a few
     lines; the docs (writing-constraints.md) teach writing one of your own.

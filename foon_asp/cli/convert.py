@@ -1,4 +1,4 @@
-"""``foon-asp convert``: FOON files in another dialect, and what it cannot hold."""
+"""``foon-asp convert``: FOON files in another dialect, and a list of what gets lost."""
 
 from collections import Counter
 from pathlib import Path
@@ -39,7 +39,7 @@ class _Task(NamedTuple):
 @options.lenient_option
 @options.debug_option
 def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: bool) -> ExitCode:
-    """Write FOON files in another dialect, and list what it cannot hold.
+    """Write FOON files in another dialect, and list what gets lost.
 
     \b
     foon-asp convert recipe.txt --to json               print one file in another dialect
@@ -54,14 +54,14 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
     json        {"functional_units": [{"input_nodes": [{"object_id": 294, "object_label": "onion", ...
     json-list   [{"input_nodes": [{"label": "onion", "states": [], ...}], "motion_node": "chop", ...
 
-    The dialect of the input is found out. From text to text, comments, blank lines and the order of lines
+    The dialect of the input is detected. From text to text, comments, blank lines and the order of lines
     stay. ids keeps the ids that are there and numbers what has none: objects by label, states by word,
-    motions by label, the same in all files of one call. What the target has no place for is listed on
-    stderr, each kind with how often and where first; everything else is read back from the result.
+    motions by label, the same in all files of one call. What the target cannot hold is listed on stderr, each
+    kind with its number and its first place; everything else can be read back from the result.
     docs/formats.md has the dialects in full.
 
-    Exits with 0 when all files are written; with 2, before anything is written, when something is not
-    understood or a name would mean something else in the target.
+    Exits with 0 when all files are written; with 2, and nothing written, when something is not understood or
+    a name would mean something else in the target.
     """
     dialect = Dialect(target)
     tasks = _tasks(foon_files(paths), any(path.is_dir() for path in paths), output, dialect)
@@ -89,7 +89,7 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
         lost = list(result.lost) + ["lines that are in no unit"] * bool(converter.left_out)
         if task.to is not None and lost and same_file(task.to, task.file):
             raise UserError(
-                f"{task.to}: would be written over by a file without its {', '.join(lost)}; "
+                f"{task.to}: would be overwritten by a file without its {', '.join(lost)}; "
                 "write to another file"
             )
     contents = [utf_8(result.text) for result in results]  # all of them, before one is written
@@ -107,18 +107,18 @@ def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{folder}: cannot be made a folder: {error.strerror or error}") from None
+        raise UserError(f"{folder}: cannot be created as a folder: {error.strerror or error}") from None
 
 
 def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target: Dialect) -> list[_Task]:
-    """Say where each file goes; no two to the same place, and none of a folder onto what is read."""
+    """Decide where each file is written: no two to the same place, and none over a file that is read."""
     if len(files) == 1 and not is_folder:
         file = files[0].file
         if output is None or str(output) == "-":
             return [_Task(file, None)]
         return [_Task(file, output / file.with_suffix(target.suffix).name if output.is_dir() else output)]
     if output is None or str(output) == "-":
-        raise UserError(f"{len(files)} files need a folder to go to: name one with -o")
+        raise UserError(f"{len(files)} files need a folder: name one with -o")
     if output.exists() and not output.is_dir():
         raise UserError(f"{output}: expected a folder for {len(files)} files, found a file")
     tasks = [_Task(file, output / within.with_suffix(target.suffix)) for file, within in files]
@@ -134,7 +134,7 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
 
 
 def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:
-    """Say from what to what, and what of it is lost."""
+    """Give a summary: the dialects, and what was lost."""
     dialects = Counter(result.dialect for result in results)
     if len(tasks) == 1:
         head = f"{tasks[0].file}: {results[0].dialect} → {target}"

@@ -32,9 +32,9 @@ def command(
 ) -> ExitCode:
     """Print the facts that clingo is given for a goal; encodings/README.md says what they mean.
 
-    Units that no goal can need are left out, which is right for constraints that only forbid. Name a
-    constraint that asks for something with --constraint, and all units that can be made are there. The
-    rules of a --soft file are printed with the facts, as rules for what is broken.
+    Units that no goal can need are left out, which is right for constraints that only forbid. If a constraint
+    demands something, name it with --constraint; then all units that can be made are printed. The rules of a
+    --soft file are printed with the facts, as rules for what is broken.
 
     \b
     foon-asp facts --goal ice > facts.lp

@@ -20,11 +20,13 @@ from foon_asp.text.plain_file import read_plain_text
 @click.option(
     "--check", is_flag=True, help="Write nothing; list the files that would change, and exit with 1."
 )
-@options.output_option("FILE", "Write the one file there, or with - to stdout, and leave it as it is.")
+@options.output_option(
+    "FILE", "Write the result for a single file there, or with - to stdout; the file stays as it is."
+)
 @click.option("--lenient", is_flag=True, help="Leave lines that are not understood as they are.")
 @options.debug_option
 def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: bool) -> ExitCode:
-    """Bring FOON files into canonical form, each in its place.
+    """Bring FOON files into canonical form; each file is rewritten.
 
     \b
     foon-asp fmt recipe.txt             format one file
@@ -32,20 +34,20 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
     foon-asp fmt --check recipes/       list the files that are not in canonical form
     foon-asp fmt recipe.txt -o -        print the result
 
-    What annotators slip on is mended where it is beyond doubt what was meant: an open bracket or one of the
-    wrong kind, an empty ingredient, a flag 00, a time such as 1:35]. Blanks at the end of a line go. Every
-    line ends like most lines of its file; a missing last line end, // behind the last unit and a byte order
-    mark are seen to. All else stays: ids, flags, times, comments, blank lines, the order of lines, and
-    blanks within a line, on which `lint` remarks. The network that is read from a file is the same before
-    and after, and formatting twice changes nothing more. In JSON only the layout changes.
+    Common slips of annotators are repaired if it is clear what was meant: an open bracket or one of the wrong
+    kind, an empty ingredient, a flag 00, a time such as 1:35]. Blanks at the end of a line are removed, and
+    so is a byte order mark. Every line ends like most lines of its file; a missing last line end and a
+    missing // after the last unit are added. Everything else stays: ids, flags, times, comments, blank lines,
+    the order of lines, and blanks within a line, on which `lint` remarks. The network read from the file is
+    the same before and after, and formatting twice changes nothing more. In JSON only the layout changes.
 
-    A file with lines that are not understood stays as it is, and they are listed. Exits with 0 when all
-    files are in canonical form now, with 1 when --check found one that is not, and with 2 when a file
-    could not be read.
+    A file with lines that are not understood stays as it is; these lines are listed. Exits with 0 when all
+    files are in canonical form now, with 1 when --check found one that is not, and with 2 when a file could
+    not be read.
     """
     files = [file for file, _ in foon_files(paths)]
     if output is not None and (check or len(files) > 1):
-        raise UserError("-o goes with one file" + (" and without --check" if check else ""))
+        raise UserError("-o is for a single file" + (" without --check" if check else ""))
     errors: list[Diagnostic] = []
     changed = 0
     for file in files:
@@ -77,7 +79,7 @@ def _write(file: Path, content: bytes) -> None:
 
 
 def _summary(file: Path, changes: tuple[Change, ...]) -> str:
-    """Say how many lines would change, and show the first."""
+    """Count the lines that would change, and show the first."""
     if not changes:
         return f"{file}:1: would lose its byte order mark"
     line, before, after = changes[0]
@@ -89,7 +91,7 @@ def _summary(file: Path, changes: tuple[Change, ...]) -> str:
 
 
 def _shown(line: str, width: int = 100) -> str:
-    """Show a line with its tabs, and the blanks at its end."""
+    """Show a line with visible tabs and final blanks."""
     bare = line.rstrip(" ")
     shown = (bare + "·" * (len(line) - len(bare))).replace("\t", "→")
     shown = shown if len(shown) <= width else shown[:width] + "..."

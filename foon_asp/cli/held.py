@@ -1,4 +1,4 @@
-"""What a session holds for the verbs that are asked within it: data, and rules that stand."""
+"""What a session holds for its commands: data, and the rules set so far."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,10 +13,10 @@ if TYPE_CHECKING:  # clingo, which often is not needed
 
 
 class Held(NamedTuple):
-    """What a session has read, for the verbs that are asked within it, and how it was read.
+    """What a session has read, and how.
 
     ``session`` keeps what was grounded; ``files`` are those that were read. ``constraints``, ``constants``
-    and ``encodings`` are the rules that stand: a line of the session adds to them, and takes none away.
+    and ``encodings`` are the rules set so far: a command of the session adds to them, and removes none.
     """
 
     dataset: Dataset
@@ -32,7 +32,7 @@ class Held(NamedTuple):
 def with_rules_that_stand(
     context: click.Context, _: click.Parameter, value: tuple[Path, ...]
 ) -> tuple[Path, ...]:
-    """Add constraints to those that stand in the session, if a verb is asked in one."""
+    """Add constraints to those of the session, if there is one."""
     here = context.find_object(Held)
     standing = () if here is None else here.constraints
     return tuple(dict.fromkeys((*standing, *value)))
@@ -41,7 +41,10 @@ def with_rules_that_stand(
 def with_constants_that_stand(
     context: click.Context, _: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Add constants to those that stand; another value for one of these would change a rule that stands."""
+    """Add constants to those of the session.
+
+    Another value for one of these would change a rule, and is refused.
+    """
     here = context.find_object(Held)
     standing = () if here is None else here.constants
     values = dict(setting.split("=", 1) for setting in standing)
@@ -49,31 +52,31 @@ def with_constants_that_stand(
         name = setting.partition("=")[0]
         if name in values and setting not in standing:
             raise UserError(
-                f"{name}={values[name]} stands, and {setting!r} on this line would change that rule: "
-                "constraint NAME CONSTANT=VALUE replaces it, and drop takes it away"
+                f"{name}={values[name]} is set in this session, and {setting!r} on this line would "
+                "change that rule: constraint NAME CONSTANT=VALUE replaces it, and drop removes it"
             )
     return (*standing, *(setting for setting in value if setting not in standing))
 
 
 def encodings_that_stand(context: click.Context, _: click.Parameter, value: Path | None) -> Path | None:
-    """Give the encodings that stand in the session; others would be of another question."""
+    """Give the encodings of the session, if there is one; others are refused."""
     here = context.find_object(Held)
     if here is None or here.encodings is None:
         return value
     if value not in {None, here.encodings}:
         raise UserError(
-            f"the encodings of {here.encodings} stand in this session; those of {value} need one of their own"
+            f"this session uses the encodings of {here.encodings}; start another one to use {value}"
         )
     return here.encodings
 
 
 def held() -> Held | None:
-    """Give what the session has in which a verb is asked, if it is asked in one."""
+    """Give what the session holds, if there is one."""
     context = click.get_current_context(silent=True)
     return context.find_object(Held) if context else None
 
 
 def session_here() -> "Session | None":
-    """Give what keeps ground programs for the next question, if there may be one."""
+    """Give what keeps ground programs for the next question of the session, if there is one."""
     here = held()
     return here.session if here else None

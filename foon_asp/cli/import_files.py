@@ -1,4 +1,4 @@
-"""``foon-asp import``: files into a store, of which a question reads only what it is about."""
+"""``foon-asp import``: files into a store, from which a question reads only its part."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from foon_asp.text import find_data, summarize
     required=True,
     type=click.Path(path_type=NamedPath),
     metavar="NAME.foon",
-    help="The store to write; one that is there is replaced when all went well.",
+    help="The store to write; an old one is replaced once the new one is complete.",
 )
 @options.network_options
 def command(
@@ -41,9 +41,9 @@ def command(
     foon-asp import --data my_foon --store my.foon
     foon-asp solve --network my.foon --goal macaroni
 
-    The kitchen, rates, utensils, goals and prices that are named here are kept in the store, and are what
-    every verb takes that is not given others. Every copy of a unit keeps its file, line and videos. Copies
-    with different prices are an error, unless a line of --unit-prices chooses one.
+    The kitchen, rates, utensils, goals and prices named here are kept in the store, and used by every verb
+    unless others are given. Every copy of a unit keeps its file, line and videos. Copies with different
+    prices are an error, unless a line of --unit-prices chooses one.
     """
     if folder is None and not paths and not network:
         raise UserError("name the networks to import, or a folder of data with --data")

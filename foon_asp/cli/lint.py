@@ -23,7 +23,7 @@ _CODE = click.Choice(list(CATALOG))
 
 @click.command("lint")
 @options.files_argument(required=True)
-@click.option("--fix", is_flag=True, help="Mend what is beyond doubt, each file in its place.")
+@click.option("--fix", is_flag=True, help="Repair what is safe to repair, in the files themselves.")
 @click.option(
     "--select", multiple=True, type=_CODE, metavar="CODE", help="Report this kind only; repeatable."
 )
@@ -38,18 +38,18 @@ def command(
     \b
     foon-asp lint recipe.txt                    one file
     foon-asp lint recipes/ kitchen.json         files that belong together
-    foon-asp lint --fix recipes/                mend what can be mended safely
+    foon-asp lint --fix recipes/                repair what is safe to repair
     foon-asp lint --ignore shared-unit recipes/
 
-    Files are linted together: names are compared over all of them, and their units are one network. Every
-    finding has a code, which docs/lint.md explains with an example. In text, many findings of one kind in a
-    file are folded into one; json and github have all of them.
+    Files are checked together: names are compared across all of them, and their units are one network. Every
+    finding has a code, which docs/lint.md explains with an example. The text folds many findings of one kind
+    in a file into one; json and github list all.
 
-    --fix writes lines that were understood all the same as they should have been: nothing of what the file
-    says changes, and no other byte of it.
+    --fix corrects lines that were understood in spite of a slip: what the file says does not change, and
+    neither does any other byte.
 
     Exits with 0 when there is nothing to report but notes, with 1 when there are errors or warnings (that
-    --fix did not mend), and with 2 when a file could not be opened.
+    --fix did not repair), and with 2 when a file could not be opened.
     """
     files = [file for file, _ in foon_files(paths)]
     wanted = {code for code in select or CATALOG if code not in ignore}
@@ -73,7 +73,7 @@ def _findings(files: Sequence[Path], wanted: set[str]) -> list[Diagnostic]:
 
 
 def _mend(files: Sequence[Path], findings: Sequence[Diagnostic]) -> int:
-    """Write the files anew that something is mended in, and count the findings that were."""
+    """Rewrite the files with repairs, and count the repaired findings."""
     fixable: dict[str, list[Diagnostic]] = {}
     for finding in findings:
         if finding.fix is not None:
@@ -82,7 +82,7 @@ def _mend(files: Sequence[Path], findings: Sequence[Diagnostic]) -> int:
         if str(file) not in fixable:
             continue
         if not file.is_file():
-            raise UserError(f"{file}: no file that could be written; --fix mends files in their place")
+            raise UserError(f"{file}: not a file that can be written; --fix repairs files in place")
         content = file.read_bytes()
         new = mended(content, fixable[str(file)])
         if new != content:

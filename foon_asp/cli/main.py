@@ -1,4 +1,4 @@
-"""``foon-asp``: the verbs, and how every ending becomes an exit code."""
+"""``foon-asp``: the verbs, and the exit code of every ending."""
 
 import contextlib
 import gc
@@ -63,7 +63,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _run(words: list[str]) -> ExitCode:
-    """Run a verb; say what went wrong, and give the code for how it ended."""
+    """Run a verb; report what went wrong, and give the exit code."""
     try:
         ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False)
         return ExitCode(ended or 0)
@@ -74,7 +74,7 @@ def _run(words: list[str]) -> ExitCode:
 
 
 def _ended(error: BaseException, debug: bool) -> ExitCode:
-    """Say on stderr how a command ended, and give its code."""
+    """Report on stderr how a command ended, and give its exit code."""
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
         traceback.print_exception(error)
     if isinstance(error, BrokenPipeError):  # the reader of our output went away, as `head` does
@@ -91,7 +91,7 @@ def _ended(error: BaseException, debug: bool) -> ExitCode:
                 f"unknown: stopped at {limit.stopped}, before there was an answer\nwhat to do: {limit.advice}"
             )
     elif isinstance(error, MemoryError):
-        text, code = "unknown: there is no more memory; --memory-limit stops in time", ExitCode.LIMIT
+        text, code = "unknown: out of memory; --memory-limit stops before that", ExitCode.LIMIT
     elif isinstance(error, UserError):
         text = str(error) if ": error: " in str(error) else f"error: {error}"
     elif isinstance(error, OSError):  # the world's: a full disk, no permission, a folder in place of a file
@@ -109,7 +109,7 @@ def _ended(error: BaseException, debug: bool) -> ExitCode:
 
 
 def _usage(error: click.ClickException) -> str:
-    """Say what click has against the words of a command, which it quotes."""
+    """Give click's complaint about a command, with the words quoted."""
     lines = []
     if isinstance(error, click.UsageError) and error.ctx is not None:
         lines = [error.ctx.get_usage()]

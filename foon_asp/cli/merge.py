@@ -1,4 +1,4 @@
-"""``foon-asp merge``: many FOONs in one, every unit with the places it comes from."""
+"""``foon-asp merge``: many FOONs in one, every unit with its origins."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,7 +24,7 @@ from foon_asp.text.merged_network import merged_text
     "--unit-prices",
     type=click.Path(path_type=NamedPath),
     metavar="FILE",
-    help="Prices of single units, which choose where copies of a unit have different ones.",
+    help="Prices of single units, used when copies of a unit have different ones.",
 )
 @options.lenient_option
 @options.debug_option
@@ -38,16 +38,15 @@ def command(
     foon-asp merge FOON.txt new.txt -o out.txt   one more into a merged one
     foon-asp merge recipes/*.json -o FOON.txt    JSON, too
 
-    Units are the same when they have the same motion, inputs and outputs; ids, motion flags and times are
-    no part of that and are not written. Above each unit there is a line for every copy of it:
+    Units are the same when they have the same motion, inputs and outputs; ids, motion flags and times do not
+    count and are not written. Above each unit is a line for every copy of it:
 
     \b
     # From:→recipes/salad.txt:12→https://example.org/salad.mp4
 
     with the file, the line, and the videos that the file names. Merging again keeps these places, and every
-    answer on the merged network shows them. Of a folder the networks are its FOON.txt, or else its *.txt
-    and *.json, without kitchen, goals and tables; a list of objects by another name has no units, which is
-    said.
+    answer on the merged network shows them. In a folder, the networks are FOON.txt, or else all *.txt and
+    *.json except kitchen, goals and tables; a warning names lists of objects with other names.
 
     Prices of units (in JSON) are not written, since FOON text has no place for them; import keeps them.
     Copies of a unit with different prices are an error, unless a line of --unit-prices chooses one.

@@ -1,4 +1,4 @@
-"""Paths that a user names, which are shown on one line whatever is in them."""
+"""Paths that a user names, always shown on one line."""
 
 import os
 from pathlib import Path, PosixPath, WindowsPath
@@ -13,9 +13,9 @@ else:
 
 
 class NamedPath(_Base):
-    """A path that a message has in it as letters alone: ``f"{path}"`` escapes, ``str(path)`` is the name.
+    """A path that is safe in messages: ``f"{path}"`` is escaped, ``str(path)`` is the name.
 
-    What is found in a folder by it is shown in the same way.
+    Paths found in it as a folder are of the same class.
     """
 
     def __format__(self, spec: str) -> str:

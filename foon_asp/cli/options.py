@@ -1,4 +1,4 @@
-"""Options that several verbs share, and reading the data they name."""
+"""Options that several verbs share, and the data they name."""
 
 import functools
 from collections.abc import Callable, Sequence
@@ -84,12 +84,15 @@ def network_options(command: Command) -> Command:
 
 
 def data_options(command: Command) -> Command:
-    """Add the options that name the data, and the level at which it is taken."""
+    """Add the options that name the data, and the level."""
     return network_options(_LEVEL_OPTION(command))
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
-    """Add the limits of a whole command, from reading on: ``deadline``. At the end it says what to do."""
+    """Add the limits of a whole command, from reading on: ``deadline``.
+
+    If one is reached, a message says what to do.
+    """
 
     @functools.wraps(command)
     def limited(time_limit: float | None, memory_limit: int | None, **given: object) -> ExitCode:
@@ -108,7 +111,7 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
 
 def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
-    """Let the limits of the command at hand begin."""
+    """Start the limits of the current command."""
     deadline = Deadline(time_limit, memory_limit)
     click.get_current_context().meta[_DEADLINE] = deadline
     return deadline
@@ -133,13 +136,13 @@ def read_dataset(
     level: int,
     kitchen_expected: bool = True,
 ) -> Dataset:
-    """Read the data that the options name; warnings go to stderr. Within a session it is there already."""
+    """Read the data that the options name; warnings go to stderr. A session has it already."""
     here = held()
     if here:
         named = (folder, network, kitchen, rates, utensils, goals, unit_prices)
         if any(named) or (lenient, level) != here[1:3]:
             raise UserError(
-                "the data of a session is what it was started with; another kitchen is given by: kitchen FILE"
+                "a session keeps the data it was started with; to take another kitchen: kitchen FILE"
             )
         return here.dataset
     with reading():

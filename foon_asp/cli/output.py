@@ -1,4 +1,4 @@
-"""Standard output and error, through which everything goes that a command says: what is shown is safe."""
+"""Standard output and error: everything that a command prints passes through here and is made safe."""
 
 import contextlib
 import os
@@ -14,12 +14,11 @@ if TYPE_CHECKING:
 
 
 class SafeStream:
-    """A stream of text that escapes what a terminal or a log would not show, or take for a command.
+    """A stream of text that escapes what a terminal or a log would hide or obey.
 
-    Letters that its encoding does not have are escaped too, so that no text is too foreign to be shown.
-    ``stream`` is ``None`` where it was closed before we began. What cannot be written is a fault, but for
-    ``remarks``, without which an answer is one. A ``styled`` stream lets colours pass: who writes to it
-    escapes names first.
+    Letters that its encoding lacks are escaped, too. ``stream`` is ``None`` if it was closed from the start.
+    What cannot be written is an error, except ``remarks``, without which an answer is still complete. A
+    ``styled`` stream lets colours pass; names must be escaped before.
     """
 
     errors = "strict"
@@ -31,11 +30,11 @@ class SafeStream:
 
     @property
     def encoding(self) -> str:
-        """The encoding, which only who writes styled text has to know: the rest is seen to here."""
+        """The encoding, needed only for styled text."""
         return (self._styled and self.stream and self.stream.encoding) or "utf-8"
 
     def write(self, text: str) -> int:
-        """Write a text; raises :class:`UserError` where there is no room, or nobody to write to."""
+        """Write a text; raises :class:`UserError` if the disk is full or the output closed."""
         if not isinstance(text, str):
             raise TypeError(f"expected text, found {type(text).__name__}")
         with self._faults():
@@ -52,17 +51,17 @@ class SafeStream:
             stream.buffer.flush()
 
     def flush(self) -> None:
-        """Hand over what was written."""
+        """Flush the stream."""
         if self.stream is not None:
             with self._faults():
                 self.stream.flush()
 
     def isatty(self) -> bool:
-        """Whether somebody sits in front of it."""
+        """Whether it is a terminal."""
         return self.stream is not None and self.stream.isatty()
 
     def writable(self) -> bool:
-        """Say yes: others ask."""
+        """Whether it can be written: yes."""
         return True
 
     def __getattr__(self, name: str) -> Any:
@@ -86,7 +85,7 @@ class SafeStream:
 
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
-    """Let everything that is printed go through :class:`SafeStream`."""
+    """Send everything that is printed through :class:`SafeStream`."""
     forget_line_ends()
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
@@ -98,7 +97,7 @@ def safe_streams() -> Iterator[None]:
 
 
 def write_data(content: str | bytes) -> None:
-    """Write a file's worth of data to standard output, to the byte.
+    """Write data to standard output, unchanged.
 
     Raises :class:`UserError` for text that UTF-8 cannot hold.
     """
@@ -108,7 +107,7 @@ def write_data(content: str | bytes) -> None:
 
 
 def console(err: bool = False) -> "Console":
-    """Give a console for tables and what moves, whose colours are let through on a terminal."""
+    """Give a console for tables and progress, with colours at a terminal."""
     from rich.console import Console
 
     here = sys.stderr if err else sys.stdout
@@ -117,7 +116,7 @@ def console(err: bool = False) -> "Console":
 
 
 def drop_output() -> None:
-    """Send what is still to be written nowhere: nobody can read it, and Python would try when it ends."""
+    """Discard what is not written yet: nobody can read it, and Python would try at its end."""
     for stream in (sys.stdout, sys.stderr):
         if stream is None:
             continue

@@ -1,4 +1,4 @@
-"""Files that a command writes: never one that it reads."""
+"""Files that a command writes, which are never those it reads."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -15,21 +15,19 @@ _DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "unit_pri
 
 
 def check_outputs() -> None:
-    """Raise :class:`UserError` where a file that the command at hand would write is one that it reads.
+    """Raise :class:`UserError` if the current command would write a file that it reads.
 
-    To be asked before anything is solved: nobody waits an hour to be told.
+    To be called before anything is solved, so that nobody waits an hour for this error.
     """
     parameters = click.get_current_context().params
     for name in _WRITTEN & parameters.keys():
         for file in _paths(parameters[name]):
             if any(same_file(file, other) for other in read_files()):
-                raise UserError(
-                    f"{file}: is read by this command, and is not written over; name another file"
-                )
+                raise UserError(f"{file}: is read by this command and is not overwritten; name another file")
 
 
 def read_files() -> Iterator[Path]:
-    """Give the files that the command at hand reads: those that are named, and those in a folder of data."""
+    """Give the files that the current command reads: those named, and those in a folder of data."""
     parameters = click.get_current_context().params
     here = held()
     if here is not None:
@@ -45,7 +43,7 @@ def read_files() -> Iterator[Path]:
 
 
 def same_file(file: Path, other: Path) -> bool:
-    """Whether two names are those of one file, be it by links; a pipe or a terminal is not meant."""
+    """Whether two names are those of one file, also through links; pipes and terminals do not count."""
     return file.is_file() and other.is_file() and file.samefile(other)
 
 

@@ -1,4 +1,4 @@
-"""What is seen on stderr while a search goes on: the best tree and the bound, on a terminal only."""
+"""Progress on stderr during a search: the best tree and the bound, only at a terminal."""
 
 import contextlib
 import sys
@@ -22,7 +22,7 @@ _PATIENCE = 0.3  # seconds before anything is shown: most answers are there by t
 
 
 class Progress(Reporter):
-    """Shows the best tree so far and the proved bound in one line that keeps changing."""
+    """Shows the best tree so far and the proved bound in one line, which is updated."""
 
     def __init__(self) -> None:
         self._began = time.monotonic()
@@ -76,7 +76,7 @@ class Progress(Reporter):
 
 @contextlib.contextmanager
 def bar(word: str, total: int, completed: int) -> Iterator[Callable[[], None]]:
-    """Show a bar on a terminal for more than a handful of steps; what is given is called after each."""
+    """Show a bar at a terminal if there are more than a few steps; call the function given after each."""
     if total < 20 or not sys.stderr.isatty():
         yield lambda: None
         return

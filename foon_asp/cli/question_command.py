@@ -1,4 +1,4 @@
-"""A command for each question of the catalog, made from what the question says of itself."""
+"""A command for each question of the catalog, made from its description."""
 
 import contextlib
 import sys
@@ -90,14 +90,14 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
             "--format",
             "format_",
             type=click.Choice(question.formats),
-            help=f"In which format, whatever the file is called; without a file {first}, to stdout.",
+            help=f"The format, whatever the name of the file; without a file, {first} to stdout.",
         ),
         click.option(
             "-o",
             "--output",
             type=click.Path(path_type=NamedPath),
             metavar="FILE",
-            help=f"Where to write; {' '.join(question.suffixes)} say in which format.",
+            help=f"The file to write; its ending chooses the format ({' '.join(question.suffixes)}).",
         ),
     ]
 
@@ -111,7 +111,7 @@ def _form(question: Question, named: str | None, output: Path | None) -> str:
 
 
 def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
-    """Write what was found to standard output, and to stderr what its format does not say."""
+    """Write the result to standard output, and to stderr what its format cannot tell."""
     renderable = found.renderable() if format_ == "text" else None
     if renderable is not None:
         console().print(renderable)
@@ -130,7 +130,7 @@ def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
 
 
 def _write(found: Result, format_: str, output: Path) -> None:
-    """Write what was found into a file, and say so."""
+    """Write the result into a file, and report that."""
     if remark := found.remark(format_):
         click.echo(remark, err=True)
     with contextlib.suppress(NothingToDrawError):

@@ -1,4 +1,4 @@
-"""``foon-asp schema``: what is in the JSON of a verb, as a JSON Schema."""
+"""``foon-asp schema``: the JSON Schema of the output of a verb."""
 
 import click
 
@@ -21,8 +21,8 @@ def command(verb: str | None) -> ExitCode:
     foon-asp schema
     foon-asp schema solve > answer.schema.json
 
-    The schemas are of the draft 2020-12, each in one piece. batch-row and compare-row are the lines of the
-    files that batch and compare write with --results. docs/json.md has an example of every document.
+    The schemas follow the draft 2020-12; each is complete in itself. batch-row and compare-row are the lines
+    of the files that batch and compare write with --results. docs/json.md has an example of every document.
     """
     kinds = schema_kinds()
     if verb is None:
@@ -32,6 +32,6 @@ def command(verb: str | None) -> ExitCode:
     kind = _KINDS.get(verb, verb)
     if kind not in kinds:
         known = ", ".join(sorted({*kinds, *_KINDS}))
-        raise UserError(f"found {verb!r}, expected what has a schema: {known}")
+        raise UserError(f"found {verb!r}, expected a verb that has a schema: {known}")
     click.echo(json_text(schema(kind)), nl=False)
     return ExitCode.DONE

@@ -1,4 +1,4 @@
-"""``foon-asp shell``: a session, in which data is read once and questions are asked again and again."""
+"""``foon-asp shell``: a session: data is read once, and many questions are asked."""
 
 import sys
 from collections.abc import Iterator
@@ -50,11 +50,11 @@ def command(
     constraint forbid_motion forbidden_motion=pour
     solve --objective success
 
-    help lists the words. Questions are asked as on the command line, with the same options; what stands in
-    the session counts for those that are not given. Ctrl-C ends a question with the best answer so far.
+    help lists the words. Questions are asked as on the command line, with the same options; for options that
+    are not given, the session's settings are used. Ctrl-C ends a question with the best answer so far.
 
-    On a terminal a fault is said and the session goes on, and leaving exits with 0. A script ends at the
-    first fault, with its line, and exits with 2; else with the code of the question asked last.
+    At a terminal, the session continues after an error, and exits with 0. A script ends at the first error,
+    reports its line, and exits with 2; otherwise it exits with the code of the last question.
     """
     from_terminal = script is None and sys.stdin.isatty() and sys.stdout.isatty()
     dataset = options.read_dataset(lenient=lenient, level=level, **data)  # type: ignore[arg-type]
@@ -97,7 +97,7 @@ def _run_script(session: ShellSession, script: Path | None) -> ExitCode:
 
 
 def _lines(script: Path | None) -> Iterator[str]:
-    """Give line after line, each as soon as it is there."""
+    """Give the lines, each as soon as it can be read."""
     if script is None:
         yield from sys.stdin
         return

@@ -1,4 +1,4 @@
-"""What a word of a session that is not finished can become."""
+"""Completions of the last word of a line in a session."""
 
 from collections.abc import Callable, Iterable
 from itertools import islice
@@ -20,14 +20,14 @@ _MOTIONS, _LABELS = "_motion", ("_object", "_intermediate", "_ingredient")
 
 
 class Candidates(NamedTuple):
-    """Texts that can stand from a column, from 0, to the end of the line."""
+    """Texts that may replace the line from ``column`` on, counted from 0."""
 
     start: int
     texts: tuple[str, ...]
 
 
 def candidates(text: str, session: ShellSession) -> Candidates:
-    """Give what the last word of a line can become: words, nodes, constraints, options and their values."""
+    """Give completions of the last word of a line: words, nodes, constraints, options and their values."""
     line = take_apart(text)
     words = list(line.words)
     if not line.open_quote and (not words or text[-1:].isspace()):
@@ -42,7 +42,7 @@ def candidates(text: str, session: ShellSession) -> Candidates:
 
 
 def _words(before: list[str], fragment: str, session: ShellSession) -> Iterable[str]:
-    """Give words that begin like the fragment, behind the words that stand before it."""
+    """Give words that begin like the fragment and may follow the words before it."""
     if not before:
         return _beginning([*WORDS, *QUESTIONS], fragment)
     first, *rest = before
@@ -66,7 +66,7 @@ def _words(before: list[str], fragment: str, session: ShellSession) -> Iterable[
 
 
 def _options(verb: str, last: str, fragment: str, session: ShellSession) -> Iterable[str]:
-    """Give the options of a verb, or the values of the one that stands before."""
+    """Give the options of a verb, or the values of the option before the fragment."""
     options = [each for each in verb_command(verb).params if isinstance(each, click.Option)]
     option = next((each for each in options if last in each.opts and not each.is_flag), None)
     if option is None:
@@ -84,7 +84,7 @@ def _options(verb: str, last: str, fragment: str, session: ShellSession) -> Iter
 
 
 def _goals(fragment: str, session: ShellSession) -> Iterable[str]:
-    """Give the labels of the goals file before all other nodes."""
+    """Give the labels of the goals file, then all other nodes."""
     yield from _beginning((entry.pattern.label for entry in session.kitchen.dataset.listed), fragment)
     yield from _nodes(fragment, session.kitchen.names)
 
@@ -94,14 +94,14 @@ def _nodes(fragment: str, names: NodeNames) -> Iterable[str]:
 
 
 def _list(fragment: str) -> Iterable[str]:
-    """Go on with a list of objectives."""
+    """Complete a list of objectives."""
     done, comma, last = fragment.rpartition(",")
     left = [objective for objective in Objective if objective not in done.split(",")]
     return (f"{done}{comma}{objective}" for objective in _beginning(left, last))
 
 
 def _constants(constraint: str, fragment: str, session: ShellSession) -> Iterable[str]:
-    """Give the constants of a ready-made constraint, or values of one that is a motion or a label."""
+    """Give the constants of a ready-made constraint, or values of a constant that is a motion or a label."""
     name, equals, value = fragment.partition("=")
     if not equals:
         ours = {each.name: each.parameters for each in library_constraints()}

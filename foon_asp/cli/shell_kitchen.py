@@ -1,4 +1,4 @@
-"""The kitchen of a session: the one that was read, and what was put into it and taken out since."""
+"""The kitchen of a session: the one that was read, with its changes."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -26,7 +26,7 @@ _LACK = Wording("kitchen item", " at hand", "lack")
 
 
 class ShellKitchen:
-    """What is at hand; ``question`` is asked with it. What changes is said on stderr."""
+    """What is at hand; ``question`` is asked with it. Changes are reported on stderr."""
 
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
@@ -36,12 +36,12 @@ class ShellKitchen:
 
     @property
     def names(self) -> NodeNames:
-        """What the names of object nodes are looked up in."""
+        """Where names of object nodes are looked up."""
         return self.dataset.names
 
     @property
     def names_at_hand(self) -> NodeNames:
-        """What the names of things at hand are looked up in."""
+        """Where names of things at hand are looked up."""
         nodes = {o: self.names.node(o) for o in sorted(self.dataset.kitchen)}
         return SomeNames(nodes, self.names.level)
 
@@ -76,7 +76,7 @@ class ShellKitchen:
 
     @property
     def size(self) -> str:
-        """Say how much is at hand."""
+        """Say how many object nodes are at hand."""
         count = len(self.dataset.kitchen)
         return "1 object node" if count == 1 else f"{count} object nodes"
 
@@ -85,7 +85,7 @@ class ShellKitchen:
         return self._sorted(self.dataset.kitchen)
 
     def changes(self) -> list[str]:
-        """List what was put in, behind a plus, and taken out, behind a minus."""
+        """List what was put in, after a plus, and what was taken out, after a minus."""
         return [f"+ {n}" for n in self._sorted(self._added)] + [f"- {n}" for n in self._sorted(self._removed)]
 
     def _change(self, added: frozenset[int], removed: frozenset[int]) -> None:
@@ -104,7 +104,7 @@ class ShellKitchen:
 def find_nodes(
     words: Sequence[str], among: NodeNames, wording: Wording, listed: Sequence[ListedObject] = ()
 ) -> list[int]:
-    """Find the nodes that are named, each once; the beginning of a name is enough where it is the only one.
+    """Find the nodes that are named, each once; the beginning of a name is enough if only one name has it.
 
     Raises :class:`UserError` like :func:`foon_asp.text.find_goal`.
     """

@@ -1,4 +1,4 @@
-"""A line of a session, taken apart into words as a command line is."""
+"""A line of a session, split into words like a command line."""
 
 import re
 from typing import NamedTuple
@@ -16,24 +16,24 @@ class Word(NamedTuple):
 
 
 class Line(NamedTuple):
-    """The words of a line, and the quote that is still open at its end, if one is."""
+    """The words of a line, and the quote that is still open at its end, if any."""
 
     words: tuple[Word, ...]
     open_quote: str = ""
 
     @property
     def texts(self) -> list[str]:
-        """The words alone; raises :class:`UserError` for a quote that is not closed."""
+        """The words as texts; raises :class:`UserError` for a quote that is not closed."""
         if self.open_quote:
             raise UserError(f"the quote {self.open_quote} in {self.words[-1].text!r} is not closed")
         return [word.text for word in self.words]
 
 
 def take_apart(text: str) -> Line:
-    """Take a line apart: blanks separate words, quotes keep them, a ``#`` before a word opens a comment.
+    """Split a line: blanks separate words, quotes keep them together, ``#`` before a word begins a comment.
 
-    In single quotes everything stands for itself; in double quotes a backslash quotes ``"`` and itself, and
-    outside of quotes whatever comes behind it.
+    Within single quotes, nothing is special; within double quotes, a backslash quotes ``"`` and itself;
+    outside of quotes, it quotes any letter.
     """
     words: list[Word] = []
     current, start, quote = "", -1, ""
@@ -72,7 +72,7 @@ def take_apart(text: str) -> Line:
 
 
 def quoted(word: str) -> str:
-    """Write a word so that :func:`take_apart` gives it back."""
+    """Quote a word so that :func:`take_apart` reads it back."""
     if _PLAIN.fullmatch(word):
         return word
     return f"'{word}'" if "'" not in word else '"' + re.sub(r'(["\\])', r"\\\1", word) + '"'

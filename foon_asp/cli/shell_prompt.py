@@ -1,4 +1,4 @@
-"""The prompt of a session on a terminal: completion, and the lines of earlier sessions."""
+"""The prompt of a session at a terminal: completion, and the history of earlier sessions."""
 
 import os
 from collections.abc import Iterable, Iterator
@@ -14,7 +14,7 @@ from foon_asp.cli.shell_session import ShellSession
 
 
 def prompted_lines(session: ShellSession) -> Iterator[str]:
-    """Ask for line after line until ctrl-D; ctrl-C drops the line that is being typed."""
+    """Prompt for lines until ctrl-D; ctrl-C drops the line being typed."""
     prompt: PromptSession[str] = PromptSession(
         "foon-asp> ",
         completer=_Completer(session),
@@ -31,7 +31,7 @@ def prompted_lines(session: ShellSession) -> Iterator[str]:
 
 
 class _Completer(Completer):
-    """Hands the line over, up to the cursor."""
+    """Completes the line up to the cursor."""
 
     def __init__(self, session: ShellSession) -> None:
         self._session = session
@@ -43,16 +43,16 @@ class _Completer(Completer):
 
 
 def history_file() -> Path:
-    """Give the file with the lines of earlier sessions: ``foon-asp/history`` in the user's state folder.
+    """Give the file with the history of earlier sessions: ``foon-asp/history`` in the user's state folder.
 
-    That is ``$XDG_STATE_HOME``, or ``~/.local/state`` where that is not set to an absolute path.
+    That folder is ``$XDG_STATE_HOME`` if that is an absolute path, otherwise ``~/.local/state``.
     """
     folder = Path(os.environ.get("XDG_STATE_HOME", ""))
     return (folder if folder.is_absolute() else Path.home() / ".local" / "state") / "foon-asp" / "history"
 
 
 def _history() -> History:
-    """Open the history; where there is no room for it, lines are kept until the session ends."""
+    """Open the history; if it cannot be written, lines are kept until the session ends."""
     try:
         file = history_file()
         file.parent.mkdir(parents=True, exist_ok=True)

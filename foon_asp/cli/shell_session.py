@@ -1,4 +1,4 @@
-"""What stands in a session (goals, kitchen, rule, constraints, objectives) and the words that change it."""
+"""The settings of a session (goals, kitchen, rule, constraints, objectives) and words that change them."""
 
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
@@ -36,14 +36,14 @@ _GOAL = Wording("goal", "", "goal")
 
 
 class Usage(NamedTuple):
-    """How a word is used, and what it does."""
+    """How to use a word, and what it does."""
 
     usage: str
     purpose: str
 
 
 WORDS = {
-    "goal": Usage("goal NAME...", "make this, or all of these by one tree"),
+    "goal": Usage("goal NAME...", "make this, or all of these with one tree"),
     "have": Usage("have NAME...", "put object nodes into the kitchen"),
     "lack": Usage("lack NAME...", "take object nodes out of the kitchen"),
     "kitchen": Usage("kitchen [FILE]", "list what is at hand, or take another kitchen"),
@@ -53,24 +53,24 @@ WORDS = {
         "constraint NAME|FILE.lp [CONSTANT=VALUE...]", "add a constraint, or set its constants"
     ),
     "drop": Usage("drop NAME|FILE.lp...", "take constraints away"),
-    "time-limit": Usage("time-limit SECONDS|none", "stop each question after so long"),
-    "memory-limit": Usage("memory-limit SIZE|none", "stop each question at so much memory: 500M, 2G"),
-    "show": Usage("show", "say what stands"),
+    "time-limit": Usage("time-limit SECONDS|none", "stop each question after this many seconds"),
+    "memory-limit": Usage("memory-limit SIZE|none", "stop each question at this much memory: 500M, 2G"),
+    "show": Usage("show", "show what is set"),
     "help": Usage("help [WORD]", "list the words, or explain one"),
     "quit": Usage("quit", "leave, as ctrl-D does"),
 }
 
 
 class Leave(Exception):  # noqa: N818 (no error: the session is over)
-    """Raised where a line asks to leave."""
+    """Raised by a line that asks to leave."""
 
 
 class ShellSession:
-    """A session: data that was read once, and what stands until another line changes it.
+    """A session: data that was read once, and settings that hold until a line changes them.
 
-    ``code`` is that of the question asked last. ``lenient`` and ``level`` are how the data was read,
-    ``encodings`` the folder with encodings to use instead of ours. What is said about the session goes to
-    stderr, answers go to stdout.
+    ``code`` is that of the last question. ``lenient`` and ``level`` are how the data was read, ``encodings``
+    the folder with encodings to use instead of ours. Remarks about the session go to stderr, answers to
+    stdout.
     """
 
     def __init__(self, dataset: Dataset, lenient: bool, level: int, encodings: Path | None) -> None:
@@ -105,7 +105,7 @@ class ShellSession:
         }
 
     def run(self, line: str) -> None:
-        """Do what a line says. Raises :class:`UserError`, what click raises, and :class:`Leave`."""
+        """Run a line. Raises :class:`UserError`, exceptions of click, and :class:`Leave`."""
         words = take_apart(line).texts
         if words[:1] == ["foon-asp"]:  # pasted from a page or a message
             del words[0]
@@ -123,7 +123,7 @@ class ShellSession:
             raise UserError(f"found {word!r}, expected a word of the session or a question; {hint}")
 
     def _ask(self, verb: str, words: list[str]) -> None:
-        """Ask a question by its verb; what stands counts for all options that are not given."""
+        """Ask a question by its verb; the settings are used for options that are not given."""
         self._refuse_without_rules(verb, words)
         dataset = self.kitchen.dataset
         given: dict[str, object] = {
@@ -155,18 +155,18 @@ class ShellSession:
         self.code = ExitCode(ended or 0)
 
     def _refuse_without_rules(self, verb: str, words: list[str]) -> None:
-        """Raise :class:`UserError` where rules stand that a verb knows nothing of."""
+        """Raise :class:`UserError` if the session has rules that a verb does not accept."""
         standing = [*map(str, self.constraints), *(["--encodings"] if self._encodings else [])]
         knows = any(parameter.name == "constraints" for parameter in verb_command(verb).params)
         shown = verb == "draw" and any(word.startswith(("--tree", "--unit")) for word in words)
         if standing and not knows and not shown and verb not in _WITHOUT_RULES and not _asks_for_help(words):
             raise UserError(
-                f"{verb} knows of no constraints, and here stand {', '.join(standing)}: drop them first, "
+                f"{verb} takes no constraints, and this session has {', '.join(standing)}: drop them first, "
                 "or ask in a session without them"
             )
 
     def _objectives_for(self, verb: str) -> tuple[str, ...]:
-        """Give what stands as best, or nothing where a verb cannot ask by it and has its own."""
+        """Give the objectives of the session, or nothing if the verb cannot use them and has its own."""
         alone = len(parse_objectives(self.objectives)) == 1
         return () if verb == "optima" or (verb == "pareto" and alone) else self.objectives
 
@@ -222,7 +222,7 @@ class ShellSession:
         _say(f"constraint: {' '.join(words)}")
 
     def constrain(self, constraints: Sequence[Path], constants: Sequence[str]) -> None:
-        """Add constraints and set constants, if with them there is nothing at fault."""
+        """Add constraints and set constants, if these are valid."""
         named = {find_constraint(path): path for path in (*constraints, *self.constraints)}
         known = dict(self.constants)
         for constant in constants:
@@ -241,8 +241,8 @@ class ShellSession:
         if not names or not standing.keys() >= set(names):
             stand = ", ".join(standing) or "none"
             wrong = next((name for name in names if name not in standing), None)
-            found = "name a constraint" if wrong is None else f"no constraint {wrong!r} stands"
-            raise UserError(f"{found}; those that stand are: {stand}")
+            found = "name a constraint" if wrong is None else f"this session has no constraint {wrong!r}"
+            raise UserError(f"{found}; the session has: {stand}")
         gone = [self.constraints.pop(standing[name]) for name in dict.fromkeys(names)]
         for constant in frozenset().union(*gone).difference(*self.constraints.values()):
             self.constants.pop(constant, None)
@@ -300,8 +300,8 @@ class ShellSession:
         )
         click.echo(f"\nQuestions, with the options they have on the command line:\n{questions}")
         click.echo(
-            "\nOptions on a line count for that line. Its --constraint and -c are added to the rules that\n"
-            "stand, which constraint and drop alone change. A NAME is a label, a node in one-line\n"
+            "\nOptions on a line are for that line only. Its --constraint and -c are added to the rules of\n"
+            "the session, which only constraint and drop change. A NAME is a label, a node in one-line\n"
             "notation, or the beginning of one; names with blanks are in quotes: goal 'greek salad'"
         )
 
@@ -330,7 +330,7 @@ def _only(words: Sequence[str], word: str) -> str:
 
 def _none(words: Sequence[str], word: str) -> None:
     if words:
-        raise UserError(f"found {words[0]!r} behind {word}, expected nothing")
+        raise UserError(f"found {words[0]!r} after {word}, expected nothing")
 
 
 def _ours() -> list[str]:

@@ -28,11 +28,11 @@ def command(
     foon-asp stats my_foon                   a folder of data, or of recipes
     foon-asp stats one.txt two.json more/    networks, together
 
-    Units, object nodes, motions, states; how many units make each node; cycles, parts, depth, and what is
-    out of reach from the kitchen (or, without one, from all that no unit makes); the most connected objects.
-    Level 2 leaves contents away, level 1 keeps labels. docs/levels.md says exactly what is counted.
+    Units, object nodes, motions and states; how many units make each node; cycles, parts, depth, and what
+    cannot be made from the kitchen (or, without one, from the nodes that no unit makes); the most connected
+    objects. Level 2 ignores contents, level 1 all but labels. docs/levels.md says exactly what is counted.
 
-    A folder that is all that is named is read as with --data: with its kitchen, if it has one.
+    A single folder is read as with --data: with its kitchen, if it has one.
     """
     networks = (*paths, *network)
     if len(paths) == 1 and paths[0].is_dir() and folder is None and not network:

@@ -1,4 +1,4 @@
-"""The verbs of the command line under headings: questions of the catalog, and what is done with files."""
+"""The verbs of the command line under headings: the questions of the catalog, and work with files."""
 
 import importlib
 from collections.abc import Mapping

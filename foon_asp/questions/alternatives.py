@@ -162,11 +162,11 @@ class Alternatives(Result):
     foon-asp alternatives --goal macaroni --best 5
     foon-asp alternatives --goal macaroni --different 3 --within 20
 
-    A tree that holds all the units of another one that is listed, and some to spare, is not listed. Trees are
+    A tree that contains all units of another listed tree is not listed. Trees are
     found one by one in order of their costs, which are compared exactly.
 
-    Exits with 0 when none is left out of what was asked for, 1 when there is no tree, 3 when a limit came
-    first.
+    Exits with 0 when all trees that were asked for are listed, 1 when there is no tree, 3 when a limit
+    came first.
     """,
 )
 def alternatives(
@@ -206,9 +206,9 @@ def alternatives(
         [9, 10, 10]
     """
     if best is not None and different is not None:
-        raise UserError("best and different ask for different things; give one of them")
+        raise UserError("best and different exclude each other; give one of them")
     if within and different is None:
-        raise UserError("within goes with different")
+        raise UserError("within is only for different trees: give different, too")
     worse = Fraction(at_least(within, 0, "within"), 100)
     at_least(limit, 1, "limit")
     chosen = chosen_objectives(problem, objectives)
@@ -308,7 +308,7 @@ def _lines(found: Alternatives, wanted: int) -> Iterator[str]:
     elif not found.complete:
         yield f"{counted(len(found.trees), 'tree')} of those found before a limit ({rule})"
         if found.unproved:
-            yield f"before the last {found.unproved} of them others may come"
+            yield f"other trees may come before the last {found.unproved} of them"
     else:
         yield f"{counted(len(found.trees), 'tree')} ({rule})"
     yield from _trees(found)

@@ -180,7 +180,7 @@ def _executable(problem: Problem, file: Path, covered: Coverage) -> list[int] | 
     known = [unit for unit in units if unit is not None]
     simulation = simulate_for(problem, problem.tree(known))
     if len(known) < len(tree) or len(set(known)) < len(known):
-        return "a unit of the tree is not one of the network, or stands twice"
+        return "a unit of the tree is not in the network, or appears twice"
     if simulation.verdict is Verdict.NEVER:
         return "the tree does not execute; `foon-asp check` says why"
     if covered.forbids(problem.network) & {*known}:

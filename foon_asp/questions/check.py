@@ -91,7 +91,7 @@ class Checked(Result):
     The tree is FOON text, units in the order of execution, or an answer in JSON.
 
     Exits with 0 when the tree executes, as listed or in the order that is then given; with 1 when no
-    order executes or when a unit is not one of the network.
+    order executes or a unit is not in the network.
     """,
 )
 def check(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Checked:

@@ -90,7 +90,7 @@ class Clash(Result):
         if not self.complete:
             yield f"unknown: stopped at a limit before it was known whether the constraints clash ({rule})"
             if self.dropped:
-                yield "without these there is a task tree; a cheaper set may do, or nothing need be dropped"
+                yield "without these there is a task tree; a cheaper set may do, or nothing has to be dropped"
                 yield from _listed(self.dropped)
             return
         number = counted(len(self.constraints), "constraint")
@@ -109,7 +109,7 @@ class Clash(Result):
             elif size == 1:
                 yield f"1 of the {number} leaves no task tree by itself: proved ({rule})"
             else:
-                yield f"{size} of the {number} cannot hold together, and no fewer do not: proved ({rule})"
+                yield f"{size} of the {number} cannot hold together, and no smaller set: proved ({rule})"
             yield from _listed(self.smallest)
         else:
             yield (

@@ -167,7 +167,7 @@ def _everything_makeable(problem: Problem) -> Problem:
 def _hold_readable(problem: Problem) -> None:
     if len(problem.goals) > _CHARTED:
         raise UserError(
-            f"a chart of {len(problem.goals)} goals could not be read; name up to {_CHARTED} with --goal"
+            f"a chart of {len(problem.goals)} goals would be unreadable; name up to {_CHARTED} with --goal"
         )
 
 
@@ -220,7 +220,7 @@ def _hold_readable(problem: Problem) -> None:
     foon-asp compare --all-makeable --jobs 2 --results makeable.jsonl
 
     The searches are run, every tree they return is simulated, and the optima are proved beside them. Each
-    goal is a question of its own, and the limits are for each of its answers. Exits with 0 when every
+    goal is answered by itself, and the limits are for each answer. Exits with 0 when every
     optimum is proved, and with 3 when one was stopped at a limit.
     """,
     formats=("text", "json", "csv", "markdown"),

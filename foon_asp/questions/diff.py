@@ -203,10 +203,10 @@ def _file_side(file: Path, dataset: Dataset, goals_named: Sequence[str], contain
     foon-asp diff 'solve --goal macaroni' 'solve --goal macaroni --objective success'
 
     A and B are files (FOON text, or an answer in JSON) or questions: solve with its options, in quotes. The
-    kitchen, the rates and the goal of a file are those that the options name; an answer knows its goals. What
-    is given beside A and B counts for a question that does not say it itself; one that names data of its own
-    takes none from there.
-    Without goals the trees are followed back from all that they make and do not need.
+    kitchen, the rates and the goal of a file are those that the options name; an answer knows its goals.
+    Options beside A and B also apply to a question that does not set them itself; options of data do not, if
+    the question names data of its own. Without goals, the trees are followed back from everything that they
+    make and do not need.
 
     Exits with 0 when both were compared, whether they differ or not, and with 1 when one has no tree.
     """,

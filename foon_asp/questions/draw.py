@@ -59,7 +59,7 @@ class Drawn(Result):
 
     def json_dict(self) -> object:
         """Raise :class:`UserError`: a picture is written in its own formats."""
-        raise UserError("there is no JSON of a picture; that of the answer has its tree")
+        raise UserError("a picture has no JSON; the JSON of the answer contains the tree")
 
     def dot(self) -> str:
         """Give the picture in DOT, Graphviz' language."""
@@ -115,7 +115,7 @@ def _posed(
 ) -> tuple[Problem | Foon]:
     """Pose the goals that are named; without any it is about the data."""
     if command.given("objectives") and (not goals_named or tree is not None or units):
-        raise UserError("--objective chooses among the task trees for a --goal: here is nothing to choose")
+        raise UserError("--objective is for the best tree for a --goal; nothing is solved here")
     return one_problem(command, goals_named, containers) if goals_named else the_data(command)
 
 

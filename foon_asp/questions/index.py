@@ -24,12 +24,12 @@ INDEX: Final[Mapping[str, Entry]] = {
     ),
     "search": Entry(
         "Find",
-        "Retrieve a task tree as the literature does, and say whether it executes.",
+        "Retrieve a task tree with a search of the literature, and say whether it executes.",
         ("retrieve", "Retrieved"),
     ),
     "compare": Entry(
         "Find",
-        "Hold the searches of the literature against the optimum.",
+        "Compare the searches of the literature with the optimum.",
         ("compare_searches", "Compared"),
     ),
     "check": Entry(
@@ -89,7 +89,7 @@ INDEX: Final[Mapping[str, Entry]] = {
     ),
     "assist": Entry(
         "Explain",
-        "Find the best success when a person does at most 0, 1, 2, ... units, and which.",
+        "Find the best success if a person does at most 0, 1, 2, ... units, and which units.",
         ("assist", "Assistance"),
     ),
     "draw": Entry(

@@ -162,10 +162,10 @@ class Front(Result):
     foon-asp pareto --goal macaroni --chart front.svg
 
     A point is on the front when no tree is as good by every objective and better by one. Points are compared
-    exactly, each has the smallest tree that it can have, and that there are no others is proved.
+    exactly. Each comes with its smallest tree, and it is proved that there are no other points.
 
-    Exits with 0 when the front is whole, 1 when there is no tree, 3 when a limit came first; the points that
-    were found by then are on the front too.
+    Exits with 0 when the front is complete, 1 when there is no tree, 3 when a limit came first; the points
+    found by then are on the front, too.
     """,
 )
 def pareto(

@@ -21,7 +21,7 @@ class Command(Protocol):
         """The data that it names; read when it is first looked at."""
 
     def ask(self, words: str, without: Sequence[str]) -> Result:
-        """Ask a question that is put as the words of a command, without some options, by name.
+        """Ask a question that is written as a command; ``without`` names options that it must not have.
 
         What stands beside it counts where it does not say it itself; a question that names data of its own
         takes none from there.

@@ -61,10 +61,10 @@ class ShoppingList(NamedTuple):
 
 
 _REMARKS = {
-    Offer.CYCLE: "nothing that one can buy would do: some of a cycle that feeds only itself is needed",
-    Offer.PROCESSED: "nothing that one can buy would do, so the list has things that units would make",
-    Offer.DISH: "nothing else is left, so the list has something that bears or holds the name of the dish",
-    Offer.GOAL: "nothing else is left but to buy what was asked for",
+    Offer.CYCLE: "what is for sale is not enough: something from a cycle that feeds only itself is needed",
+    Offer.PROCESSED: "what is for sale is not enough, so the list contains things that units would make",
+    Offer.DISH: "nothing else is enough, so the list contains something with the name of the dish in it",
+    Offer.GOAL: "nothing else is enough, so the goal itself has to be bought",
 }
 
 
@@ -124,7 +124,7 @@ class Shopping(Result):
             lines.append(f"or, list {number} ({_price(self, other)}{claim}):")
             lines += [f"  {problem.network.objects[o]}" for o in other.items]
         if first.items and self.complete:
-            lines.append("any other list holds all of one above")
+            lines.append("any other list contains all of one above")
         if self.outcome is not None and self.outcome.units is not None:
             outcome = self.outcome
             lines += ["", f"with {'the first list' if others else 'it'}: {headline(outcome)}", ""]
@@ -176,9 +176,9 @@ class Shopping(Result):
     foon-asp shopping-list --goal 'hot cocoa' --goal omelet --prices prices.txt
 
     For sale is what no unit makes, and what has no state and holds at most one ingredient, unless it is a
-    product of some unit. The dish itself is proposed only when nothing else is left. A line of a price list
+    product of some unit. The dish itself is proposed only if nothing else is enough. A line of a price list
     is an object node in one-line notation, or a label, then a tab and a price. Every list is proved to be the
-    cheapest of those that do not hold all of one before it.
+    cheapest of those that do not contain all of an earlier one.
 
     Exits with 0 when there is a list, proved; with 1 when no list helps, proved; with 3 when stopped at a
     limit.
@@ -288,7 +288,7 @@ def _priced(problem: Problem, listed: Sequence[Price]) -> dict[int, Fraction]:
             found = [] if known is None else [known]
         prices.update(dict.fromkeys(found, entry.price))
         if not found:
-            what = "no node that one can buy has this label" if entry.label_alone else "no such object node"
+            what = "no node for sale has this label" if entry.label_alone else "no such object node"
             caller().reporter.warning(f"{entry.source}:{entry.source.column}: warning: {what}: {entry.node}")
     return prices
 

@@ -119,8 +119,8 @@ def solve_and_more(
     foon-asp solve --goal ice --constraint forbid_motion -c forbidden_motion=crush
     foon-asp solve --goal ice --soft forbid_motion.lp=3 -c forbidden_motion=crush
 
-    The rules without a head of a --soft file may be broken: each way, by other values of the variables, costs
-    the weight. The least sum of weights comes before all objectives.
+    Rules without a head (:- ...) in a --soft file may be broken: each way to break one, with other values of
+    its variables, costs the weight. The lowest sum of weights comes before all objectives.
 
     Exits with 0 when the tree is proved optimal, 1 when no tree exists, 2 for bad input, 3 when stopped
     at a limit.

@@ -120,10 +120,10 @@ class Explanation(Result):
     foon-asp why-not --goal 'apple pie'
     foon-asp why-not --goal omelet --constraint mine.lp
 
-    What cannot be made is shown as a tree from the goals to what is behind it: an object node that is missing
+    What cannot be made is shown as a tree from the goals to the causes: an object node that is missing
     in the kitchen, or a cycle of nodes that can only be made from each other. A missing node is compared
-    with what is at hand and with kitchen entries that match nothing: its name may be one edit away. Where the
-    constraints are the reason, it is said which of them clash.
+    with what is at hand and with kitchen entries that match nothing: its name may be one edit away. If the
+    constraints are the reason, those that clash are listed.
 
     Exits with 0 when there is a tree, 1 when there is none, 3 when stopped at a limit.
     """,
@@ -280,7 +280,7 @@ def _root_lines(problem: Problem, root: Root, number: int) -> Iterator[str]:
     objects, motions = problem.network.objects, problem.network.motions
     yield f"  ({number}) {objects[root.object]}"
     if root.cycle is not None:
-        yield "      can only be made from itself; round it goes:"
+        yield "      can only be made from itself, in a cycle:"
         nodes = [*(o for o, _ in root.cycle.steps), root.cycle.steps[0][0]]
         for (o, unit), made in list(zip(root.cycle.steps, nodes[1:], strict=True))[:_STEPS]:
             yield f"        {motions[unit]}    [{problem.network.sources[unit][0]}] makes {objects[made]}"

@@ -125,8 +125,8 @@ class Assistance(Result):
     foon-asp assist --goal macaroni --assist 3    for 0 to 3, and the tree with 3
     foon-asp assist --goal macaroni --reach 0.8   up to the fewest that reach it, and the tree
 
-    The person takes over only what has a greater rate than the robot's. Trees are compared exactly; of those
-    that succeed as often one with the fewest units is given.
+    The person takes over only units with a higher rate than the robot's. Trees are compared exactly; of trees
+    with the same success, one with the fewest units is given.
 
     Exits with 0 when every row is proved, 1 when there is no tree or the success is out of reach, 3 when a
     limit came first.
@@ -207,7 +207,7 @@ def _lines(found: Assistance) -> Iterator[str]:
         return
     never = "who never fails" if found.person is None else "at rates of the person's own"
     claim = (
-        "each row is proved" if found.complete else "stopped at a limit: not every row is there and proved"
+        "each row is proved" if found.complete else "stopped at a limit: some rows are missing or not proved"
     )
     yield f"best success with a person's help, {never} ({rule}); {claim}"
     yield ""

@@ -88,8 +88,8 @@ class Sensitivity(Result):
     foon-asp sensitivity --goal macaroni
     foon-asp sensitivity --goal macaroni --constraint forbid_motion -c forbidden_motion=tilt
 
-    The best tree is that by success. Each rate varies by itself; the one that needs to change least,
-    relatively, to make another tree the best comes first. Ends are exact, and in words rounded inwards.
+    The best tree is the best by success. Each rate varies by itself; the rate with the smallest
+    relative change to another best tree comes first. Ends are exact; the text shows them rounded inwards.
 
     Exits with 0 when every end is proved, 1 when there is no tree at all, 3 when a limit came first.
     """,
@@ -129,13 +129,13 @@ def sensitivity(
     program = assemble(how, lambda _: None)
     if program.replaced:
         raise UserError(
-            f"{how.replaced}: nobody knows what these encodings measure at other success rates: "
-            "ask without them, or put what they add into a constraint"
+            f"{how.replaced}: it is not known what these encodings measure at other success "
+            "rates: leave them out, or put what they add into a constraint"
         )
     if ("risk", 2) in program.looked_at:
         raise UserError(
-            "a constraint looks at risk/2, which changes with the rates that are asked about: "
-            "let it look at rate/2, which stays what is given, or leave it out"
+            "a constraint uses risk/2, which changes with the rates asked about: use rate/2, "
+            "which stays as given, or leave the constraint out"
         )
     problem = asked_with(problem, how)
     outcome = solve(problem, _SUCCESS, how, caller().reporter)
