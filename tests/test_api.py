@@ -540,7 +540,8 @@ def test_random_problems_vary_as_if_they_were_posed_anew(seed: int) -> None:
     kitchen = frozenset(rng.sample(range(len(plain.network.objects)), rng.randint(0, 5)))
     goals = tuple(rng.sample(range(len(plain.network.objects)), rng.randint(1, 2)))
     rates = {motion: Fraction(rng.randint(1, 9), 10) for motion in plain.rates or {}}
-    anew = PlainProblem(plain.network, kitchen, goals, rates, plain.utensils, foon_asp.ContainerRule.IMPLIED)
+    rule, prices = foon_asp.ContainerRule.IMPLIED, plain.unit_prices
+    anew = PlainProblem(plain.network, kitchen, goals, rates, plain.utensils, rule, unit_prices=prices)
     nodes = plain.network.objects
     asked = [nodes[o] for o in goals]
     in_kitchen = [nodes[o] for o in sorted(kitchen)]
