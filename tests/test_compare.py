@@ -242,4 +242,4 @@ def test_a_chart_is_written(cli: Cli, tmp_path: Path) -> None:
     assert cli("compare", *GOALS, "--chart", tmp_path / "chart.gif").code == 2
     ran = cli("compare", "--all-makeable", "--chart", tmp_path / "all.svg")
     assert ran.code == 2
-    assert "could not be read; name up to 60" in ran.err
+    assert "would be unreadable; name up to 60" in ran.err
