@@ -217,7 +217,7 @@ def test_a_merged_file_is_spoken_of_by_its_own_lines(tmp_path: Path) -> None:
     text = f"# From:\tsoup.txt:40\n{CHOP}# From:\tsoup.txt:90\n{CHOP}"
     (finding,) = found(tmp_path, text)
     assert (finding.code, finding.source.line) == ("duplicate-unit", 9)
-    assert "line 2 " in finding.message
+    assert "line 2," in finding.message
 
 
 # Dead cycles

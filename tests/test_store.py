@@ -470,7 +470,7 @@ def test_bad_names(cli: Cli, soup: tuple[DataFiles, Path], tmp_path: Path) -> No
     taken.write_text("my notes", encoding="utf-8")
     ran = cli("import", files.network[0], "--store", taken)
     assert ran.code == 2
-    assert "there is something else under this name" in ran.err
+    assert "another file has this name" in ran.err
     assert taken.read_text(encoding="utf-8") == "my notes"
     assert cli("import", files.network[0], "--store", tmp_path / "no" / "x.foon").code == 2
     assert cli("import", "--store", tmp_path / "x.foon").code == 2
@@ -748,7 +748,9 @@ def test_another_version_is_refused(soup: tuple[DataFiles, Path], cli: Cli, numb
     ran = cli("solve", "--network", store, "--goal", "soup")
     assert ran.code == 2
     words = (
-        f"has version {number} of the store format" if number else "version 0 of the store format never was"
+        f"has version {number} of the store format"
+        if number
+        else "version 0 of the store format does not exist"
     )
     assert words in ran.err
 
@@ -778,8 +780,8 @@ def test_a_pipe_is_no_store(tmp_path: Path, cli: Cli, soup: tuple[DataFiles, Pat
     os.mkfifo(pipe)
     ran = cli("solve", "--network", pipe, "--goal", "x")
     assert ran.code == 2
-    assert "is no file, expected a store" in ran.err
-    assert "there is something else under this name" in cli("import", *files.network, "--store", pipe).err
+    assert "not a file, expected a store" in ran.err
+    assert "another file has this name" in cli("import", *files.network, "--store", pipe).err
 
 
 def test_a_checksum_knows_its_place() -> None:

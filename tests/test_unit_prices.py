@@ -105,8 +105,8 @@ def test_without_any_price_none_are_known() -> None:
 
 def test_a_price_of_a_unit_that_is_not_there_is_a_warning(folder: Path, cli: Cli) -> None:
     write_lines(folder / "unit_prices.txt", "mix\ta\t->\td\t1")
-    said = f"{folder / 'unit_prices.txt'}:1:1: warning: the unit 'mix: a → d' is none of the network"
-    with pytest.warns(foon_asp.FoonWarning, match="is none of the network"):
+    said = f"{folder / 'unit_prices.txt'}:1:1: warning: the unit 'mix: a → d' is not in the network"
+    with pytest.warns(foon_asp.FoonWarning, match="is not in the network"):
         assert foon_asp.load(folder).warnings == (said,)
     ran = cli("solve", "--data", str(folder), "--goal", "d;")
     assert (ran.code, ran.err.startswith(said)) == (0, True)
@@ -146,7 +146,7 @@ def test_copies_that_disagree_are_an_error_unless_a_line_chooses(tmp_path: Path,
     bad = write(tmp_path / "bad.json", listed("mix", "a", "b", 2))
     said = (
         f"{bad}:1:2: error: found a copy of the unit 'mix' of {one}:1 with another price, expected "
-        "one price: choose one by a line for this unit in a file of prices (--unit-prices FILE)"
+        "one price: choose one with a line for this unit in a file of prices (--unit-prices FILE)"
     )
     files = [str(one), str(bad)]
     network = [word for file in files for word in ("--network", file)]
@@ -274,7 +274,7 @@ def test_a_store_of_before_there_were_prices_is_refused(tmp_path: Path, cli: Cli
     ran = cli("solve", "--network", str(tmp_path / "net.foon"), "--goal", "b")
     assert ran.code == 2
     assert (
-        "has version 1 of the store format, this foon-asp reads version 2: import the files again" in ran.err
+        "has version 1 of the store format, this foon-asp reads version 2: import its source files again" in ran.err
     )
 
 

@@ -43,7 +43,7 @@ def _message(code: str, label: str, first: str, second: str) -> str:
     name, one, other = (" ".join(line.split("\t")[1:]) for line in (label, first, second))
     name = repr(label.split("\t")[1]) if "\t" in label else repr(name)
     if code == "repeated-state":
-        return f"{other!r} is said twice of the object {name}; one line is enough"
+        return f"{other!r} is given twice for the object {name}; one line is enough"
     if code == "second-contents":
         return f"{name} has {other!r} beside {one!r}; both count: if they are one list, write one line"
     return f"{name} is {other!r} besides {one!r}; both count: if one is outdated, take it out"

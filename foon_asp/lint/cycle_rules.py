@@ -42,6 +42,6 @@ def _finding(files: LintedFiles, cycle: DeadCycle) -> Diagnostic:
     )
     message = (
         f"only units that need {name!r} make it: from it {', from that '.join(ways)}{others}; "
-        "it has to be at hand, or made in another way"
+        "it has to be in the kitchen, or made in another way"
     )
     return sheet.finding("dead-cycle", message, sheet.line_of(network.objects[start], copy.at))

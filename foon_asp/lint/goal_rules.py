@@ -42,7 +42,7 @@ def _tagged(sheet: Sheet, network: Network, made: set[int]) -> Iterator[Diagnost
         if node in said or network.object_id(node) in made:
             continue
         said.add(node)
-        message = f"{str(node)!r} is tagged as a goal, and no unit makes it"
+        message = f"{str(node)!r} is marked as a goal, and no unit makes it"
         yield sheet.finding("unmade-goal", message, index, node.label)
 
 
@@ -60,7 +60,7 @@ def _listed(sheet: Sheet, network: Network, made: set[int]) -> Iterator[Diagnost
         pattern, index = unknown[0]
         message = (
             f"{len(unknown)} of the {len(sheet.entries or ())} entries are no object nodes of the network, "
-            f"{str(pattern)!r} first; is the list that of another network?"
+            f"{str(pattern)!r} first; is the list for another network?"
         )
         yield sheet.finding(_code(sheet), message, index, pattern.label)
         return

@@ -32,7 +32,7 @@ def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnosti
         others = "" if here == counts[name] else f" ({times(here)} in this file)"
         message = (
             f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
-            f"{roles}: if they are one, write the same in both"
+            f"{roles}: if they mean the same, write one of them everywhere"
         )
         yield names.sheets[sheet].finding("near-name", message, index, name)
 

@@ -37,15 +37,15 @@ def _copies(files: LintedFiles, unit: int, copies: list[Copy]) -> Iterator[Diagn
         sheet = files.sheets[copy.sheet]
         if first := firsts.get(copy.sheet):
             message = (
-                f"the unit {motion!r} stands on {sheet.where(first.at, sheet)} already, "
-                "with the same inputs and outputs; one is enough"
+                f"the unit {motion!r} is already on {sheet.where(first.at, sheet)}, with the "
+                "same inputs and outputs; one is enough"
             )
             yield sheet.finding("duplicate-unit", message, copy.at)
             continue
         if firsts:
             other = files.sheets[copies[0].sheet]
             where = other.where(copies[0].at, sheet)
-            yield sheet.finding("shared-unit", f"the unit {motion!r} stands in {where} too", copy.at)
+            yield sheet.finding("shared-unit", f"the unit {motion!r} is also in {where}", copy.at)
         firsts[copy.sheet] = copy
 
 

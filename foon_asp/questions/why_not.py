@@ -314,8 +314,8 @@ def _units(problem: Problem, units: Sequence[int]) -> str:
 def _near_text(problem: Problem, near: NearName) -> str:
     kind = f"the {near.slip.kind} {near.slip.name!r} for {near.slip.other!r}"
     if near.object is None:
-        return f"a slip of the pen? {near.place} has {near.name}, which is no node of the network: {kind}"
-    return f"a slip of the pen? {_had(problem, near.object)}: {kind}"
+        return f"a typing error? {near.place} has {near.name}, which is no node of the network: {kind}"
+    return f"a typing error? {_had(problem, near.object)}: {kind}"
 
 
 def _had(problem: Problem, o: int) -> str:

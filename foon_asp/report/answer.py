@@ -242,7 +242,7 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
     network = problem.network
     if all(available[goal] for goal in problem.goals):
         yield "without the constraints there is one: together they rule out every tree"
-        yield "foon-asp clash says which do, and which to drop"
+        yield "foon-asp clash finds those that do, and which to drop"
         return
     for goal in problem.goals:
         if available[goal]:
@@ -260,4 +260,4 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
             yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
         if len(makers) > shown:
             yield f"  ... and {len(makers) - shown} more units"
-    yield "foon-asp why-not says what is behind it, and foon-asp shopping-list what would help"
+    yield "foon-asp why-not explains why, and foon-asp shopping-list finds what would help"

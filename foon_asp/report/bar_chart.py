@@ -121,9 +121,7 @@ def _series_colors(chart: BarChart) -> dict[str, str]:
     series = dict.fromkeys(bar.series for group in chart.groups for bar in group.bars)
     searches = [name for name in series if name != chart.optimum]
     if len(searches) > len(_COLORS):
-        raise UserError(
-            f"a chart shows at most {len(_COLORS)} searches, for which it has colors, and not {len(searches)}"
-        )
+        raise UserError(f"a chart shows at most {len(_COLORS)} searches, found {len(searches)}")
     return {**dict(zip(searches, _COLORS, strict=False)), chart.optimum: _OPTIMUM_COLOR}
 
 

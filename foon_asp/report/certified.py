@@ -26,14 +26,14 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
     if certificate.claim == "bound":
         return [
             f"proof: {outcome.proof}; the certificate {file} proves a bound on all trees, "
-            "constraints it does not cover left aside: " + bound_text(certificate.content)
+            "without the constraints that it does not cover: " + bound_text(certificate.content)
         ]
     if certificate.claim == "optimal" and outcome.proof.value != "certificate":
         sure = ", ".join(certificate.certified)
         return [f"proof: {outcome.proof}; the certificate {file} proves the tree best by {sure} alone"]
     lines = [f"proof: certificate ({file}, {_cuts(len(certificate.content['cuts']))})"]
     if certificate.content["not_covered"] and certificate.claim == "optimal":
-        lines.append("  it is best among all trees; that it keeps to the constraints is the solver's word")
+        lines.append("  it is best among all trees; only the solver says that it obeys the constraints")
     return lines
 
 

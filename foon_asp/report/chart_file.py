@@ -51,7 +51,7 @@ _STYLE: dict[Any, Any] = {  # by the names that matplotlib has for its settings
 def check_suffix(file: Path) -> None:
     """Raise :class:`UserError` for a file whose name says neither SVG nor PNG."""
     if file.suffix.lower() not in _SUFFIXES:
-        raise UserError(f"{file}: a chart is written as {' or '.join(_SUFFIXES)}; name such a file")
+        raise UserError(f"{file}: the name of a chart ends in {' or '.join(_SUFFIXES)}")
 
 
 def write_figure(draw: Callable[["Figure"], None], file: Path) -> None:

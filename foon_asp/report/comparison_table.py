@@ -22,7 +22,7 @@ _HEADINGS = ("goal", "search", "units", "inputs", "success", "executes")
 _EXECUTES = {Verdict.AS_LISTED: "as listed", Verdict.REORDERED: "when reordered", Verdict.NEVER: "never"}
 _STYLES = {"as listed": "green", "when reordered": "yellow", "never": "red"}
 
-BETTER = "† better than the proved optimum, which only a tree that does not execute can be"
+BETTER = "† better than the proved optimum, as only a tree that does not execute can be"
 CYCLE = "(cycle) units of the tree wait for each other"
 RATIOS = "× how many times the proved optimum of that objective"
 

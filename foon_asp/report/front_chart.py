@@ -131,7 +131,7 @@ def _draw(front: Plotted, figure: "Figure") -> None:
         figure.legend(
             loc="outside lower center",
             ncols=abreast,
-            title=f"{name} (lines: so many at most)" if front.complete else name,
+            title=f"{name} (lines: at most this value)" if front.complete else name,
             handletextpad=0.3,
         )
         lines += ceil(len(values) / abreast) + 1

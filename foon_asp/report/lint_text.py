@@ -36,7 +36,7 @@ def lint_summary(findings: Sequence[Diagnostic], files: int, mended: int) -> str
     """Give the counts in one line."""
     counts = Counter(finding.severity for finding in findings)
     parts = [_counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
-    text = f"{_counted(files, 'file')}: {', '.join(parts) or 'nothing to remark on'}"
+    text = f"{_counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"
     if mended:
         text += f"; {mended} mended"
     elif mendable := sum(1 for finding in findings if finding.fix is not None):

@@ -37,7 +37,7 @@ def svg_picture(drawing: Drawing) -> bytes:
     """Draw as SVG; raises :class:`UserError` for a drawing that is too large for a picture."""
     if drawing.units > MOST_UNITS:
         raise UserError(
-            f"{drawing.units} functional units are too many for a picture, which holds {MOST_UNITS} at most: "
+            f"{drawing.units} functional units are too many for a picture, which shows at most {MOST_UNITS}: "
             "draw a task tree (--goal or --tree) or some of the units (--unit), or write DOT or Mermaid"
         )
     dot = shutil.which("dot")

@@ -35,7 +35,7 @@ def utf_8(text: str) -> bytes:
         found = ascii(text[error.start])
         raise UserError(
             f"line {line} of what would be written has {found}, half a character, which UTF-8 cannot hold: "
-            "correct the name it stands in"
+            "correct the name that contains it"
         ) from None
 
 

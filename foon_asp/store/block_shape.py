@@ -17,7 +17,7 @@ def check_block(table: Table, number: int, value: object) -> None:
     """Raise :class:`ValueError` for a block that holds something else than its table does."""
     shape = _ABOUT[number] if table is Table.ABOUT and number < len(_ABOUT) else _SHAPES.get(table)
     if shape is None or not shape(value):
-        raise ValueError(f"block {number} of {table} holds something else")
+        raise ValueError(f"block {number} of {table} has unexpected content")
 
 
 def note_line_ends(value: object) -> None:

@@ -47,7 +47,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     if store.suffix != STORE_SUFFIX:
         raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
     if store.exists() and not is_database_of_ours(store):
-        raise UserError(f"{store}: there is something else under this name; remove it or choose another")
+        raise UserError(f"{store}: another file has this name; remove it or choose another name")
     reader = FoonReader(lenient)
     warnings = reader.diagnostics
     kitchen = read_object_list(files.kitchen, warnings) if files.kitchen else None
@@ -125,7 +125,7 @@ def _remove_leftover(partial: Path, store: Path) -> None:
     with partial.open("rb") as file:
         begins = file.read(len(STORE_MAGIC))
     if begins.strip(b"\0") and begins != STORE_MAGIC:
-        raise UserError(f"{partial}: is in the way, and is no leftover of an import; move it or remove it")
+        raise UserError(f"{partial}: is in the way, and is not left over from an import; move or remove it")
     database = sqlite3.connect(partial, timeout=0, isolation_level=None)
     # Cut off in the middle, it may be no database any more.
     with contextlib.closing(database), contextlib.suppress(sqlite3.DatabaseError):

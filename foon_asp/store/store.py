@@ -83,7 +83,7 @@ class Store:
         else:
             rows = [row for block in self._file.blocks(Table.PRICE) for row in block]
             if len(rows) != self.units:
-                self._file.damaged(f"{len(rows)} prices of {self.units} units")
+                self._file.damaged(f"{len(rows)} prices for {self.units} units")
         prices = ((unit, _price(row, listed)) for unit, row in zip(range(len(network)), rows, strict=True))
         return {network.unit(unit): Fraction(price) for unit, price in prices if price is not None}
 
@@ -230,7 +230,7 @@ class Store:
         unit_ids: dict[UnitKey, int] = {}
         named = [o for _, ins, outs, _ in units for side in (ins, outs) for o in side]
         if isinstance(ids, range) and max(named, default=-1) >= len(ids):
-            self._file.damaged("a unit has an object node that is not there")
+            self._file.damaged("a unit has an object node that is missing")
         for motion, ins, outs, places in units:
             motions.append(self._at(Table.MOTION, motion)[0])
             inputs.append(tuple([ids[o] for o in ins]))

@@ -79,9 +79,7 @@ class StoreFile:
 
     def damaged(self, what: str) -> NoReturn:
         """Say that the store is of no use."""
-        raise UserError(
-            f"{self.file}: the store is damaged ({what}); import the files again that it was made from"
-        )
+        raise UserError(f"{self.file}: the store is damaged ({what}); import its source files again")
 
     def _row(self, table: Table, number: int) -> Any:
         statement = f"SELECT content FROM {table} WHERE number = ?"
@@ -108,7 +106,7 @@ class StoreFile:
         """Refuse what is no store of ours, before SQLite looks at it."""
         file = self.file
         if file.exists() and not file.is_file():  # a pipe would be waited for
-            raise UserError(f"{file}: is no file, expected a store")
+            raise UserError(f"{file}: not a file, expected a store")
         try:
             with file.open("rb") as opened:
                 header = opened.read(_HEADER)
@@ -126,14 +124,14 @@ class StoreFile:
         if version > VERSION:
             raise UserError(
                 f"{file}: has version {version} of the store format, this foon-asp reads version {VERSION}: "
-                "it needs a newer foon-asp, or a new import of the files that it was made from"
+                "use a newer foon-asp, or import its source files again"
             )
         if version < 1:
-            self.damaged(f"version {version} of the store format never was")
+            self.damaged(f"version {version} of the store format does not exist")
         if version != VERSION:
             raise UserError(
                 f"{file}: has version {version} of the store format, this foon-asp reads version {VERSION}: "
-                "import the files again that it was made from"
+                "import its source files again"
             )
         page = int.from_bytes(header[16:18])
         expected = (65536 if page == 1 else page) * int.from_bytes(header[28:32])

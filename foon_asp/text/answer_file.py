@@ -74,5 +74,5 @@ def _unit(value: Json) -> tuple[FunctionalUnit, Source]:
     inputs, outputs = (tuple(map(read_node_json, value[key])) for key in ("inputs", "outputs"))
     place = value["source"][0]
     if not isinstance(value["motion"], str) or not isinstance(place, dict):
-        raise TypeError("a unit is not written as such")
+        raise TypeError("a unit is not written as one")
     return FunctionalUnit.of(value["motion"], inputs, outputs), Source(str(place["file"]), int(place["line"]))

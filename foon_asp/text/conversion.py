@@ -225,7 +225,7 @@ class Converter:
         """Write a line of text, and read it back: what stood in JSON may mean something else in text."""
         written = write_line(self._held(line))
         if any("\ud800" <= c <= "\udfff" for c in written):
-            raise CannotHoldError(f"{written!r} has half of a character, which is no text")
+            raise CannotHoldError(f"{written!r} contains half a character")
         back = self._reader.parse(written) if "\n" not in written and "\r" not in written else None
         if back is None or isinstance(back, LineError):
             raise CannotHoldError(f"{written!r} is no line of FOON text")

@@ -192,7 +192,7 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
 
 def unit_price_warning(unit: FunctionalUnit, source: Source) -> Diagnostic:
     """Say that the price of a single unit is of no use."""
-    message = f"the unit {str(unit)!r} is none of the network"
+    message = f"the unit {str(unit)!r} is not in the network"
     return Diagnostic(Severity.WARNING, "unit-price", message, source)
 
 

@@ -41,7 +41,7 @@ def check_json(text: str, file: str) -> None:
         line = text.split("\n")[fault.line - 1].rstrip("\r")
         message, source = fault.message, Source(file, fault.line, fault.column)
     except RecursionError:
-        line, message, source = "", "found lists within lists without end", Source(file, 1)
+        line, message, source = "", "found lists nested too deeply", Source(file, 1)
     else:
         return
     raise InputError([Diagnostic(Severity.ERROR, "json", message, source, line)])

@@ -46,7 +46,7 @@ class JsonList:
         except _FaultError as fault:
             self.error(self.place(fault.position), str(fault))
         except RecursionError:
-            self.error(self.place(0), "found lists within lists without end, expected a list of objects")
+            self.error(self.place(0), "found lists nested too deeply, expected a list of objects")
 
     def error(self, source: Source, message: str) -> None:
         """Note an error at a place of the file."""

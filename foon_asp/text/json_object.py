@@ -138,7 +138,7 @@ def _left_out(value: dict[str, object], flag: str, category: str, ingredients: l
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
     if category and not flag:
-        yield f"the recipe category {category!r} stands without a motion flag"
+        yield f"the recipe category {category!r} comes without a motion flag"
     if value.get("has_portions") not in (None, False, "False", ""):
         yield "has_portions left out: FOON text has no place for it"
     for ingredient in ingredients:

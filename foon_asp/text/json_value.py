@@ -50,4 +50,4 @@ def read_json(text: str | bytes, pairs: Callable[[list[tuple[str, Any]]], object
     try:
         return json.loads(text, object_pairs_hook=pairs)
     except RecursionError:
-        raise ValueError("found lists within lists without end") from None
+        raise ValueError("found lists nested too deeply") from None

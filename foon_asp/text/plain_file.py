@@ -50,7 +50,7 @@ def read_plain_text(file: Path) -> str:
     """
     data = read_content(file)
     if data.startswith(STORE_MAGIC):
-        raise UserError(f"{file}: is a store, expected text; a store is named by --network alone")
+        raise UserError(f"{file}: is a store, expected text; name a store only with --network")
     data = data.removeprefix(BOM_UTF8)
     try:
         return data.decode()

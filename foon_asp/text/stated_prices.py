@@ -34,7 +34,7 @@ class StatedPrices:
                 _, second = others[0]
                 message = (
                     f"found a copy of the unit {unit.motion!r} of {first} with another price, expected one "
-                    "price: choose one by a line for this unit in a file of prices (--unit-prices FILE)"
+                    "price: choose one with a line for this unit in a file of prices (--unit-prices FILE)"
                 )
                 errors.append(Diagnostic(Severity.ERROR, "unit-price", message, second))
         if errors:

@@ -516,7 +516,7 @@ def test_a_network_may_be_empty(text: str) -> None:
 def test_lists_without_end_are_refused(text: str) -> None:
     ((line, _, message),) = messages(text)
     assert line == 1
-    assert "without end" in message
+    assert "nested too deeply" in message
 
 
 _json = st.recursive(

@@ -77,7 +77,7 @@ def test_units_come_back_the_same_in_the_same_order(written: list[FunctionalUnit
     found, codes = read_back(text)
     assert found == written
     assert [(u.inputs, u.outputs) for u in found] == [(u.inputs, u.outputs) for u in written]
-    # The canonical form leaves nothing to remark on but what the units themselves are.
+    # The canonical form leaves nothing found but what the units themselves are.
     assert codes <= {"no-outputs", "repeated-ingredient", "empty-ingredient"}
     assert write_units(found, ["made by a test"]) == text
 
