@@ -15,9 +15,9 @@ from foon_asp.errors import UserError
 _STATM = Path("/proc/self/statm")
 _PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 _ADVICE = {
-    "reading": "give it more, or make a store of the network once: foon-asp import",
-    "grounding": "rules that were added may have no end, as in p(f(X)) :- p(X), or too many instances: "
-    "look at them, or give it more",
+    "reading": "raise the limit, or make a store of the network once: foon-asp import",
+    "grounding": "rules that were added may be endless, as in p(f(X)) :- p(X), or have too many instances: "
+    "check them, or raise the limit",
 }
 _LATE = 0.5  # seconds
 _STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
@@ -56,8 +56,8 @@ class Deadline:
     ) -> None:
         if memory is not None and not _STATM.exists():
             raise UserError(
-                "a memory limit can only be held on Linux, where /proc tells how much memory is in use; "
-                "leave it out, and set the limit by means of the system"
+                "a memory limit works only on Linux, where /proc shows how much memory is in use; leave it "
+                "out, and use a limit of the system"
             )
         self.seconds, self.memory = seconds, memory
         self._doing = "reading"
@@ -135,7 +135,7 @@ class Deadline:
     def out_of_memory(self) -> None:
         """Note that there is no more memory."""
         limit = "" if self.memory is None else f"the memory limit of {size_text(self.memory)}"
-        self._by = self._by or limit or "the end of the memory"
+        self._by = self._by or limit or "the end of memory"
 
     @property
     def stopped(self) -> str | None:
@@ -145,7 +145,7 @@ class Deadline:
     @property
     def advice(self) -> str:
         """What to do about it, in words."""
-        return _ADVICE.get(self._doing, "give it more")
+        return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:
         """Raise :class:`LimitError` where it is time to stop."""

@@ -93,11 +93,11 @@ def test_a_rate_of_one_is_one_attempt() -> None:
 def test_what_never_succeeds_has_no_number_of_attempts() -> None:
     problem = two_ways(["0.5", "0.5"], ["0.2"])
     never = replace(problem, rates=dict.fromkeys(problem.rates or {}, Fraction(0)))
-    with pytest.raises(UserError, match="a success rate is 0, by which the objective attempts has no number"):
+    with pytest.raises(UserError, match="a success rate is 0, for which the objective attempts has no value"):
         solve(never, BY)
     assert solve(never, (Objective.UNITS,)).units == (2,)
     costs = never.costs([2])
     assert Objective.ATTEMPTS not in costs.measures
-    with pytest.raises(ValueError, match=r"^there is no figure by 'attempts': it needs rates above 0$"):
+    with pytest.raises(ValueError, match=r"^'attempts' cannot be computed: it needs rates above 0$"):
         costs.measure(Objective.ATTEMPTS)
     assert costs.measure(Objective.SUCCESS) == 0

@@ -99,7 +99,7 @@ def test_results_of_other_data_are_refused(cli: Cli, questions: Path, tmp_path: 
     (tmp_path / "water.txt").write_text("O\twater\n")
     ran = cli("batch", questions, "--results", file)
     assert ran.code == 2
-    assert "was begun for another question" in ran.err
+    assert "was started for another question" in ran.err
 
 
 def test_a_question_that_fails_is_a_row(cli: Cli, tmp_path: Path) -> None:
@@ -329,7 +329,7 @@ def test_parquet_of_another_question_is_refused(tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     with open_results(tmp_path / "a.parquet", {"data": "x"}):
         pass
-    with pytest.raises(UserError, match="was begun for another question"):
+    with pytest.raises(UserError, match="was started for another question"):
         open_results(tmp_path / "a.parquet", {"data": "y"})
 
 

@@ -331,13 +331,13 @@ def test_verify_refuses_other_data_and_changes(cli: Cli, tmp_path: Path) -> None
     rates.write_text((bundled_kitchen() / "motion.txt").read_text().replace("0.9", "0.8", 1))
     other = cli("verify", file, "--rates", rates)
     assert other.code == 1
-    assert other.out == "refused: rates: not the one that the certificate speaks about\n"
+    assert other.out == "refused: rates: not the one that the certificate is about\n"
     content = json.loads(file.read_text())
     content["costs"] = [1]
     file.write_text(json.dumps(content))
     changed = cli("verify", file, "--format", "json")
     assert changed.code == 1
-    reason = "the seal does not fit: something was changed"
+    reason = "the seal does not match: something was changed"
     assert changed.json == {"schema": "foon-asp/verify/1", "verified": False, "reason": reason}
     file.write_text("{")
     assert cli("verify", file).code == 1

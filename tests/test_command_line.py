@@ -257,7 +257,7 @@ def test_check_finds_an_order_or_says_what_is_missing(cli: Cli, data: Path, tmp_
     tree.write_text("//\n".join([pour, mix, bake, serve, warm.replace("warm up", "heat"), ""]))
     ran = cli("check", tree, "--data", data)
     assert ran.code == 1
-    assert f"unit 5 is not one of the network: heat    [{tree}:37]" in ran.out
+    assert f"unit 5 is not in the network: heat    [{tree}:37]" in ran.out
 
 
 def test_several_goals_make_one_tree(cli: Cli, data: Path) -> None:

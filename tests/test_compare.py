@@ -91,7 +91,7 @@ def test_a_results_file_of_another_question_is_refused(tmp_path: Path) -> None:
     with ResultsFile(path, {"searches": ["bfs"]}) as file:
         file.add(ROWS[0])
     before = path.read_bytes()
-    with pytest.raises(UserError, match="begun for another question"):
+    with pytest.raises(UserError, match="started for another question"):
         ResultsFile(path, {"searches": ["dfs"]})
     assert path.read_bytes() == before
     path.write_text("no results\n")
@@ -162,7 +162,7 @@ def test_all_makeable_goals_are_summed_up_resumed_and_shared(cli: Cli, data: Pat
     assert results.read_text() == "".join(lines)
     other = cli("compare", "--data", data, "--all-makeable", "--results", results)
     assert other.code == 2
-    assert "begun for another question" in other.err
+    assert "started for another question" in other.err
 
 
 def test_the_published_table_stands_beside_what_is_measured(cli: Cli, universal: Path) -> None:

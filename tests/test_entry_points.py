@@ -209,7 +209,7 @@ def test_what_is_no_tree_is_refused_by_name(cli: Cli, packages: Packages) -> Non
             f"error: foon-hostile 1.0: {name} (foon_asp.searches, foon_hostile:{name}): "
         )
         assert words in ran.err
-        assert ran.err.endswith("what to do: tell whoever makes the package, name others, or uninstall it\n")
+        assert ran.err.endswith("what to do: tell the authors of the package, name others, or uninstall it\n")
         assert len(ran.err) < 600
         assert not ran.out
     # ours do not mind
@@ -302,7 +302,7 @@ def test_results_of_another_version_are_those_of_another_question(
     told.write_text(told.read_text().replace("1.0", "1.1"))
     ran = cli(*words)
     assert ran.code == 2
-    assert "begun for another question" in ran.err
+    assert "started for another question" in ran.err
 
 
 @pytest.mark.slow

@@ -153,7 +153,7 @@ def test_parts_of_another_version_are_refused(cli: Cli, questions: Path, tmp_pat
     parquet.write_table(other, part)
     ran = cli("batch", questions, "--results", folder)
     assert ran.code == 2
-    assert "no part of results of foon-asp" in ran.err
+    assert "not a part of results of foon-asp" in ran.err
 
 
 WRONG: list[Any] = [-1.5, True, [], [[]], {}, {"x": 1}, float("nan"), 7]
@@ -226,7 +226,7 @@ def test_results_are_no_folder_pipe_or_device(cli: Cli, questions: Path, tmp_pat
     for place in (tmp_path, tmp_path / "pipe", Path("/dev/null"), Path("/dev/full")):
         for verb in ("batch", "compare"):
             code, _, err = begin(cli, verb, questions, place)
-            assert (code, "is no file that results could be kept in" in err) == (2, True)
+            assert (code, "is not a file in which results can be kept" in err) == (2, True)
     assert cli("batch", questions, "--results", questions / "x").code == 2
 
 

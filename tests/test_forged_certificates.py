@@ -183,9 +183,11 @@ FORGED: dict[str, Forged] = {
         containers="implied",
         digests={k: v for k, v in certificate(PLAIN)["digests"].items() if k != "prices"},
     ),
-    "verify: the seal does not fit: something was changed": Forged({**certificate(PLAIN), "seal": "0" * 64}),
+    "verify: the seal does not match: something was changed": Forged(
+        {**certificate(PLAIN), "seal": "0" * 64}
+    ),
     "verify: not a claim about level …": plain(level=2),
-    "verify: …: not the one that the certificate speaks about": plain(
+    "verify: …: not the one that the certificate is about": plain(
         digests={**certificate(PLAIN)["digests"], "kitchen": "0" * 64}
     ),
     # --- kinds and order of values
@@ -234,7 +236,7 @@ FORGED: dict[str, Forged] = {
         at=PLAIN._replace(rates=dict.fromkeys(("pour", "mix", "bake", "dig"), Fraction(-2))),
         stays=KIND,
     ),
-    "_rates: a unit that never succeeds has no end": plain(
+    "_rates: a unit that never succeeds is repeated forever": plain(
         objective=["attempts"], claim="bound", bound=["0"], tree=None, costs=None, at=NEVER, stays=KIND
     ),
     "__init__: a constraint has no printable name": plain(not_covered=["mine.lp\nverified: all of it"]),
@@ -264,7 +266,7 @@ FORGED: dict[str, Forged] = {
     "claim: a cut is not used by the proof": plain(cuts=[[END], sorted([END, MIDDLE])]),
     # --- the tree
     "_tree: unit … of the tree is forbidden": plain(forbidden={"motions": ["pour"], "objects": []}),
-    "_tree: unit … of the tree lacks an input in its turn": plain(tree=[2]),
+    "_tree: unit … of the tree lacks an input when it is its turn": plain(tree=[2]),
     "_tree: the tree does not make every goal": plain(tree=[], costs=[0], **NOTHING),
     "_tree: a tree that never succeeds is no better than another": plain(
         objective=["success"],
@@ -290,7 +292,7 @@ FORGED: dict[str, Forged] = {
     ),
     # --- the proof
     "_prove: the weights do not add up to enough": plain(tree=[1, 2], costs=[2]),
-    "_prove: a cut said to be hopeless is crossed": plain(**NO_TREE, proof=HOPELESS),
+    "_prove: a cut called hopeless is crossed": plain(**NO_TREE, proof=HOPELESS),
     "_prove: expected weights, a hopeless cut or a branch": plain(
         proof={"branch": {"unit": 0}, "without": LEAF, "using": {"weights": []}, "more": 1}
     ),
@@ -367,7 +369,7 @@ FORGED: dict[str, Forged] = {
 NO_CHECKS = {
     "_require: otherwise",
     "read_certificate: not JSON: …",
-    "verify: branches within branches without end",
+    "verify: branches nested too deeply",
 }
 NEXT = "_cost: an objective is unknown"
 
@@ -480,7 +482,7 @@ SLOW = "_spend: to check it takes more than … steps"
 def test_a_forged_certificate_is_refused_by_its_check_alone(name: str, tmp_path: Path) -> None:
     forged = FORGED[name]
     said = name.partition(": ")[2]
-    said = said if said != "_VERSION_1" else "version 1 took a unit"
+    said = said if said != "_VERSION_1" else "in version 1, a unit"
     with pytest.raises(verify.RefusedError, match=".*".join(map(re.escape, said.split("…")))):
         held(verify, forged, tmp_path)
     if not forged.stays:

@@ -182,7 +182,7 @@ def test_no_tree_at_all() -> None:
         *("infeasible", (OTHER_ID,), (), None, None),
         1,
     )
-    crossed = "a cut said to be hopeless is crossed"
+    crossed = "a cut called hopeless is crossed"
     assert refusal(PLAIN, **nobody, cuts=[[OTHER_ID]]) == crossed  # by digging
     tree: Content = {**nobody, **POURED, "objective": ["units"]}
     assert refusal(PLAIN, **{**tree, "goals": [{"id": END_ID, "node": "end"}]}) == "there cannot be a tree"
@@ -209,7 +209,7 @@ def test_what_is_not_covered_is_passed_on() -> None:
 
 
 def test_the_tree_is_executed_in_its_order() -> None:
-    lacks = "unit 2 of the tree lacks an input in its turn"
+    lacks = "unit 2 of the tree lacks an input when it is its turn"
     assert refusal(PLAIN, **BOUND, tree=[BAKE, MIX], costs=[2]) == lacks
     assert refusal(PLAIN, **BOUND, tree=[MIX], costs=[1]) == "the tree does not make every goal"
     goals = [{"id": END_ID, "node": "end"}, {"id": MIDDLE_ID, "node": "middle"}]
@@ -367,7 +367,7 @@ def test_a_branch_on_an_item() -> None:
     not_used = "cut 1 holds neither a goal nor what a used unit needs"
     assert refusal(PLAIN, **values, proof=using) == not_used
     other = {**proof, "branch": {"item": SALT_ID}}
-    assert refusal(PLAIN, **values, proof=other) == "a cut said to be hopeless is crossed"
+    assert refusal(PLAIN, **values, proof=other) == "a cut called hopeless is crossed"
     twice = {**proof, "using": proof}
     assert refusal(PLAIN, **values, proof=twice) == "a branch is taken twice"
 
@@ -482,10 +482,10 @@ def test_other_data_are_refused() -> None:
     for part, other in others.items():
         with pytest.raises(RefusedError) as refused:
             check(content, other)
-        assert str(refused.value) == f"{part}: not the one that the certificate speaks about"
+        assert str(refused.value) == f"{part}: not the one that the certificate is about"
     with pytest.raises(RefusedError) as refused:
         check({**content, "level": 2}, PLAIN)
-    assert str(refused.value) == "the seal does not fit: something was changed"
+    assert str(refused.value) == "the seal does not match: something was changed"
 
 
 def test_a_level_is_a_number() -> None:
@@ -498,7 +498,7 @@ def test_a_level_is_a_number() -> None:
 def test_what_holds_itself_is_refused() -> None:
     proof: Content = {"branch": {"unit": 0}, "without": {"weights": []}}
     proof["using"] = proof
-    with pytest.raises(RefusedError, match="branches within branches without end"):
+    with pytest.raises(RefusedError, match="branches nested too deeply"):
         check({**handmade(PLAIN, **BOUND), "proof": proof}, PLAIN)
 
 
@@ -526,7 +526,7 @@ def asked(
     return None
 
 
-LACKS = "unit 0 of the tree lacks an input in its turn"
+LACKS = "unit 0 of the tree lacks an input when it is its turn"
 
 
 @pytest.mark.parametrize(
@@ -565,16 +565,16 @@ def test_which_vessels_are_taken_as_given(vessel: ObjectNode, others: list[Objec
 
 def test_a_unit_that_does_not_make_a_node_is_no_member() -> None:
     made = network(("pour", [CUP, IN_CUP], [END, CUP]))
-    for rule, said in (("implied", None), ("strict", "a cut said to be hopeless is crossed")):
+    for rule, said in (("implied", None), ("strict", "a cut called hopeless is crossed")):
         problem = Problem(made, frozenset({1}), (0,), None, frozenset({"cup"}), ContainerRule(rule))
         # under strict the pouring needs the cup, so that it is a member only with another goal
         proof = {"hopeless": 0}
         assert accepted(problem, **NO_TREE, cuts=[[0]], proof=proof).claim == "infeasible"
         ends = Problem(made, frozenset({1}), (2,), None, frozenset({"cup"}), ContainerRule(rule))
         if said is None:
-            assert refusal(ends, **NO_TREE, cuts=[[2]], proof=proof) == "a cut said to be hopeless is crossed"
+            assert refusal(ends, **NO_TREE, cuts=[[2]], proof=proof) == "a cut called hopeless is crossed"
             assert refusal(ends, **NO_TREE, cuts=[[0, 2]], proof=proof) == (
-                "a cut said to be hopeless is crossed"
+                "a cut called hopeless is crossed"
             )
         else:
             assert refusal(ends, **NO_TREE, cuts=[[2]], proof=proof) == said

@@ -100,7 +100,7 @@ def test_what_cannot_be_replaced_is_refused(folder: Path, cli: Cli, name: str, w
         file.write(":- use(1).\n")
     ran = cli(*asked)
     assert ran.code == 2, ran
-    assert f"{folder / name} was changed, and answers rely on what it said: restore it" in ran.err
+    assert f"{folder / name} was changed, but answers rely on its old content: restore it" in ran.err
     assert ran.out == ""
 
 

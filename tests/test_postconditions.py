@@ -267,7 +267,7 @@ def test_trees_in_the_order_of_another_measure_are_refused(tmp_path: Path) -> No
     assert len(list(Ranked(problem, SUCCESS, Settings(encodings=own)))) == 2
     text = (own / "objectives.lp").read_text()
     (own / "objectives.lp").write_text(text.replace("{ W@P,U ", "{ -W@P,U "))
-    with pytest.raises(UserError, match="cannot be put in their order"):
+    with pytest.raises(UserError, match="cannot be ordered"):
         list(Ranked(problem, SUCCESS, Settings(encodings=own)))
 
 

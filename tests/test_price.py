@@ -110,7 +110,7 @@ def test_sums_are_compared_to_the_last_digit(
     assert certificate is not None
     given = problem.network, problem.kitchen, problem.rates, problem.utensils
     assert verify.verify(certificate.content, *given, problem.unit_prices).costs == (least, len(chosen))
-    with pytest.raises(verify.RefusedError, match="prices: not the one that the certificate speaks about"):
+    with pytest.raises(verify.RefusedError, match="prices: not the one that the certificate is about"):
         verify.verify(certificate.content, *given)
 
 

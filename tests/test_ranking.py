@@ -301,7 +301,7 @@ def test_encodings_that_measure_something_else_are_refused(old: str, new: str, t
         list(Ranked(problem, [UNITS], settings))
     assert str(refused.value) == (
         f"{own / 'objectives.lp'} does not measure what the objectives units measure here, "
-        "so trees cannot be put in their order"
+        "so trees cannot be ordered"
     )
 
 
@@ -314,7 +314,7 @@ def test_encodings_that_find_dear_trees_first_are_refused(
     numbers = [problem.network.unit_number(unit) for unit in range(3)]
     answers = says(Run(frozenset(numbers[1:]), (2,), True), Run(frozenset(numbers[:1]), (1,), True))
     monkeypatch.setattr(search, "run", answers)
-    with pytest.raises(UserError, match="trees cannot be put in their order"):
+    with pytest.raises(UserError, match="trees cannot be ordered"):
         list(Ranked(problem, [UNITS], Settings(encodings=own)))
 
 
@@ -324,4 +324,6 @@ def test_units_that_the_network_has_not_are_refused(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(search, "run", says(Run(frozenset({number, number + 7}), (2,), True)))
     with pytest.raises(UserError) as refused:
         list(Ranked(problem, [UNITS], Settings()))
-    assert str(refused.value) == "a tree was found with units that the network has not: check the encodings"
+    assert (
+        str(refused.value) == "a tree was found with units that are not in the network: check the encodings"
+    )

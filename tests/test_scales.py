@@ -92,8 +92,8 @@ def test_bounds_are_put_on_what_is_exact() -> None:
     with pytest.raises(UserError) as refused:
         fine.cost_weight(TRIES, 4)
     assert str(refused.value) == (
-        "the objective tries has to be rounded for the solver, so no bound can be put on it: "
-        "leave it out, or the other objective that has to be rounded"
+        "the objective tries has to be rounded for the solver, so it cannot be bounded: leave it "
+        "out, or the other objective that has to be rounded"
     )
 
 

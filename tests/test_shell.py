@@ -230,7 +230,7 @@ def test_other_questions_take_what_stands(shell: Cli, cli: Cli) -> None:
         ("containers loose", "found the container rule 'loose', expected strict or implied"),
         ("objective speed", "found the objective 'speed', expected one of"),
         ("objective", "expected objective LIST, of units, inputs"),
-        ("constraint nothing", "nothing: no such file; expected an encoding (.lp) or one of ours"),
+        ("constraint nothing", "nothing: no such file; expected an encoding (.lp) or a ready-made one"),
         ("constraint forbid_motion x=1", "no encoding in use has the constant 'x'"),
         ("drop forbid_motion", "no constraint 'forbid_motion' stands; those that stand are: none"),
         ("time-limit soon", "found the time limit 'soon', expected seconds, or none"),

@@ -58,7 +58,11 @@ def test_a_constraint_may_ask_for_what_the_goal_does_not_need(cli: Cli) -> None:
         (":~ use(U). [1,U]\n", "mine.lp:1:1: error: found a statement that minimizes", ":~ use(U)"),
         ("#program step.\n:- use(U).\n", "mine.lp:1:1: error: found #program", "#program step."),
         ("available(O) :- goal(O).\n", "mine.lp:1:1: error: found a rule for available/1", "available(O)"),
-        ("risk(U,9) :- unit(U).\n", "mine.lp:1:1: error: found a rule for risk/2, which is not", "risk(U,9)"),
+        (
+            "risk(U,9) :- unit(U).\n",
+            "mine.lp:1:1: error: found a rule for risk/2, which a constraint may not",
+            "risk(U,9)",
+        ),
         ("{ use(U) : unit(U) }.\n", "mine.lp:1:3: error: found a rule for use/1", "{ use(U)"),
     ],
 )
@@ -155,7 +159,7 @@ def test_another_measure_is_said_to_be_one(cli: Cli, own_encodings: Path) -> Non
 def test_a_folder_without_encodings_is_refused(cli: Cli, tmp_path: Path) -> None:
     ran = cli("solve", "--goal", "ice", "--encodings", tmp_path)
     assert ran.code == 2
-    assert "expected a folder with encodings to use instead of ours: task_tree.lp" in ran.err
+    assert "expected a folder with encodings to use instead of the built-in ones: task_tree.lp" in ran.err
 
 
 def test_clingo_options_reach_clingo(cli: Cli) -> None:

@@ -120,7 +120,7 @@ def _find_encodings(path: Path | None, ours: Path) -> Path:
     if any((folder / name).is_file() for name in ENCODING_FILES):
         return folder
     names = ", ".join(ENCODING_FILES)
-    raise UserError(f"{path}: expected a folder with encodings to use instead of ours: {names}")
+    raise UserError(f"{path}: expected a folder with encodings to use instead of the built-in ones: {names}")
 
 
 def find_constraint(path: Path) -> Path:
@@ -133,7 +133,7 @@ def find_constraint(path: Path) -> Path:
         if bundled.is_file():
             return bundled
     names = ", ".join(sorted(file.stem for file in library.glob("*.lp")))
-    raise UserError(f"{path}: no such file; expected an encoding (.lp) or one of ours: {names}")
+    raise UserError(f"{path}: no such file; expected an encoding (.lp) or a ready-made one: {names}")
 
 
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:

@@ -31,14 +31,14 @@ _PUBLIC_NAMES = frozenset(name for name, _ in (*_PUBLIC, *_EXTENDED)) | _TERMS
 
 _THEORY = "no theory is part of the program, so it would have no meaning; #sum and #count add up and count"
 _REFUSED = {
-    ASTType.Minimize: "a statement that minimizes, expected only rules and constraints: what is best is said "
-    "by --objective; to change it, edit a copy of objectives.lp and pass its folder with --encodings",
+    ASTType.Minimize: "a statement that minimizes, expected only rules and constraints: --objective chooses "
+    "what is best; to change it, edit a copy of objectives.lp and pass its folder with --encodings",
     ASTType.ShowTerm: "#show of a term, expected only rules and constraints: what is shown is the answer; "
     "#show NAME/ARITY. may stay",
     ASTType.ProjectAtom: "#project, expected only rules and constraints: answers are not projected",
     ASTType.ProjectSignature: "#project, expected only rules and constraints: answers are not projected",
     ASTType.Edge: "#edge, expected only rules and constraints: an edge would join the graph of the "
-    "encodings; say with :- what must not be",
+    "encodings; forbid with :- what must not be",
     ASTType.Program: "#program, expected rules: parts are not solved",
     ASTType.External: "#external, expected rules: nothing sets such an atom, so it would never hold; a "
     "choice rule leaves an atom open",
@@ -105,7 +105,7 @@ def read_encoding(path: Path) -> Encoding:
         raise fault(messages, str(error)) from None
     others = sorted(file for file in met if Path(file).resolve() not in files)
     if others:
-        raise UserError(f"{path} includes {others[0]}, which was not looked over: leave that out")
+        raise UserError(f"{path} includes {others[0]}, which was not checked: leave that out")
     return encoding
 
 
@@ -269,8 +269,8 @@ def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagno
         located(
             Severity.ERROR,
             "owned-predicate",
-            f"found a rule for {name}/{arity}, which is not a constraint's to define: "
-            "give it another name, or edit a copy of the encodings and pass its folder with --encodings",
+            f"found a rule for {name}/{arity}, which a constraint may not define: give it "
+            "another name, or edit a copy of the encodings and pass its folder with --encodings",
             source,
         )
         for (name, arity), source in encoding.defined.items()
@@ -291,7 +291,7 @@ def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
         located(
             Severity.ERROR,
             "reserved-name",
-            f"found {name}, but names that begin with {_PREFIX!r} are ours: give it another name",
+            f"found {name}, but names that begin with {_PREFIX!r} are reserved: give it another name",
             source,
         )
         for name, source in (*atoms, *terms)
@@ -309,8 +309,8 @@ def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
         located(
             Severity.ERROR,
             "owned-predicate",
-            f"found a rule for {predicate}/{arity}, but names that begin with {_PREFIX!r} are ours, and no "
-            f"{name} of ours defines this one: give it another name",
+            f"found a rule for {predicate}/{arity}, but names that begin with {_PREFIX!r} are reserved, and "
+            f"the built-in {name} does not define this one: give it another name",
             source,
         )
         for (predicate, arity), source in encoding.defined.items()
@@ -325,7 +325,7 @@ def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
             Severity.ERROR,
             "taken-constant",
             f"found #const {name}, but that is a name in the facts or in other encodings, where its value "
-            "would take its place: give the constant another name",
+            "would replace it: give the constant another name",
             source,
         )
         for name, source in encoding.constant_sources.items()
@@ -445,10 +445,10 @@ def _left_out(what: str, part: str) -> str:
     reason = {
         "operation undefined": no_value,
         "interval undefined": no_value,
-        "tuple ignored": f"the weight in {part} is no number",
+        "tuple ignored": f"the weight in {part} is not a number",
     }.get(what, f"{what} {part}".strip())
     return (
-        f"{reason}; clingo would leave this out without a word: calculate with whole numbers only, do not "
+        f"{reason}; clingo would leave this out silently: calculate with whole numbers only, do not "
         "divide by 0, and call no functions with @"
     )
 

@@ -132,12 +132,12 @@ def _refused(file: Path, target: str) -> str:
     if path.suffix != _SUFFIX or path.resolve().suffix != _SUFFIX:
         return f"expected an encoding, a file whose name ends in {_SUFFIX}"
     if not path.is_file():
-        return f"expected a file that is there: there is none in {folder}"
+        return f"expected an existing file: there is none in {folder}"
     here = Path(target)  # clingo looks there first
     if here.is_file() and not here.samefile(path):
         return (
-            "but there is a file of this name in the folder that foon-asp was started in too, which clingo "
-            "would take: give the file another name, or start foon-asp elsewhere"
+            "but the folder in which foon-asp was started has a file of this name, too, which clingo would "
+            "take: give the file another name, or start foon-asp elsewhere"
         )
     return ""
 

@@ -43,8 +43,8 @@ def digest(file: Path) -> str:
 def _unchanged(file: Path) -> Path:
     if not is_own(file):
         raise UserError(
-            f"{file} was changed, and answers rely on what it said: restore it; to change what a tree is or "
-            "what is best, add a constraint (--constraint) or replace encodings (--encodings)"
+            f"{file} was changed, but answers rely on its old content: restore it; to change what a tree is "
+            "or what is best, add a constraint (--constraint) or replace encodings (--encodings)"
         )
     return file
 

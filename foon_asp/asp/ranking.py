@@ -89,7 +89,7 @@ class Ranked:
         units = [network.unit_of_number(number) for number in sorted(numbers)]
         known = [unit for unit in units if unit is not None]
         if len(known) < len(units):
-            raise UserError("a tree was found with units that the network has not: check the encodings")
+            raise UserError("a tree was found with units that are not in the network: check the encodings")
         order = self._holds.tree(known)
         costs, scales = self.problem.costs(order), self._first.scales
         rounded = (
@@ -109,7 +109,7 @@ class Ranked:
         if not (agree and last <= rounded) and self._program.replaced:
             raise UserError(
                 f"{self._program.files[1]} does not measure what the objectives {', '.join(self.levels)} "
-                "measure here, so trees cannot be put in their order"
+                "measure here, so trees cannot be ordered"
             )
         self._holds.require(
             agree, lambda: f"clingo reports the costs {list(ended.cost)}, the units {units} cost {rounded}"

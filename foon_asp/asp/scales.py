@@ -100,8 +100,8 @@ class Scales:
         scale = self.costs[objective]
         if not scale.exact:
             raise UserError(
-                f"the objective {objective} has to be rounded for the solver, so no bound can be put on it: "
-                "leave it out, or the other objective that has to be rounded"
+                f"the objective {objective} has to be rounded for the solver, so it cannot be bounded: leave "
+                "it out, or the other objective that has to be rounded"
             )
         return int(scale.scale * cost)
 

@@ -104,7 +104,7 @@ def solve_soft(
         if given.exhausted:
             holds.require(
                 given.units == frozenset(outcome.units),
-                lambda: f"the tree {outcome.units} is none when its soft constraints are looked at",
+                lambda: f"the tree {outcome.units} does not hold when its soft constraints are checked",
             )
             found = told(outcome, given.atoms["_broken"])
             holds.require(

@@ -161,8 +161,8 @@ def _parts(folder: Path) -> list[tuple[int, Path]]:
     other = next((name for name in names if name not in ours and not name.startswith("_part.")), None)
     if other is not None or (names and _QUESTION not in names):
         raise UserError(
-            f"{folder}: holds something else than results of foon-asp ({other or names[0]}), and is left as "
-            "it is; name another folder"
+            f"{folder}: contains something other than results of foon-asp ({other or names[0]}), and was not "
+            "changed; name another folder"
         )
     return parts
 
@@ -179,7 +179,7 @@ def _statuses(part: Path) -> dict[str, str]:
     try:
         found = [_kept(_of_part(row)) for row in rows]
     except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError):
-        raise UserError(f"{part}: error: no part of results of foon-asp; name another folder") from None
+        raise UserError(f"{part}: error: not a part of results of foon-asp; name another folder") from None
     return {kept.key: kept.status for kept in found}
 
 

@@ -69,7 +69,7 @@ def read_comparison(row: Json) -> Comparison:
         _of(row["level"], int),
     )
     if comparison.level not in {1, 2, 3} or comparison_json(comparison) != row:
-        raise ValueError("something more or else than what is written")
+        raise ValueError("more than what is written, or something else")
     return comparison
 
 

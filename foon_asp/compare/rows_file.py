@@ -62,7 +62,7 @@ class RowsFile(Generic[Row]):
             if not self.path.exists():
                 return b""
             if not self.path.is_file():
-                raise UserError(f"{self.path}: is no file that results could be kept in")
+                raise UserError(f"{self.path}: is not a file in which results can be kept")
             return self.path.read_bytes()
         except OSError as error:
             raise self._fault("read", error) from None
@@ -75,12 +75,12 @@ class RowsFile(Generic[Row]):
         begun = self._value(first, 1) if newline else None
         if begun is None or begun.keys() != {"question"}:
             raise UserError(
-                f"{self.path}: holds something else than results of foon-asp, and is left as it is; "
+                f"{self.path}: contains something other than results of foon-asp, and was not changed; "
                 "name another file"
             )
         if begun["question"] != self.question:
             raise UserError(
-                f"{self.path}: was begun for another question; name another file, or remove this one\n"
+                f"{self.path}: was started for another question; name another file, or remove this one\n"
                 f"  there: {json_line(begun['question'])}\n  now:   {json_line(self.question)}"
             )
         *whole, last = rows.split(b"\n")

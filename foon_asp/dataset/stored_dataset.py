@@ -36,8 +36,8 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
     """
     if len(files.network) > 1:
         raise UserError(
-            f"{files.network[0]} and {files.network[1]}: a store is read by itself; "
-            "import the files together into one"
+            f"{files.network[0]} and {files.network[1]}: a store is read alone; import "
+            "the files together into one"
         )
     began = time.perf_counter()
     store = Store(files.network[0])

@@ -52,7 +52,7 @@ def check_with_bare_clingo(asked: Asked, seconds: float) -> None:
     """Hold an answer against clingo's own.
 
     Raises :class:`DisagreementError` where both cannot be right, and :class:`NotCheckedError` where clingo
-    came to no end within so many seconds.
+    did not finish within so many seconds.
     """
     outcome = asked.outcome
     program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
@@ -142,7 +142,7 @@ class _Clingo:
         return found
 
     def _late(self) -> NotCheckedError:
-        return NotCheckedError(f"clingo came to no end within {self.seconds:g} s")
+        return NotCheckedError(f"clingo did not finish within {self.seconds:g} s")
 
 
 class _Check:

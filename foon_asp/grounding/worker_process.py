@@ -161,8 +161,8 @@ class _Worker:
                 "where rules that were added are grounded"
             )
         raise UserError(
-            f"clingo broke down while {deadline.doing} (its process ended with {code}); look at the rules "
-            "that were added: terms within terms without end, for one, are more than it can take"
+            f"clingo broke down while {deadline.doing} (its process ended with {code}); check the rules that "
+            "were added: terms nested too deeply, for example, are more than it can take"
         )
 
     def end(self) -> None:

@@ -49,7 +49,7 @@ class Offer(NamedTuple):
         error = UserError(
             f"{escaped(self.package)}: {escaped(self.name)} ({self.group}, {escaped(self.function)}): "
             f"{escaped(what)}\n"
-            "what to do: tell whoever makes the package, name others, or uninstall it"
+            "what to do: tell the authors of the package, name others, or uninstall it"
         )
         if trace:
             error.add_note(trace)

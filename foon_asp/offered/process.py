@@ -42,7 +42,7 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     if not line.endswith(b"\n"):
         code = process.end()
         raise offer.fault(
-            "gave more than can be an answer" if len(line) > _MOST else f"ended its process ({code})"
+            "gave more than an answer can be" if len(line) > _MOST else f"ended its process ({code})"
         )
     if _idle.setdefault(key, process) is not process:
         process.end()

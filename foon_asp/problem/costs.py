@@ -58,7 +58,7 @@ class Costs:
         if objective not in self.measures:
             needs = objective.row.needs
             above = " above 0" if needs is Known.RATES else ""
-            raise ValueError(f"there is no figure by {str(objective)!r}: it needs {needs}{above}")
+            raise ValueError(f"{str(objective)!r} cannot be computed: it needs {needs}{above}")
         return self.measures[objective]
 
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:

@@ -186,7 +186,7 @@ class Problem:
         sums = [str(each) for each in by_rates if not each.row.multiplies]
         if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
             raise UserError(
-                f"a success rate is 0, by which the objective {sums[0]} has no number: leave it out"
+                f"a success rate is 0, for which the objective {sums[0]} has no value: leave it out"
             )
         if self.rates is None and by_rates:
             raise UserError(

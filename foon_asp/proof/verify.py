@@ -56,8 +56,8 @@ Amount: TypeAlias = "dict[tuple[int, Fraction | None], Fraction]"
 
 # Why version 1 is refused under implied containers; under strict ones it says what version 2 does.
 _VERSION_1 = (
-    "version 1 took a unit to make a container that the implied rule had let it skip, so that a container "
-    "could come from nothing; certify again, which writes version 2"
+    "in version 1, a unit could make a container that it had skipped under the implied rule, so a container "
+    "could come from nothing; certify again"
 )
 
 
@@ -168,7 +168,7 @@ def verify(
         )
         _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
         _require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
-        _require(certificate["seal"] == seal(certificate), "the seal does not fit: something was changed")
+        _require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
         level = certificate["level"]
         _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
         found = digests(network, kitchen, rates, utensils, prices)
@@ -176,11 +176,11 @@ def verify(
             del found["prices"]
         stated = _object(certificate["digests"], tuple(found))
         for name, digest in found.items():
-            _require(stated[name] == digest, f"{name}: not the one that the certificate speaks about")
+            _require(stated[name] == digest, f"{name}: not the one that the certificate is about")
         priced = prices if version >= _WITH_PRICES else None
         return _Check(certificate, network, kitchen, rates, utensils, priced).claim()
     except RecursionError:
-        raise RefusedError("branches within branches without end") from None
+        raise RefusedError("branches nested too deeply") from None
 
 
 class _Check:
@@ -231,7 +231,10 @@ class _Check:
         rates = None if given is None else [given.get(motion) for motion in self.network.motions]
         found = self._known(rates, "success rates")
         _require(all(rate <= 1 for rate in found), "a rate is above 1")
-        _require("attempts" not in self.objectives or 0 not in found, "a unit that never succeeds has no end")
+        _require(
+            "attempts" not in self.objectives or 0 not in found,
+            "a unit that never succeeds is repeated forever",
+        )
         return found
 
     def _prices(self, given: UnitPrices | None) -> list[Fraction]:
@@ -306,7 +309,9 @@ class _Check:
         at_hand: set[int | None] = set(self.kitchen)
         for unit in _numbers(units, len(self.network), ascending=False):
             _require(unit not in self.ruled_out, f"unit {unit} of the tree is forbidden")
-            _require(self.needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input in its turn")
+            _require(
+                self.needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input when it is its turn"
+            )
             at_hand.update(self.gives(unit))
         _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
         items = {o for unit in units for o in self.kitchen & self.needs(unit)}
@@ -340,7 +345,7 @@ class _Check:
                 _require(enough, "the weights do not add up to enough")
             elif keys == {"hopeless"}:
                 crossing = self._crossing(node["hopeless"], used, without)
-                _require(not crossing, "a cut said to be hopeless is crossed")
+                _require(not crossing, "a cut called hopeless is crossed")
             else:
                 _require(
                     keys == {"branch", "without", "using"}, "expected weights, a hopeless cut or a branch"

@@ -21,7 +21,7 @@ def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> st
         lines.append("in any order: " + _obstacle_text(problem, listed, simulation.obstacle))
     ids = [problem.network.unit_id(unit) for unit, _ in listed]
     foreign = [n for n, unit in enumerate(ids) if unit is None]
-    lines += [f"unit {n + 1} is not one of the network: {_unit_text(listed, n)}" for n in foreign]
+    lines += [f"unit {n + 1} is not in the network: {_unit_text(listed, n)}" for n in foreign]
     if not foreign:
         lines.append(costs_text(problem.costs(unit for unit in ids if unit is not None)))
     repeated = len(listed) - len({unit for unit, _ in listed})

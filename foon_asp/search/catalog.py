@@ -40,9 +40,7 @@ def _greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
     return greedy_inputs(problem, settings.ties, settings.count)
 
 
-_NOTHING = (
-    "nothing of the tree but that each input it needs is in the kitchen or an output of one of its units"
-)
+_NOTHING = "only that each input it needs is in the kitchen or an output of a unit of the tree"
 
 SEARCHES: Final[Mapping[str, Search]] = {
     search.name: search

@@ -12,7 +12,7 @@ from foon_asp.search.search import Search, SearchSettings
 
 def offered_search(offer: Offer) -> Search:
     """Make a search of what a package offers."""
-    promise = f"what {offer.package} says of it; foon-asp has looked at its tree alone"
+    promise = f"what {offer.package} says of it; foon-asp has checked only its tree"
     return Search(offer.name, promise, functools.partial(_retrieve, offer), offer.package)
 
 
