@@ -107,13 +107,20 @@ def build(
 
 
 class Foon:
-    """A FOON, a kitchen, and what stands beside them; it never changes.
+    """A FOON, a kitchen, and the files that belong to them; a value that never changes.
 
-    :func:`load` makes one. Object nodes go by name: a label that only one node has (or one entry of the goals
-    file), the one-line notation, or an :class:`ObjectNode`.
+    :func:`load` makes one. Object nodes are named by a label that only one node has (or one entry of the
+    goals file), in one-line notation, or as an :class:`ObjectNode`.
 
     A store stays open while questions may read from it. ``with load(...) as foon:`` closes it at the end, as
-    :meth:`close` does; so does Python when nothing refers to the data any more.
+    :meth:`close` does; otherwise it is closed when nothing refers to the data any more.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> foon.problem("ice")
+        <Problem: ice; crushed; in [drinking glass] (strict containers)>
+        >>> str(foon.rates["crush"])
+        '7/10'
     """
 
     def __init__(self, dataset: Dataset, name: str) -> None:
@@ -122,9 +129,10 @@ class Foon:
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
-        """Give the data that a problem was posed of, with the kitchen that it has.
+        """Give the data that a problem was made from, with the kitchen of the problem.
 
-        Those of a problem that was put together by hand are its pieces.
+        Parameters:
+            problem: The problem; for one made by hand, its parts are the data.
         """
         if isinstance(problem.origin, Dataset):
             return cls(problem.origin.with_kitchen_of(problem), "a problem")
@@ -148,10 +156,14 @@ class Foon:
         self.close()
 
     def problem(self, *goals: str | ObjectNode, containers: str = "strict") -> Problem:
-        """Ask for goals, all of which one tree has to make; without any, for the one of the goals file.
+        """Make a problem, with goals that one tree has to make.
 
-        ``containers`` is ``strict`` or ``implied``. Raises :class:`UserError` with candidates for a name that
-        means no object node, or several.
+        Parameters:
+            goals: Object nodes, by name or as :class:`ObjectNode`; without any, the goal of the goals file.
+            containers: The container rule, ``strict`` or ``implied``.
+
+        Raises:
+            UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
         return self._dataset.problem(self._dataset.named_goals(goals), containers)
 
@@ -166,11 +178,17 @@ class Foon:
     ) -> "Foon":
         """Give the same data with another kitchen, other success rates or other prices.
 
-        ``kitchen`` is all that is at hand: names, or the path of a kitchen file as a :class:`~pathlib.Path`.
-        Then what is named in ``adding`` comes in and what is named in ``without`` goes out, where a label
-        stands for every item of the kitchen that has it. ``rates`` are new rates of some motions, above 0
-        and at most 1; ``unit_prices`` new prices, from 0, of motions by name and of single units, which keep
-        theirs when that of their motion changes.
+        Parameters:
+            kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
+            adding: Names of object nodes to add to the kitchen.
+            without: Names of object nodes to remove from the kitchen; a label stands for all items that have
+                it.
+            rates: New success rates of some motions, above 0 and at most 1.
+            unit_prices: New prices, from 0, of motions by name and of single units; the price of a single
+                unit stays when that of its motion changes.
+
+        Raises:
+            UserError: for a name that means no object node or several, or a rate or price out of range.
         """
         varied = self._dataset.vary(Changes(kitchen, adding, without, rates, unit_prices))
         return self if varied is self._dataset else Foon(varied, self._name)
@@ -199,7 +217,11 @@ class Foon:
 
     @property
     def goals(self) -> tuple[ObjectNode, ...]:
-        """The object nodes of the goals file; raises :class:`UserError` for an entry that matches none."""
+        """The object nodes of the goals file.
+
+        Raises:
+            UserError: if an entry matches no object node.
+        """
         try:
             return tuple(map(self._dataset.names.node, dict.fromkeys(self._dataset.each_goal(()))))
         except GoalError as error:
@@ -222,7 +244,11 @@ class Foon:
         return self._dataset.utensils
 
     def nodes(self, label: str) -> tuple[ObjectNode, ...]:
-        """Give the object nodes that have a label; of a store, the first dozen or more."""
+        """Give the object nodes that have a label.
+
+        Parameters:
+            label: The label. For a store, only the first dozen nodes or a few more are given.
+        """
         names = self._dataset.names
         return tuple(map(names.node, names.labelled(label)[1]))
 

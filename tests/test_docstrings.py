@@ -8,6 +8,7 @@ import inspect
 import re
 import textwrap
 from collections.abc import Callable, Iterator
+from enum import Enum
 from typing import Any
 
 import pytest
@@ -20,6 +21,7 @@ from foon_asp.questions.options import LIMITS
 
 PUBLIC: dict[str, Any] = {name: getattr(foon_asp, name) for name in foon_asp.__all__}
 FUNCTIONS = {name: found for name, found in PUBLIC.items() if inspect.isfunction(found)}
+CLASSES = {name: found for name, found in PUBLIC.items() if inspect.isclass(found)}
 SECTION = re.compile(r"^(Parameters|Returns|Raises|Example):\n((?:    .*\n|\n(?=    ))+)", re.MULTILINE)
 ENTRY = re.compile(r"^    (\w+): \S", re.MULTILINE)
 
@@ -36,10 +38,24 @@ def raised(function: Callable[..., Any]) -> Iterator[type]:
     """Give the errors of callers that the code of a function itself raises."""
     (node,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
     known = {**vars(builtins), **inspect.unwrap(function).__globals__}
+    caught = {
+        (inner, name.id)
+        for block in ast.walk(node)
+        if isinstance(block, ast.Try)
+        for handler in block.handlers
+        if handler.type is not None
+        for name in ast.walk(handler.type)
+        if isinstance(name, ast.Name)
+        for statement in block.body
+        for inner in ast.walk(statement)
+    }
     for each in ast.walk(node):
         if isinstance(each, ast.Raise) and isinstance(each.exc, ast.Call):
-            error = known.get(ast.unparse(each.exc.func))
-            if inspect.isclass(error) and error not in {BugError, NotImplementedError}:
+            name = ast.unparse(each.exc.func)
+            error = known.get(name)
+            if not inspect.isclass(error) or error in {BugError, NotImplementedError}:
+                continue
+            if (each, name) not in caught:
                 yield error
 
 
@@ -64,6 +80,26 @@ def read_once() -> Iterator[None]:
         yield
 
 
+def fields(kind: type) -> list[str]:
+    """Name the public values of a class of values, or the members of an enumeration."""
+    if issubclass(kind, Enum):
+        return [member.name for member in kind]
+    named = [
+        *getattr(kind, "_fields", ()),
+        *(each.name for each in getattr(kind, "__dataclass_fields__", {}).values()),
+    ]
+    return [name for name in named if not name.startswith("_")]
+
+
+def members(kind: type) -> Iterator[tuple[str, Any, list[str]]]:
+    """Give the public methods and properties of a class, with their docstrings and those they override."""
+    ours = [base for base in kind.__mro__ if base.__module__.startswith("foon_asp.")]
+    for name in dict.fromkeys(name for base in ours for name in vars(base) if not name.startswith("_")):
+        found = [vars(base)[name] for base in ours if name in vars(base)]
+        if isinstance(found[0], property | functools.cached_property) or inspect.isroutine(found[0]):
+            yield name, found[0], [inspect.getdoc(each) or "" for each in found]
+
+
 def failures(name: str, docstring: str) -> str:
     """Run the examples of a docstring, and give what was not as it says."""
     test = doctest.DocTestParser().get_doctest(docstring, {"foon_asp": foon_asp}, name, None, 0)
@@ -84,6 +120,27 @@ def test_a_function_is_described(name: str) -> None:
     assert ">>> " in sections(docstring)["Example"]
     # the help of options is part of it, and must not speak of a command line
     assert not re.search(r" --\w|[Rr]epeat", docstring)
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_a_class_is_described(name: str) -> None:
+    kind = CLASSES[name]
+    docstring = inspect.getdoc(kind) or ""
+    assert re.fullmatch(r"[A-Z].*[.?]", docstring.split("\n")[0])
+    assert ">>> " in sections(docstring)["Example"]
+    known = docstring + "".join(inspect.getdoc(base) or "" for base in kind.__mro__[1:-1])
+    assert not [field for field in fields(kind) if not re.search(rf"``{field}(\[\w\])?``", known)]
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_a_method_is_described(name: str) -> None:
+    lacks = {}
+    for member, found, docstrings in members(CLASSES[name]):
+        assert re.match(r"[A-Z][^\n]*[.?:]$", docstrings[0].split("\n")[0]), member
+        function = found.fget if isinstance(found, property) else getattr(found, "__func__", found)
+        if inspect.isfunction(function):
+            lacks[member] = [*lacking(function, *docstrings)]
+    assert not [member for member in lacks.items() if member[1]]
 
 
 @pytest.mark.parametrize("name", PUBLIC)

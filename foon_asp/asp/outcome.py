@@ -9,10 +9,14 @@ from foon_asp.problem import Costs, Objective, Problem
 
 
 class Status(StrEnum):
-    """How far the claim goes.
+    """What is proved about an answer.
 
-    ``optimal``: the search was exhausted, no tree is better. ``feasible``: a limit was reached with a tree
-    in hand. ``infeasible``: proved that no tree exists. ``unknown``: a limit was reached without a tree.
+    ``OPTIMAL``: no tree is better, proved. ``FEASIBLE``: a limit was reached with a tree found.
+    ``INFEASIBLE``: no tree exists, proved. ``UNKNOWN``: a limit was reached without a tree.
+
+    Example:
+        >>> foon_asp.solve(foon_asp.load().problem("apple pie")).status
+        <Status.INFEASIBLE: 'infeasible'>
     """
 
     OPTIMAL = "optimal"
@@ -34,19 +38,23 @@ class Proof(StrEnum):
 
 
 class Outcome(NamedTuple):
-    """The answer to one problem under a lexicographic list of objectives.
+    """The answer to one ``problem`` under a list of ``objectives``, the most important first.
 
-    ``units`` is the tree, by unit id in an executable order, and ``costs`` what it costs; both ``None``
-    where there is no tree. ``bounds`` gives for each objective the best value that any tree can still have
-    (for ``success`` the greatest), as far as it is proved, in the order of the list; an objective counts
-    only among the trees that are best under those before it. ``seconds`` has the time of every phase.
-    ``proof`` is what an ``optimal`` or ``infeasible`` answer rests on, ``None`` for the others.
-    ``encodings`` is the folder whose encodings replaced ours, if one did: what is best is then what they say.
-    ``certified`` are the objectives, from the first on, for which a certificate proves the tree best.
-    ``left`` counts the units that the search had to choose from, 0 where nothing was left to search.
-    ``cuts`` are the sets of object nodes whose landmarks the reductions bounded costs with; see
-    :mod:`foon_asp.bounds`. ``stopped`` says at which limit an answer that is not proved was stopped, and
-    while doing what, in words.
+    ``status`` tells what is proved. ``units`` is the tree, by unit id in an order that executes, and
+    ``costs`` what it costs; both are ``None`` if there is no tree. ``bounds`` gives for each objective in
+    order the best value that any tree can still have (for ``success`` the greatest), as far as it is proved;
+    an objective counts only among the trees that are best by those before it. ``seconds`` has the time of
+    each phase. ``proof`` is what an ``optimal`` or ``infeasible`` answer is based on, otherwise ``None``.
+    ``encodings`` is the folder that replaced the built-in encodings, if any: they then define what is best.
+    ``certified`` are the objectives, from the first on, by which a certificate proves the tree the best.
+    ``left`` counts the units that were left for the search, 0 if it was not needed. ``cuts`` are the sets of
+    object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.bounds`. ``stopped``
+    names the limit that stopped an unproved answer, and what was being done.
+
+    Example:
+        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
+        >>> isinstance(answer, foon_asp.Outcome), answer.proof
+        (True, <Proof.CUTS: 'cuts'>)
     """
 
     problem: Problem

@@ -24,19 +24,46 @@ Units = frozenset[int]
 
 
 class Reporter:
-    """Hears of progress while solving; override what you want to know."""
+    """Receives progress during a search; override the methods you need.
+
+    Example:
+        >>> class Printer(foon_asp.Reporter):
+        ...     def tree(self, costs):
+        ...         print("found", costs.units, "units")
+        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"), reporter=Printer())
+        found 2 units
+    """
 
     def warning(self, message: str) -> None:
-        """Hear of something that the user should know about a constraint or an encoding."""
+        """Receive a warning about a constraint or an encoding.
+
+        Parameters:
+            message: The text of the warning.
+        """
 
     def tree(self, costs: Costs) -> None:
-        """Hear of a tree that was found; the last one heard of is the best so far."""
+        """Receive a tree that was found, the best so far.
+
+        Parameters:
+            costs: What the tree costs.
+        """
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Hear of the proved bound on the objective that is being worked on."""
+        """Receive a proved bound.
+
+        Parameters:
+            objective: The objective that is being optimized.
+            bound: The best value that any tree can still have.
+        """
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Hear how many of many answers there are: first of those that were there before, then of each."""
+        """Receive how many answers of several are found: once at the start, then after each.
+
+        Parameters:
+            word: What is being done.
+            done: The number of answers found.
+            total: The number of answers asked for.
+        """
 
 
 def solve(

@@ -8,10 +8,15 @@ from foon_asp.network.object_node import ObjectNode
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FunctionalUnit:
-    """One motion with its input and output object nodes, each listed once, in the order first read.
+    """One motion with its input and output object nodes.
 
-    Two units are the same when motion, set of inputs and set of outputs are: the order is only kept
-    for people.
+    ``motion`` is its name; ``inputs`` and ``outputs`` list each node once, in the order first read. Two
+    units are the same if motion, set of inputs and set of outputs are; the order is only for people.
+
+    Example:
+        >>> water, tea = foon_asp.parse_node("water"), foon_asp.parse_node("tea; hot")
+        >>> print(foon_asp.FunctionalUnit.of("brew", [water], [tea]))
+        brew: water → tea; hot
     """
 
     motion: str
@@ -20,7 +25,13 @@ class FunctionalUnit:
 
     @classmethod
     def of(cls, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode]) -> "FunctionalUnit":
-        """Build a unit; a node listed twice on one side is kept once."""
+        """Make a unit; a node listed twice on one side is kept once.
+
+        Parameters:
+            motion: The label of the motion.
+            inputs: The object nodes that the unit needs.
+            outputs: The object nodes that the unit makes.
+        """
         return cls(motion, tuple(dict.fromkeys(inputs)), tuple(dict.fromkeys(outputs)))
 
     @property

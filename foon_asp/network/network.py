@@ -23,16 +23,23 @@ _Part = TypeVar("_Part")
 class Network:
     """An immutable directed hypergraph of object nodes and functional units.
 
-    Nodes and units are numbered from 0 in the order in which they were first read; the numbers are the
-    ids used in facts, answers and messages. ``inputs[u]`` and ``outputs[u]`` are the node ids of unit
-    ``u``; ``sources[u]`` lists where each copy of it was read. Build one with :class:`NetworkBuilder`.
+    Nodes and units are numbered from 0 in the order in which they were first read; these numbers are the ids
+    in facts, answers and messages. ``objects`` are the nodes; ``motions[u]`` is the motion of unit ``u``,
+    ``inputs[u]`` and ``outputs[u]`` are node ids, and ``sources[u]`` lists where each copy of it was read. A
+    :class:`NetworkBuilder` makes networks.
 
-    A network below ``level`` 3 has the level-3 network it was made from in ``detailed``. ``stands_for[u]``
-    are the ids there of the units that ``u`` stands for, ``objects_stand_for[o]`` those of the nodes.
+    A network below ``level`` 3 has in ``detailed`` the network of level 3 that it was made from.
+    ``stands_for[u]`` are the ids there of the units that ``u`` stands for, ``objects_stand_for[o]`` those of
+    the nodes.
 
-    A network may be a part of a greater one, of which the rest was not read: ``unit_numbers`` and
-    ``object_numbers`` are then the ids in the whole, which rise as the ids here do and are the ones to show.
-    They are empty where the two are the same.
+    A network may be a part of a larger one that was not read in full. ``unit_numbers`` and
+    ``object_numbers`` are then the ids in the larger one, in rising order; these are the ids to show. They
+    are empty if the network is whole.
+
+    Example:
+        >>> network = foon_asp.load().network
+        >>> len(network), network.motions[0], len(network.objects)
+        (220, 'turn on', 418)
     """
 
     objects: tuple[ObjectNode, ...]
@@ -57,7 +64,11 @@ class Network:
         return f"<Network: {len(self)} units, {len(self.objects)} object nodes, level {self.level}>"
 
     def unit(self, unit_id: int) -> FunctionalUnit:
-        """Give the unit with that id as a value of its own."""
+        """Give a unit as a value.
+
+        Parameters:
+            unit_id: The id of the unit.
+        """
         objects = self.objects
         return FunctionalUnit(
             self.motions[unit_id],
@@ -66,26 +77,46 @@ class Network:
         )
 
     def unit_number(self, unit_id: int) -> int:
-        """Give the id that a unit has in the whole network."""
+        """Give the id that a unit has in the whole network.
+
+        Parameters:
+            unit_id: The id of the unit here.
+        """
         return self.unit_numbers[unit_id] if self.unit_numbers else unit_id
 
     def unit_of_number(self, number: int) -> int | None:
-        """Give the id of the unit that has this id in the whole network; ``None`` when it is not here."""
+        """Give the id of a unit here, or ``None`` if it is not here.
+
+        Parameters:
+            number: The id of the unit in the whole network.
+        """
         if not self.unit_numbers:
             return number if 0 <= number < len(self) else None
         place = bisect_left(self.unit_numbers, number)
         return place if place < len(self) and self.unit_numbers[place] == number else None
 
     def object_number(self, object_id: int) -> int:
-        """Give the id that a node has in the whole network."""
+        """Give the id that a node has in the whole network.
+
+        Parameters:
+            object_id: The id of the node here.
+        """
         return self.object_numbers[object_id] if self.object_numbers else object_id
 
     def object_id(self, node: ObjectNode) -> int | None:
-        """Give the id of a node, or ``None`` when the network does not have it."""
+        """Give the id of a node, or ``None`` if the network does not have it.
+
+        Parameters:
+            node: The node.
+        """
         return self._object_ids.get(node)
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Give the id of a unit, or ``None`` when the network does not have it."""
+        """Give the id of a unit, or ``None`` if the network does not have it.
+
+        Parameters:
+            unit: The unit.
+        """
         ids = self._object_ids
         if not all(node in ids for node in (*unit.inputs, *unit.outputs)):
             return None
@@ -93,7 +124,11 @@ class Network:
         return self._unit_ids.get((unit.motion, inputs, outputs))
 
     def without(self, units: Iterable[int]) -> "Network":
-        """Give the same network without some units, as a part of this one: nodes keep their ids."""
+        """Give the same network without some units; nodes keep their ids.
+
+        Parameters:
+            units: The ids of the units to leave out.
+        """
         gone = set(units)
         kept = [unit for unit in range(len(self)) if unit not in gone]
         places = {unit: place for place, unit in enumerate(kept)}
@@ -109,9 +144,12 @@ class Network:
         )
 
     def with_copies(self, units: Sequence[int]) -> "Network":
-        """Give the same network with some units a second time, after all others and in the order given.
+        """Give the same network with some units a second time, after all others.
 
-        Only the ids tell a copy from its unit: asked for by what it is, a unit is the one with the lower id.
+        Only the ids distinguish a copy from its unit; looked up as a value, a unit has the lower id.
+
+        Parameters:
+            units: The ids of the units to copy, in the order of the copies.
         """
 
         def extended(of_units: tuple[_Part, ...]) -> tuple[_Part, ...]:
@@ -149,24 +187,46 @@ class Network:
         return {label: tuple(found) for label, found in ids.items()}
 
     def node(self, object_id: int) -> ObjectNode:
-        """Give the node with that id."""
+        """Give a node as a value.
+
+        Parameters:
+            object_id: The id of the node.
+        """
         return self.objects[object_id]
 
     def labelled(self, label: str) -> tuple[int, tuple[int, ...]]:
-        """Give how many nodes have a label, and which."""
+        """Give the number and the ids of the nodes that have a label.
+
+        Parameters:
+            label: The label.
+        """
         found = self.by_label.get(label, ())
         return len(found), found
 
     def beginning(self, start: str, most: int) -> list[str]:
-        """Give labels that begin so, in alphabetical order, and not more of them than ``most``."""
+        """Give labels with a given beginning, in alphabetical order.
+
+        Parameters:
+            start: The beginning.
+            most: The greatest number of labels to give.
+        """
         return sorted(label for label in self.by_label if label.startswith(start))[:most]
 
     def near(self, label: str, most: int) -> list[str]:
-        """Give labels that are like one, the likest first, and not more of them than ``most``."""
+        """Give labels that are similar to a given one, the most similar first.
+
+        Parameters:
+            label: The label to compare with.
+            most: The greatest number of labels to give.
+        """
         return near_labels(label, self.by_label, most)
 
     def find(self, pattern: NodePattern) -> tuple[int, ...]:
-        """Give the ids of the nodes that a kitchen or goals entry stands for."""
+        """Give the ids of the nodes that match an entry of a kitchen or goals file.
+
+        Parameters:
+            pattern: The entry.
+        """
         place = pattern.container
         if place is None and pattern.relations:
             place = min(pattern.relations).object
@@ -189,7 +249,16 @@ class Network:
 
 
 class NetworkBuilder:
-    """Collects units from any number of files; copies of a unit are merged and all sources kept."""
+    """Collects units from any number of files; copies of a unit are merged, and all their sources kept.
+
+    Example:
+        >>> builder = foon_asp.NetworkBuilder()
+        >>> water, tea = foon_asp.parse_node("water"), foon_asp.parse_node("tea; hot")
+        >>> builder.add("brew", [water], [tea], foon_asp.Source("by hand", 1))
+        0
+        >>> builder.build()
+        <Network: 1 units, 2 object nodes, level 3>
+    """
 
     def __init__(self) -> None:
         self._object_ids: dict[ObjectNode, int] = {}
@@ -202,7 +271,14 @@ class NetworkBuilder:
     def add(
         self, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode], *sources: Source
     ) -> int:
-        """Add one copy of a unit, or several with their sources, and return the unit's id."""
+        """Add a copy of a unit, and return the unit's id.
+
+        Parameters:
+            motion: The label of the motion.
+            inputs: The object nodes that the unit needs.
+            outputs: The object nodes that the unit makes.
+            sources: Where the unit was read; several places stand for several copies.
+        """
         ids = self._object_ids
         # dict.fromkeys: a node that one unit lists twice is one input, in the place of its first mention
         ins = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))

@@ -33,11 +33,17 @@ class Contents(NamedTuple):
 
 
 class ObjectNode(NamedTuple):
-    """An object in a state; two nodes are the same when all four parts are (level 3 of FOON).
+    """An object in a state; two nodes are the same if all four parts are (level 3 of FOON).
 
-    A named tuple, because nodes are hashed and compared by the ten thousand.
-    Motion flags, times and ids belong to the line they were read from and are no part of it.
-    Use :meth:`of` to build one: it sorts what has no order.
+    ``label`` is its name, ``states`` the set of its states, ``relations`` what it is in or on, ``contents``
+    what it contains. Motion flags, times and ids belong to the line that was read and are no part of it.
+    :meth:`of` makes one and sorts what has no order. It is a named tuple, because nodes are hashed and
+    compared by the ten thousand.
+
+    Example:
+        >>> node = foon_asp.parse_node("onion; chopped; in [bowl]")
+        >>> node.label, sorted(node.states), sorted(node.relations)
+        ('onion', ['chopped'], [Relation(word='in', object='bowl')])
     """
 
     label: str
@@ -53,7 +59,14 @@ class ObjectNode(NamedTuple):
         relations: Iterable[tuple[str, str]] = (),
         contents: Iterable[tuple[str, Iterable[str]]] = (),
     ) -> "ObjectNode":
-        """Build a node from plain values: states, ``(word, object)`` and ``(word, ingredients)`` pairs."""
+        """Make a node from plain values.
+
+        Parameters:
+            label: The name of the object.
+            states: Its states.
+            relations: Pairs of a word and an object, such as ``("in", "bowl")``.
+            contents: Pairs of a word and ingredients, such as ``("contains", ["salt"])``.
+        """
         return cls(
             label,
             frozenset(states),
@@ -69,7 +82,11 @@ class ObjectNode(NamedTuple):
         return tuple(sorted(item for contents in self.contents for item in contents.ingredients))
 
     def is_in(self, container: str) -> bool:
-        """Whether the node has a relation, by any word, to the object with that label."""
+        """Whether the node has a relation, by any word, to an object.
+
+        Parameters:
+            container: The label of the object.
+        """
         return any(relation.object == container for relation in self.relations)
 
     def __str__(self) -> str:

@@ -4,10 +4,14 @@ from typing import NamedTuple
 
 
 class Source(NamedTuple):
-    """The place of one copy of a unit or of a listed item.
+    """The place in a ``file`` where a unit or an item was read.
 
-    ``line`` and ``column`` count from 1. ``videos`` are the addresses from the ``# Source:`` lines
-    at the top of the file, from which the annotator wrote the graph.
+    ``line`` and ``column`` count from 1. ``videos`` are the addresses from the ``# Source:`` lines at the
+    top of the file, which the annotator worked from.
+
+    Example:
+        >>> str(foon_asp.Source("recipe.txt", 12))
+        'recipe.txt:12'
     """
 
     file: str

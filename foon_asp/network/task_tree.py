@@ -8,7 +8,13 @@ from foon_asp.network.functional_unit import FunctionalUnit
 
 @dataclass(frozen=True, slots=True)
 class TaskTree:
-    """Functional units in a listed order; whether they execute is for ``foon_asp.proof`` to say."""
+    """Functional ``units`` in a listed order, which may or may not execute; see :func:`foon_asp.check`.
+
+    Example:
+        >>> tree = foon_asp.TaskTree(tuple(foon_asp.solve(foon_asp.load().problem("ice")).tree))
+        >>> len(tree), [unit.motion for unit in tree]
+        (2, ['twist', 'crush'])
+    """
 
     units: tuple[FunctionalUnit, ...]
 

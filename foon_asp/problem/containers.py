@@ -11,11 +11,16 @@ Ids = tuple[tuple[int, ...], ...]
 
 
 class ContainerRule(StrEnum):
-    """``strict``: a unit needs every input. ``implied``: the rule of the published searches.
+    """Whether a unit needs all its inputs (``STRICT``), or not every container (``IMPLIED``).
 
-    Under ``implied`` a utensil node that holds exactly one ingredient is taken as given when that
-    ingredient, located in that utensil (by any relation), is also an input of the same unit. A unit does not
-    make an input that it was let skip: nothing comes from nothing.
+    ``strict``: a unit needs every input. ``implied``, the rule of the published searches: a unit need not be
+    given a utensil that holds exactly one ingredient, if that ingredient, located in that utensil (by any
+    relation), is also an input of the unit. A unit does not make an input that it skipped: nothing comes
+    from nothing.
+
+    Example:
+        >>> [str(rule) for rule in foon_asp.ContainerRule]
+        ['strict', 'implied']
     """
 
     STRICT = "strict"

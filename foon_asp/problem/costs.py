@@ -12,10 +12,15 @@ _MEASURED = tuple(Objective)
 
 @dataclass(frozen=True)
 class Costs:
-    """All measures of one tree, by objective; those that nothing is known for are left out.
+    """What one tree costs, by objective; ``measures`` leaves out objectives whose data are missing.
 
-    ``inputs`` counts the input object nodes of every unit (once per unit, whatever the container rule
-    asks for), ``kitchen`` the distinct kitchen items among the needed inputs.
+    ``inputs`` counts the input object nodes of every unit (once for each unit, under any container rule),
+    ``kitchen`` the distinct kitchen items among the inputs needed.
+
+    Example:
+        >>> costs = foon_asp.solve(foon_asp.load().problem("ice")).costs
+        >>> costs.units, costs.inputs, str(costs.success)
+        (2, 6, '161/250')
     """
 
     measures: Mapping[Objective, int | Fraction]
@@ -50,10 +55,14 @@ class Costs:
         return None if success is None else Fraction(success)
 
     def measure(self, objective: Objective) -> int | Fraction:
-        """Give the figure an objective looks at; for ``success`` more is better, else less.
+        """Give what the tree costs by an objective; for ``success`` more is better, for the others less.
 
-        Raises ``ValueError`` for an objective that there is no figure for, as ``success`` without rates and
-        ``attempts`` with a rate of 0.
+        Parameters:
+            objective: The objective.
+
+        Raises:
+            ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a
+                rate of 0.
         """
         if objective not in self.measures:
             needs = objective.row.needs
@@ -62,7 +71,11 @@ class Costs:
         return self.measures[objective]
 
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:
-        """Give a tuple that is smaller for a better tree under the lexicographic list."""
+        """Give a tuple that is smaller for a better tree.
+
+        Parameters:
+            objectives: The objectives, the most important first.
+        """
         return tuple(
             -self.measure(objective) if multiplies(objective) else self.measure(objective)
             for objective in objectives

@@ -54,13 +54,17 @@ class Row(NamedTuple):
 
 
 class Objective(StrEnum):
-    """One criterion.
+    """What makes a tree the best.
 
-    ``units``: fewest functional units. ``inputs``: fewest input object nodes, summed over the units.
-    ``inputs+ingredients``: the same plus the ingredients of those nodes (the published heuristic's
-    measure). ``success``: greatest product of success rates. ``kitchen``: fewest distinct kitchen items
-    among the inputs that the units need. ``attempts``: least expected number of executions of units, when one
-    that fails is tried again until it succeeds. ``price``: least sum of the prices of units.
+    ``UNITS``: fewest functional units. ``INPUTS``: fewest input object nodes, summed over the units.
+    ``INPUTS_AND_INGREDIENTS``: the same plus the ingredients of these nodes (the measure of a published
+    heuristic). ``SUCCESS``: greatest product of success rates. ``KITCHEN``: fewest distinct kitchen items
+    among the inputs needed. ``ATTEMPTS``: fewest expected executions of units, if a failed unit is repeated
+    until it succeeds. ``PRICE``: least sum of the prices of units.
+
+    Example:
+        >>> [str(objective) for objective in foon_asp.Objective][:3]
+        ['units', 'inputs', 'inputs+ingredients']
     """
 
     row: Row

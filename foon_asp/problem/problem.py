@@ -64,17 +64,21 @@ class Origin(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Problem:
-    """What is asked, before any cut: goals, a kitchen and a container rule, over a network.
+    """A question to ask: goals, a kitchen and a container rule, over a network.
 
-    :meth:`foon_asp.Foon.problem` makes one from names. ``kitchen`` and ``goals`` are object node ids, places
-    in ``network.objects``; all goals have to be made by one tree; a goal that is named again counts once.
-    ``rates`` gives the success rate of every motion, or is ``None`` where none are known. ``utensils``
-    are the labels that the rule ``implied`` looks at. ``own_rates`` gives, by id, the rates of units that
-    do not have that of their motion, as those that somebody else does; ask :meth:`rate` for any.
-    ``unit_prices`` are the prices of units, ``None`` where none are known; ask :meth:`price`. Of a store,
-    ``network`` is the part that can matter for the goals. ``origin`` is the data that it was posed of,
-    ``None`` for a problem put together by hand. ``as_seen`` is the problem whose rates rules of the user's
-    look at, where others count.
+    :meth:`foon_asp.Foon.problem` makes one from names. ``kitchen`` and ``goals`` are object node ids,
+    positions in ``network.objects``; one tree has to make all goals. ``rates`` has the success rate of every
+    motion, or is ``None`` if none are known. ``utensils`` are the labels that the rule ``implied`` of
+    ``containers`` is about. ``own_rates`` has, by id, the rates of units that differ from that of their
+    motion; :meth:`rate` gives the rate of any unit. ``unit_prices`` are the prices of units, or ``None``;
+    :meth:`price` gives that of a unit. For a store, ``network`` is the part that can matter for the goals.
+    ``origin`` is the data that it was made from, or ``None`` for a problem made by hand. ``as_seen`` is the
+    problem whose rates the user's rules look at, if others are used.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> problem.vary(without="knife", containers="implied")
+        <Problem: ice; crushed; in [drinking glass] (implied containers)>
     """
 
     network: Network
@@ -103,7 +107,11 @@ class Problem:
         return tuple(self.network.objects[goal] for goal in self.goals)
 
     def at_hand(self, node: ObjectNode) -> bool:
-        """Whether the kitchen has an object node."""
+        """Whether an object node is in the kitchen.
+
+        Parameters:
+            node: The object node.
+        """
         return self.network.object_id(node) in self.kitchen
 
     @cached_property
@@ -119,9 +127,12 @@ class Problem:
         return replace(self, origin=None, rates=rates, own_rates=dict(self.own_rates))
 
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
-        """Give the same problem over a network that has these units, as far as it is known to have them.
+        """Give the same problem over a network that has some units, as far as the data has them.
 
-        Of a store, what they are made of is read.
+        For a store, what the units consist of is read.
+
+        Parameters:
+            units: The units.
         """
         part = self.origin is not None and self.network.object_numbers
         return self.origin.posed_about(self, units) if self.origin is not None and part else self
@@ -139,10 +150,21 @@ class Problem:
     ) -> "Problem":
         """Give the same problem with other goals, another container rule, kitchen, rates or prices.
 
-        Nothing is read again, and nothing of the network is looked up anew; a store is read as far as the
-        new question goes beyond the old one. What varies does as in :meth:`foon_asp.Foon.vary`. Raises
-        :class:`UserError` for names that mean nothing or too much, and for a problem put together by hand,
-        of which :func:`dataclasses.replace` makes another.
+        Nothing is read or indexed again, except that a store is read as far as the new problem needs more.
+
+        Parameters:
+            goals: The new goals: one object node or several, by name or as :class:`ObjectNode`.
+            containers: The new container rule, ``strict`` or ``implied``.
+            kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
+            adding: Names of object nodes to add to the kitchen.
+            without: Names of object nodes to remove from the kitchen; a label stands for all items that have
+                it.
+            rates: New success rates of some motions, above 0 and at most 1.
+            unit_prices: New prices, from 0, of motions by name and of single units.
+
+        Raises:
+            UserError: for a name that means no object node or several, a value out of range, or a problem
+                made by hand, which :func:`dataclasses.replace` varies.
         """
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
@@ -150,7 +172,11 @@ class Problem:
         return self.origin.posed_anew(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
-        """Give the first place where a unit was read; one of no network stands in no file."""
+        """Give the first place where a unit was read, or a place in no file if the network does not have it.
+
+        Parameters:
+            unit: The unit.
+        """
         number = self.network.unit_id(unit)
         return Source("-", 0) if number is None else self.network.sources[number][0]
 
@@ -178,9 +204,13 @@ class Problem:
         return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"
 
     def require_known_for(self, objectives: Collection[Objective]) -> None:
-        """Raise :class:`UserError` where one of the objectives needs what is not known: rates, or prices.
+        """Require the rates and prices that objectives need.
 
-        So it does where one adds up what units cost by rates, and a rate is 0.
+        Parameters:
+            objectives: The objectives.
+
+        Raises:
+            UserError: if rates or prices are missing, or if a rate is 0 and an objective has no value then.
         """
         by_rates = [each for each in objectives if each.row.needs is Known.RATES]
         sums = [str(each) for each in by_rates if not each.row.multiplies]
@@ -203,9 +233,13 @@ class Problem:
             raise UserError(_unpriced_text(self.unpriced))
 
     def rate(self, unit: int) -> Fraction:
-        """Give the success rate of a unit: its own where it has one, else that of its motion.
+        """Give the success rate of a unit: its own, or that of its motion.
 
-        Raises ``ValueError`` where no rates are known.
+        Parameters:
+            unit: The id of the unit.
+
+        Raises:
+            ValueError: if no rates are known.
         """
         if self.rates is None:
             raise ValueError("no success rates are known")
@@ -221,7 +255,14 @@ class Problem:
         )
 
     def price(self, unit: int) -> Fraction:
-        """Give the price of a unit; raises ``ValueError`` where none is known."""
+        """Give the price of a unit.
+
+        Parameters:
+            unit: The id of the unit.
+
+        Raises:
+            ValueError: if its price is not known.
+        """
         price = self.prices[unit]
         if price is None:
             raise ValueError(f"no price of unit {unit} is known")
@@ -237,18 +278,33 @@ class Problem:
         return (self.origin.unpriced() if self.origin is not None and part else ()) or found
 
     def different_rates(self, units: Iterable[int]) -> set[Fraction]:
-        """Give the rates that some units have, each once; raises ``ValueError`` where none are known."""
+        """Give the success rates of some units, each once.
+
+        Parameters:
+            units: The ids of the units.
+
+        Raises:
+            ValueError: if no rates are known.
+        """
         own, motions = self.own_rates, self.network.motions
         units = list(units)
         first = {motions[unit]: unit for unit in units if unit not in own}
         return {self.rate(unit) for unit in (*first.values(), *(unit for unit in units if unit in own))}
 
     def tree(self, units: Iterable[int]) -> TaskTree:
-        """Give units, by id and in the order given, as a tree."""
+        """Make a tree from units.
+
+        Parameters:
+            units: The ids of the units, in the order of the tree.
+        """
         return TaskTree(tuple(self.network.unit(unit) for unit in units))
 
     def costs(self, units: Iterable[int]) -> Costs:
-        """Compute what a set of units costs; each unit counts once."""
+        """Compute what a set of units costs; each unit counts once.
+
+        Parameters:
+            units: The ids of the units.
+        """
         chosen = sorted(set(units))
         taken = {o for unit in chosen for o in self.needs[unit] if o in self.kitchen}
         known = {Known.RATES} if self.rates is not None else set()
@@ -257,13 +313,22 @@ class Problem:
         return tree_costs(list(map(self.measured, chosen)), len(taken), known)
 
     def measured(self, unit: int) -> Measured:
-        """Give a unit as objectives look at it."""
+        """Give a unit as objectives look at it.
+
+        Parameters:
+            unit: The id of the unit.
+        """
         return _MeasuredUnit(self, unit)
 
     def figure(self, objective: Objective, unit: int) -> int | Fraction:
-        """Give what a unit alone costs by an objective, which adds it up or multiplies it.
+        """Give what a unit alone costs by an objective that adds up or multiplies costs of units.
 
-        Raises ``ValueError`` where no rate or price is known that the objective needs.
+        Parameters:
+            objective: The objective.
+            unit: The id of the unit.
+
+        Raises:
+            ValueError: if a rate or price is missing that the objective needs.
         """
         return objective.row.unit(_MeasuredUnit(self, unit))
 

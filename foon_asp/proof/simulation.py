@@ -9,7 +9,13 @@ from foon_asp.problem import ContainerRule, Problem, given_outputs, needed_input
 
 
 class Verdict(StrEnum):
-    """How a tree executes, if at all."""
+    """How a tree executes: ``AS_LISTED``, ``REORDERED`` (in another order), or ``NEVER``.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> foon_asp.check(problem, foon_asp.solve(problem).tree).simulation.verdict
+        <Verdict.AS_LISTED: 'executes as listed'>
+    """
 
     AS_LISTED = "executes as listed"
     REORDERED = "executes in another order"
@@ -31,10 +37,16 @@ class Obstacle(NamedTuple):
 
 
 class Simulation(NamedTuple):
-    """The outcome: ``order`` lists positions in the tree in an order that executes (as far as any does).
+    """What a simulation of a tree found.
 
-    ``as_listed`` is what stops the listed order, ``obstacle`` what stops every order; each is ``None``
-    where nothing does.
+    ``verdict`` tells how the tree executes. ``order`` has positions in the tree, in an order that executes,
+    as far as one does. ``as_listed`` is what stops the listed order, ``obstacle`` what stops every order;
+    each is ``None`` if nothing does.
+
+    Example:
+        >>> problem = foon_asp.load().problem("macaroni")
+        >>> foon_asp.retrieve(problem, "bfs").simulation.order[:4]
+        (0, 1, 4, 5)
     """
 
     verdict: Verdict

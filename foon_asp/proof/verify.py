@@ -62,7 +62,15 @@ _VERSION_1 = (
 
 
 class RefusedError(Exception):
-    """The certificate is wrong; the message says where."""
+    """The certificate is wrong; the message says where.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> certificate = foon_asp.certify(foon.problem("ice")).certificate
+        >>> foon_asp.verify(foon.vary(without="knife"), certificate)
+        Traceback (most recent call last):
+        foon_asp.proof.verify.RefusedError: kitchen: not the one that the certificate is about
+    """
 
 
 class LimitError(RefusedError):

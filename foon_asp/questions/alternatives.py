@@ -45,12 +45,18 @@ class Alternative(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Alternatives(Result):
-    """Trees in order of their costs, the optimal ones first; none holds another.
+    """Trees in order of their costs, the optimal ones first; none contains all units of another.
 
-    ``trees`` has for each its ``units`` by id and its ``costs``; :attr:`task_trees` has them as values.
-    ``complete`` says that no tree that was asked for is left out: where it is false, a limit came first, and
-    before each of the last ``unproved`` trees others may come that were not found. ``wanted`` is how many
-    trees were asked for, ``None`` where it was all that are optimal.
+    ``problem`` is the problem asked about, and ``objectives`` are those asked for. Each of ``trees`` has its
+    ``units`` by id and its ``costs``; :attr:`task_trees` has the trees as values. ``complete`` tells whether
+    all trees asked for were found. If not, a limit was reached, and unknown trees may come before each of
+    the last ``unproved`` ones. ``wanted`` is the number of trees asked for, or ``None`` for all optimal
+    ones.
+
+    Example:
+        >>> found = foon_asp.alternatives(foon_asp.load().problem("ice"), best=2)
+        >>> [len(tree.units) for tree in found.trees], found.complete
+        ([2, 3], True)
     """
 
     problem: Problem

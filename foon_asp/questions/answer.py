@@ -27,10 +27,15 @@ def of_status(status: Status) -> Ending:
 
 
 class Answer(Result, Outcome):
-    """The answer to one problem: an :class:`~foon_asp.Outcome` that shows itself.
+    """The answer to one problem: an :class:`~foon_asp.Outcome` with a text, JSON and a picture.
 
-    ``status`` says what is proved, ``costs`` what the tree costs, ``units`` are its units by id in an order
-    that executes; :attr:`tree` has them as values.
+    ``status`` tells what is proved, ``costs`` what the tree costs, and ``units`` are its units by id in an
+    order that executes; :attr:`tree` has them as values.
+
+    Example:
+        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
+        >>> str(answer.status), answer.costs.units, answer.tree
+        ('optimal', 2, <Tree for ice; crushed; in [drinking glass]: 2 units>)
     """
 
     __slots__ = ()

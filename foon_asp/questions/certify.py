@@ -38,10 +38,15 @@ from foon_asp.text.json_value import Json
 
 @dataclass(frozen=True, repr=False)
 class Certified(AnswerAndMore[Answer]):
-    """An ``answer`` and the ``certificate`` that proves it, ``None`` where none was found.
+    """An ``answer`` and the ``certificate`` that proves it, which is ``None`` if none was found.
 
-    ``certificate.text()`` is what to write into a file; ``certificate.claim`` says what it proves:
-    ``optimal``, ``infeasible``, or only a ``bound``. ``place`` says where it is.
+    ``certificate.text()`` is the content of the file to write; ``certificate.claim`` tells what is proved:
+    ``optimal``, ``infeasible``, or only a ``bound``. ``place`` names the file, once it is written.
+
+    Example:
+        >>> certified = foon_asp.certify(foon_asp.load().problem("ice"))
+        >>> certified.certificate.claim, certified.place
+        ('optimal', 'in memory')
     """
 
     certificate: Certificate | None
@@ -52,7 +57,17 @@ class Certified(AnswerAndMore[Answer]):
         return certificate_lines(self.answer, self.certificate, self.place)
 
     def written(self, file: File) -> Self:
-        """Write the certificate into a file, if there is one; give the same, which says so."""
+        """Write the certificate into a file, if there is one.
+
+        Parameters:
+            file: The path of the file.
+
+        Returns:
+            The same result, with the file as its ``place``.
+
+        Raises:
+            UserError: if the file cannot be written.
+        """
         _write(self.certificate, Path(file))
         return replace(self, place=str(file))
 

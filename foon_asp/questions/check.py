@@ -18,7 +18,13 @@ from foon_asp.report.verdict import Listed, verdict_json, verdict_text
 
 @dataclass(frozen=True, repr=False)
 class Checked(Result):
-    """What a simulation of ``tree`` found: ``simulation`` has the ``verdict`` and what stops the tree."""
+    """The ``tree`` that was simulated, and the ``simulation`` with its ``verdict`` and what stops the tree.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> foon_asp.check(problem, foon_asp.solve(problem).tree).executes
+        True
+    """
 
     tree: Tree
     simulation: Simulation

@@ -36,16 +36,22 @@ from foon_asp.report.integrity_constraint import constraint_json, constraint_lin
 
 @dataclass(frozen=True, repr=False)
 class Clash(Result):
-    """Whether the constraints of a question leave a tree, and if not, why.
+    """Whether some constraints leave a tree, and if not, why.
 
-    ``constraints`` are all of them, each with its ``source``, ``text`` and ``constants``; ``weights`` says by
-    number what it costs to drop one. ``makeable`` says whether the goals can be made at all, ``tree_exists``
-    whether there is a tree without any of the constraints. ``smallest`` is a smallest set, by number of
-    constraints, that cannot hold together; ``proved`` that it is one. ``dropped`` is the cheapest set to drop
-    so that the others leave a tree, and ``outcome`` the best tree without it. Where the constraints do leave
-    a tree both sets are empty, and ``outcome`` is the answer. ``complete`` is false when a limit came before
-    any of this was known; ``dropped`` is then a set that leaves a tree, if one was found, but there may be a
-    cheaper one, or no need of any.
+    ``problem`` and ``objectives`` are those asked about. ``constraints`` are all constraints, each with its
+    ``source``, ``text`` and ``constants``; ``weights`` has by number what it costs to drop one. ``makeable``
+    tells whether the goals can be made at all, ``tree_exists`` whether there is a tree without any of the
+    constraints. ``smallest`` is a smallest set of constraints that cannot hold together, if ``proved``.
+    ``dropped`` is the cheapest set to drop so that the others leave a tree, and ``outcome`` the best tree
+    then. If the constraints leave a tree, both sets are empty, and ``outcome`` is the answer. ``complete``
+    is false if a limit was reached before this was known; ``dropped`` may then be more than necessary.
+
+    Example:
+        >>> ice = foon_asp.load().problem("ice")
+        >>> rules = {"forbidden_motion": "crush", "required_motion": "crush"}
+        >>> found = foon_asp.clash(ice, constraints=["forbid_motion", "require_motion"], constants=rules)
+        >>> found.proved, [constraint.source.line for constraint in found.smallest]
+        (True, [11, 12])
     """
 
     problem: Problem

@@ -45,10 +45,18 @@ _CHARTED = 60  # goals that a chart has room for
 
 @dataclass(frozen=True, repr=False)
 class Compared(Result):
-    """One comparison for each goal of ``problem``: ``optima`` by objective, a judgement for each search.
+    """The searches and the optimum, compared for each goal of a problem.
 
-    ``comparison.ratio(judgement, objective)`` is a tree's measure over the optimum. ``published`` are figures
-    to lay beside them, if any; ``summed_up`` says that the text sums up all goals.
+    Each of ``comparisons`` has ``optima`` by objective, and a judgement for each search, for one goal of
+    ``problem``. ``comparison.ratio(judgement, objective)`` is a tree's measure divided by the optimum.
+    ``published`` are published figures to show beside the measured ones, if any; ``summed_up`` tells whether
+    the text is a summary of all goals.
+
+    Example:
+        >>> compared = foon_asp.compare_searches(foon_asp.load().problem("macaroni"), ["bfs"])
+        >>> comparison = compared.comparisons[0]
+        >>> str(comparison.ratio(comparison.judgements[0], foon_asp.Objective.UNITS))
+        '10/9'
     """
 
     problem: Problem
@@ -108,10 +116,14 @@ class Compared(Result):
         return document("compare", self.problem, objectives, comparisons=rows)
 
     def write_chart(self, file: File) -> None:
-        """Draw a bar chart of units into a file, SVG or PNG by its suffix.
+        """Draw a bar chart of units into a file.
 
-        Raises :class:`UserError` for more goals than can be read, for another suffix, and without the
-        packages of ``foon-asp[pictures]``.
+        Parameters:
+            file: The path of the file, which ends in ``.svg`` or ``.png``.
+
+        Raises:
+            UserError: for too many goals, for another file name, or if the packages of
+                ``foon-asp[pictures]`` are missing.
         """
         _hold_readable(self.problem)
         write_chart(comparison_chart(self._labels(), self.comparisons), Path(file))

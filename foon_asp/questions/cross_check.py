@@ -31,11 +31,16 @@ from foon_asp.text.json_value import Json
 
 @dataclass(frozen=True, repr=False)
 class CrossChecked(AnswerAndMore[Answer | SoftAnswer | Certified]):
-    """An ``answer`` and what other engines say of it.
+    """An ``answer``, and what other engines say about it.
 
-    Each of the ``checks`` has the name of its ``engine``, the ``objectives`` by which it finds the tree best,
-    too, and the ``reason`` why it has not checked the answer, ``None`` where it has. An engine of another
+    Each of the ``checks`` has the name of its ``engine``, the ``objectives`` by which that finds the same
+    optimum, and the ``reason`` why it did not check the answer, or ``None``. An engine of another
     ``package`` may disagree and be ``refuted``. On the command line the answer may come with a certificate.
+
+    Example:
+        >>> checked = foon_asp.cross_check(foon_asp.load().problem("apple pie"))
+        >>> checked.checks[0].engine, checked.checks[0].reason
+        ('clingo', None)
     """
 
     checks: tuple[Check, ...]

@@ -71,10 +71,16 @@ class Parting(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Difference(Result):
-    """Two trees, what only one has (``only_left``, ``only_right``), what both have, and where they part.
+    """Two trees: the units of only one, those of both, and where the trees part.
 
-    ``left`` and ``right`` have the units and the ``costs`` of each; ``partings`` are the object nodes that
-    both come to and have from elsewhere.
+    The units are ``only_left``, ``only_right`` and ``both``. ``left`` and ``right`` have the units and the
+    ``costs`` of each; ``partings`` are the object nodes that both need on the way to the goals but get in
+    different ways.
+
+    Example:
+        >>> problem = foon_asp.load().problem("macaroni")
+        >>> foon_asp.diff(foon_asp.solve(problem), foon_asp.solve(problem, "success"))
+        <Difference: 3 only left, 5 only right, 6 in both>
     """
 
     left: Side

@@ -34,11 +34,16 @@ _MERMAID_PAGE = ".md"
 
 @dataclass(frozen=True, repr=False)
 class Drawn(Result):
-    """A picture: ``picture`` is what it shows, ``None`` where there is no tree.
+    """A picture: ``picture`` is what it shows, or ``None`` if there is no tree.
 
-    ``outcome`` is the answer whose tree it shows, ``None`` where nothing was solved. The formats raise
-    :class:`NothingToDrawError` where there is no tree; SVG and PNG raise :class:`UserError` for what is too
-    large for a picture, and without the packages of ``foon-asp[pictures]``.
+    ``outcome`` is the answer that it shows, or ``None`` if nothing was solved. Each format raises
+    :class:`NothingToDrawError` if there is no tree. SVG and PNG raise :class:`UserError` if the picture
+    would be too large, or if the packages of ``foon-asp[pictures]`` are missing.
+
+    Example:
+        >>> drawn = foon_asp.draw(foon_asp.load().problem("ice"))
+        >>> drawn.mermaid().splitlines()[0]
+        '---'
     """
 
     picture: Drawing | None
@@ -58,7 +63,11 @@ class Drawn(Result):
         return self.remark("text") + "\n" if self.picture is None else self.dot()
 
     def json_dict(self) -> object:
-        """Raise :class:`UserError`: a picture is written in its own formats."""
+        """Refuse: a picture is written in its own formats.
+
+        Raises:
+            UserError: always.
+        """
         raise UserError("a picture has no JSON; the JSON of the answer contains the tree")
 
     def dot(self) -> str:
@@ -78,9 +87,16 @@ class Drawn(Result):
         return mermaid_text(self._shown())
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the picture into a file, in the format that its name says if none is given.
+        """Write the picture into a file; a file that ends in ``.md`` is a page with a Mermaid flowchart.
 
-        A file with the suffix ``.md`` is a page with the flowchart.
+        Parameters:
+            file: The path of the file.
+            format_: ``dot``, ``svg``, ``png`` or ``mermaid``; without it, the end of the file name chooses
+                one.
+
+        Raises:
+            NothingToDrawError: if there is no tree.
+            UserError: for another format, or a picture that cannot be made.
         """
         file = Path(file)
         how = question_of(draw)

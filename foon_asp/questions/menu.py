@@ -22,10 +22,15 @@ from foon_asp.report.drawing import Drawing
 
 @dataclass(frozen=True, repr=False)
 class Menu(Result):
-    """A tree for all goals, and one for each, in the order of the goals.
+    """One tree for all goals (``together``), and one for each goal in order (``separate``).
 
-    ``serves`` gives for each unit of the tree for all, by id, the goals (by object node id) that it is needed
-    for, going back from each goal through the first makers.
+    ``serves`` has, for each unit of the common tree by id, the goals (by object node id) that need it,
+    followed back from each goal through the first makers.
+
+    Example:
+        >>> menu = foon_asp.menu(foon_asp.load().problem("ice", "tea"))
+        >>> menu.together.costs.units, len(menu.shared)
+        (9, 0)
     """
 
     together: Answer
@@ -38,7 +43,11 @@ class Menu(Result):
         return tuple(u for u in self.together.units or () if len(self.serves[u]) > 1)
 
     def sum_of_separate(self, objective: Objective) -> int | Fraction | None:
-        """Add up what the trees cost one by one (``success``: multiply); ``None`` where one has no tree."""
+        """Add up what the separate trees cost (``success``: multiply); ``None`` if one goal has no tree.
+
+        Parameters:
+            objective: The objective.
+        """
         total: int | Fraction = Fraction(1) if multiplies(objective) else 0
         for answer in self.separate:
             if answer.costs is None:

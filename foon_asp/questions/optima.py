@@ -20,7 +20,15 @@ from foon_asp.report.renderable import Renderable, plain_text
 
 @dataclass(frozen=True, repr=False)
 class Optima(Result):
-    """The answers for each goal by itself, under each objective: goal by goal, in the order asked."""
+    """The best trees for each goal of a ``problem`` by itself.
+
+    ``outcomes`` has the answers goal by goal, with one for each objective in order.
+
+    Example:
+        >>> best = foon_asp.optima(foon_asp.load().problem("ice"))
+        >>> [str(answer.objectives[0]) for answer in best.outcomes]
+        ['units', 'inputs', 'success']
+    """
 
     problem: Problem
     outcomes: tuple[Answer, ...]

@@ -43,13 +43,18 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Front(Result):
-    """Trees none of which is as good as another by every objective and better by one.
+    """The Pareto front: trees of which none is as good as another by every objective and better by one.
 
-    ``points`` has one for each such combination of measures, with the fewest units that it can have: its
-    ``units`` by id and its ``costs``. They come in order of the first objective, the best first;
-    :attr:`task_trees` has them as values. ``complete`` says that every tree there is is as good as one of
-    these or worse: where it is false a limit came first, and only that is open, for no tree is better than
-    one of these. ``encodings`` is the folder whose encodings replaced ours, if one did.
+    ``problem`` and ``objectives`` are those asked about. Each of ``points`` is one combination of measures,
+    with its smallest tree: ``units`` by id, and ``costs``. The best by the first objective come first;
+    :attr:`task_trees` has the trees as values. ``complete`` tells whether every tree is as good as one of
+    these or worse. If not, a limit was reached and other points may exist, but these stay on the front.
+    ``seconds`` is the time it took, ``encodings`` the folder that replaced the built-in encodings, if any.
+
+    Example:
+        >>> front = foon_asp.pareto(foon_asp.load().problem("ice"))
+        >>> [point.costs.units for point in front.points], front.complete
+        ([2, 3], True)
     """
 
     problem: Problem
@@ -60,7 +65,11 @@ class Front(Result):
     encodings: Path | None = None
 
     def measures(self, point: Point) -> tuple[int | Fraction, ...]:
-        """Give where a point stands: its measure by each objective, exact."""
+        """Give the measures of a point by each objective, exact.
+
+        Parameters:
+            point: The point.
+        """
         return tuple(map(point.costs.measure, self.objectives))
 
     @property
@@ -84,10 +93,11 @@ class Front(Result):
         return Ending.DONE if self.points else Ending.NEGATIVE
 
     def text(self, trees: bool = False) -> str:
-        """Give the points as a table, each with what its tree does otherwise than the one above it.
+        """Give the points as a table, each with what its tree does differently from the one above.
 
-        ``trees`` lists the units too: those of the first tree, and those that go and come with each other
-        one.
+        Parameters:
+            trees: Whether to list the units, too: those of the first tree, and those that go and come with
+                each other one.
         """
         lines = [*goal_lines(self.problem), _headline(self)]
         if self.points:
@@ -124,10 +134,14 @@ class Front(Result):
         )
 
     def write_chart(self, file: File) -> None:
-        """Draw the front into a file, SVG or PNG by its suffix.
+        """Draw the front into a file.
 
-        Raises :class:`NothingToDrawError` where there is no point to draw, and :class:`UserError` for another
-        suffix and without the packages of ``foon-asp[pictures]``.
+        Parameters:
+            file: The path of the file, which ends in ``.svg`` or ``.png``.
+
+        Raises:
+            NothingToDrawError: if there is no point.
+            UserError: for another file name, or if the packages of ``foon-asp[pictures]`` are missing.
         """
         from foon_asp.report.front_chart import Plotted, write_front_chart  # noqa: PLC0415 (seldom asked for)
 

@@ -57,11 +57,16 @@ class Regret(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Regrets(Result):
-    """An optimal tree, and what its parts are worth: what is missed most first.
+    """An optimal tree as the ``outcome``, and what its parts are worth, the greatest loss first.
 
     Each of ``regrets`` has ``part`` (``unit`` or ``item``), the ``id`` of that unit or object node in the
     problem's network, and ``status`` and ``costs`` of the optimum without it; ``json()`` has names, too.
-    ``regrets`` is empty where there is no tree, or where it was not proved to be the best.
+    ``regrets`` is empty if there is no tree, or if it was not proved the best.
+
+    Example:
+        >>> found = foon_asp.regret(foon_asp.load().problem("ice"))
+        >>> len(found.regrets), found.outcome.costs.units
+        (6, 2)
     """
 
     outcome: Answer

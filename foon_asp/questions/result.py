@@ -63,7 +63,11 @@ class Result:
         return read_json(self.json_text())
 
     def foon(self) -> str:
-        """Give the tree as FOON text; raises :class:`UserError` for what is no tree."""
+        """Give the tree as FOON text.
+
+        Raises:
+            UserError: for a result that is no tree.
+        """
         raise UserError("this is no tree, which FOON text could hold")
 
     def renderable(self) -> "Renderable | None":
@@ -74,22 +78,36 @@ class Result:
         return None
 
     def remark(self, format_: str) -> str:
-        """Give what is said beside a format, not text, that does not say it; empty where nothing is."""
+        """Give what a format other than text cannot tell; empty if there is nothing to add.
+
+        Parameters:
+            format_: The name of the format, for example ``foon``.
+        """
         return ""
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the result into a file, in the format that its name says if none is given.
+        """Write the result into a file.
 
-        Raises :class:`NothingToDrawError` where there is nothing to write, and :class:`UserError` for a
-        result that is not written into files.
+        Parameters:
+            file: The path of the file.
+            format_: The format; without it, the end of the file name chooses one.
+
+        Raises:
+            NothingToDrawError: if there is nothing to write.
+            UserError: for a result that cannot be written into a file, or another format.
         """
         raise UserError(f"{file}: this is not written into files")
 
     def write_chart(self, file: File) -> None:
-        """Draw a chart of what was found into a file, SVG or PNG by its suffix.
+        """Draw a chart of the result into a file.
 
-        Raises :class:`NothingToDrawError` where there is nothing to draw, and :class:`UserError` for another
-        suffix, without the packages of ``foon-asp[pictures]``, and for a result that has no chart.
+        Parameters:
+            file: The path of the file, which ends in ``.svg`` or ``.png``.
+
+        Raises:
+            NothingToDrawError: if there is nothing to draw.
+            UserError: for a result that has no chart, for another file name, or if the packages of
+                ``foon-asp[pictures]`` are missing.
         """
         raise UserError(f"{file}: there is no chart of this")
 
@@ -100,8 +118,9 @@ class Result:
     def svg(self) -> str:
         """Give the picture as SVG.
 
-        Raises :class:`UserError` where there is none: without a tree, without the packages of
-        ``foon-asp[pictures]``, and for a tree too large for a picture.
+        Raises:
+            UserError: if there is no tree, if the tree is too large for a picture, or if the packages of
+                ``foon-asp[pictures]`` are missing.
         """
         from foon_asp.report.notebook import svg_text  # noqa: PLC0415
 

@@ -21,10 +21,16 @@ from foon_asp.text import write_units
 
 @dataclass(frozen=True, repr=False)
 class Retrieved(Result):
-    """What a search returned: ``retrieval`` has its ``ending`` and its ``units`` by id in the order listed.
+    """What a search returned for a problem.
 
-    ``simulation`` says whether the tree executes and what stops it, ``None`` without a tree; ``search`` says
-    what the search promises.
+    ``search`` is the search and ``problem`` the problem; ``retrieval`` has the ``ending``, and the ``units``
+    by id as listed. ``simulation`` tells whether the tree executes and what stops it; it is ``None`` without
+    a tree.
+
+    Example:
+        >>> found = foon_asp.retrieve(foon_asp.load().problem("ice"), "ids")
+        >>> found.executes, found.costs.units
+        (True, 2)
     """
 
     problem: Problem

@@ -70,14 +70,19 @@ _REMARKS = {
 
 @dataclass(frozen=True, repr=False)
 class Shopping(Result):
-    """Lists of things to add to the kitchen in order of cost, and the tree that the first makes possible.
+    """Lists of things to add to the kitchen, in order of cost, and the best tree with the first list.
 
-    Each of ``lists`` has its ``items`` by id, its ``price`` (their number, or the sum of prices) and whether
-    it is ``proved`` that none is cheaper; :attr:`items` are the things of the first. ``offer`` is what they
-    are made of. ``lists`` is empty where no list helps; ``complete`` says that the search ended, so that
-    there is none, or that there are no more lists than these. ``outcome`` is the best tree once the first
-    list is in the kitchen, ``None`` without a list. ``prices`` are those of a price list, ``None`` where
-    every node counts one.
+    ``problem`` and ``objectives`` are those asked about. Each of ``lists`` has its ``items`` by id, its
+    ``price`` (their number, or the sum of prices) and whether it is ``proved`` that none is cheaper;
+    :attr:`items` are those of the first list as values. ``offer`` tells what the lists are made of.
+    ``lists`` is empty if no list helps; ``complete`` tells whether the search ended, so that there are no
+    more lists than these. ``outcome`` is the best tree with the first list in the kitchen, or ``None``
+    without a list. ``prices`` are those of a price list, or ``None`` if every node counts one.
+
+    Example:
+        >>> shopping = foon_asp.shopping_list(foon_asp.load().problem("hot cocoa"), lists=1)
+        >>> [(str(found.price), found.proved) for found in shopping.lists]
+        [('1', True)]
     """
 
     problem: Problem

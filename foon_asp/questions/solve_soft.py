@@ -32,9 +32,16 @@ from foon_asp.text.json_value import Json
 class SoftAnswer(Result):
     """The answer under constraints that may be broken at a price.
 
-    ``outcome`` is the best tree among those with the least ``penalty``, which is the sum of weight times ways
-    over ``constraints``: each says in how many ways the tree breaks it. The penalty is ``None`` and the
-    constraints are empty where there is no tree.
+    ``outcome`` is the best tree among those with the lowest ``penalty``, which is the sum of weight times
+    ways over the ``constraints``: each tells in how many ways the tree breaks it. If there is no tree, the
+    penalty is ``None`` and there are no constraints.
+
+    Example:
+        >>> ice = foon_asp.load().problem("ice")
+        >>> crush = {"forbidden_motion": "crush"}
+        >>> found = foon_asp.solve_soft(ice, soft={"forbid_motion": 3}, constants=crush)
+        >>> [each.ways for each in found.constraints]
+        [0]
     """
 
     outcome: Answer

@@ -19,11 +19,15 @@ from foon_asp.text.answer_file import read_listed_tree
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Tree(TaskTree):
-    """Functional units in a listed order, and the problem that they are for.
+    """Functional units in a listed order, and the ``problem`` that they are for.
 
     ``units`` are values (``motion``, ``inputs``, ``outputs``), ``places`` where each was read. ``claim`` is
-    what is proved of the tree, in words, or empty. As a string it is FOON text. Two trees are equal when
+    a text about what is proved of the tree, or empty. As a string it is FOON text. Two trees are equal if
     they list the same units in the same order.
+
+    Example:
+        >>> foon_asp.solve(foon_asp.load().problem("ice")).tree
+        <Tree for ice; crushed; in [drinking glass]: 2 units>
     """
 
     problem: Problem = field(compare=False)
@@ -32,7 +36,13 @@ class Tree(TaskTree):
 
     @classmethod
     def of(cls, problem: Problem, units: Iterable[int], claim: str = "") -> Self:
-        """Give units of a problem's network, by id and in the order given, as a tree."""
+        """Make a tree from units of a problem's network.
+
+        Parameters:
+            problem: The problem that the tree is for.
+            units: Ids of units, in the order of the tree.
+            claim: What is proved of the tree, as a text.
+        """
         units = tuple(units)
         network = problem.network
         places = tuple(network.sources[unit][0] for unit in units)
@@ -40,9 +50,12 @@ class Tree(TaskTree):
 
     @classmethod
     def given(cls, problem: Problem, units: Iterable[FunctionalUnit], places: Iterable[Source] = ()) -> Self:
-        """Take units of any origin as a tree for the goals of a problem, in the order listed.
+        """Make a tree from units as values, which need not be in the network.
 
-        Without ``places``, units stand where the network has them, or in no file.
+        Parameters:
+            problem: The problem that the tree is for.
+            units: The units, in the order of the tree.
+            places: Where each unit was read; without it, where the network has it, or no file.
         """
         units = tuple(unit_at_level(unit, problem.network.level) for unit in units)
         about = problem.about(units)
@@ -50,10 +63,14 @@ class Tree(TaskTree):
 
     @classmethod
     def read(cls, problem: Problem, file: str | PathLike[str]) -> Self:
-        """Read a tree from FOON text, or from an answer of foon-asp in JSON, whatever its units are.
+        """Read a tree from FOON text, or from an answer of foon-asp in JSON.
 
-        It is a tree for the goals of the problem, whatever goals an answer names. Raises
-        :class:`UserError` for a file that is not understood or has no tree.
+        Parameters:
+            problem: The problem that the tree is for, whatever goals an answer names.
+            file: The path of the file; its units need not be in the network.
+
+        Raises:
+            UserError: for a file that is not understood or has no tree.
         """
         listed, _ = read_listed(Path(file))
         return cls.given(problem, [unit for unit, _ in listed], [place for _, place in listed])

@@ -23,7 +23,16 @@ if TYPE_CHECKING:  # the solver and the linear programs, which this has to do wi
 
 @dataclass(frozen=True, repr=False)
 class VerifiedCertificate(Result):
-    """What a certificate proves; ``verified`` has its ``claim``, ``goals``, ``tree`` and ``costs``."""
+    """What a certificate proves: ``verified`` has its ``claim``, ``goals``, ``tree`` and ``costs``.
+
+    ``network`` is the network that it is about, ``content`` the certificate as plain values.
+
+    Example:
+        >>> foon = foon_asp.load()
+        >>> certificate = foon_asp.certify(foon.problem("ice")).certificate
+        >>> foon_asp.verify(foon, certificate).verified.claim
+        'optimal'
+    """
 
     verified: proof.Verified
     network: Network

@@ -33,12 +33,18 @@ _STOPS = 3
 class Explanation(Result):
     """Why some goals cannot be made, or that all can.
 
-    ``goals`` are those that cannot. ``dead_ends`` has every object node that is needed for one of them, on
-    any way, and cannot be had, with the units that would make it, those first that take the fewest things
-    more. ``roots`` are what is behind all of them (each with its ``object``, ``cause``, ``stops``, ``cycle``
-    and ``near`` names), those on the easiest way first. ``available`` has a 1 for every node that is at hand
-    or can be made. All are by id, as places in ``problem.network.objects``; ``json()`` has names. ``clash``
-    says where all goals can be made whether rules leave a tree, ``None`` without any.
+    ``problem`` is the problem asked about, and ``goals`` are those that cannot be made. ``dead_ends`` has
+    every object node that is needed for one of them, in any way, and cannot be had, with the units that
+    would make it, first those that lack the fewest things. ``roots`` are the causes (each with its
+    ``object``, ``cause``, ``stops``, ``cycle`` and ``near`` names), first those on the easiest way.
+    ``available`` has a 1 for every node that is at hand or can be made. All are ids, positions in
+    ``problem.network.objects``; ``json()`` has names. If all goals can be made, ``clash`` tells whether
+    rules leave a tree; it is ``None`` without rules.
+
+    Example:
+        >>> explanation = foon_asp.why_not(foon_asp.load().problem("apple pie"))
+        >>> explanation.tree_exists, len(explanation.roots)
+        (False, 1)
     """
 
     problem: Problem

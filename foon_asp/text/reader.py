@@ -47,12 +47,17 @@ class ReadUnit(NamedTuple):
 
 
 class FoonReader:
-    """Reads any number of FOON files; every distinct line and object block is parsed once.
+    """Reads any number of FOON files; each distinct line and object block is parsed once.
 
-    With ``lenient``, what cannot be understood is left out with a warning, and everything else is kept;
-    otherwise it is an error. Diagnostics of all files read so far are in ``diagnostics``; ``left_out``
-    counts the lines that are in no unit because they were not understood or make none; ``prices`` are those
-    that copies of units have.
+    With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
+    ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
+    unit because they were not understood or make none; ``prices`` are those that copies of units state.
+
+    Example:
+        >>> from pathlib import Path
+        >>> reader = foon_asp.FoonReader()
+        >>> reader.read_network([Path("data/kitchen/FOON.txt")])
+        <Network: 220 units, 418 object nodes, level 3>
     """
 
     def __init__(self, lenient: bool = False) -> None:
@@ -70,7 +75,14 @@ class FoonReader:
         self._lines: dict[str, Line | LineError] = {}
 
     def read_network(self, files: Iterable[Path]) -> Network:
-        """Read and merge files; raises :class:`InputError` with all errors of all files."""
+        """Read files and merge them into one network.
+
+        Parameters:
+            files: The paths of the files.
+
+        Raises:
+            InputError: with all errors of all files.
+        """
         builder = NetworkBuilder()
         earlier = len(self.diagnostics)
         for file in files:
@@ -80,7 +92,15 @@ class FoonReader:
         return builder.build()
 
     def tree_units(self, text: str, file: str) -> list[tuple[FunctionalUnit, Source]]:
-        """Give the units of a text in listed order, copies kept; raises :class:`InputError`."""
+        """Give the units of a text in listed order, copies included.
+
+        Parameters:
+            text: The FOON text.
+            file: The name of the file, for messages and sources.
+
+        Raises:
+            InputError: with all errors of the text.
+        """
         earlier = len(self.diagnostics)
         units = [
             (FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs), unit.source)
@@ -90,7 +110,11 @@ class FoonReader:
         return units
 
     def text(self, file: Path) -> str:
-        """Give the text of a file; one that is no text is noted as an error, and is empty."""
+        """Give the text of a file; it is empty, and an error is noted, if the file is not text.
+
+        Parameters:
+            file: The path of the file.
+        """
         try:
             return read_plain_text(file)
         except InputError as error:
@@ -98,25 +122,47 @@ class FoonReader:
             return ""
 
     def raise_errors(self, earlier: int = 0) -> None:
-        """Raise :class:`InputError` if anything but the ``earlier`` diagnostics was an error."""
+        """Raise the errors found, if any.
+
+        Parameters:
+            earlier: The number of diagnostics, from the first on, to ignore.
+
+        Raises:
+            InputError: if another diagnostic is an error.
+        """
         errors = [d for d in self.diagnostics[earlier:] if d.severity is Severity.ERROR]
         if errors:
             raise InputError(errors)
 
     def units(self, text: str, file: str) -> Iterator[ReadUnit]:
-        """Give the units of a text in order; ``file`` is the name used in messages and sources."""
+        """Give the units of a text in order.
+
+        Parameters:
+            text: The FOON text.
+            file: The name of the file, for messages and sources.
+        """
         if is_json(text):
             return map(_identity, self._json_units(text, file))
         return _FileReading(self, text, file).units()
 
     def listed_units(self, text: str, file: str) -> Iterator[ListedUnit]:
-        """Give the units of a text in order, with their lines as written."""
+        """Give the units of a text in order, with their lines as written.
+
+        Parameters:
+            text: The FOON text.
+            file: The name of the file, for messages and sources.
+        """
         if is_json(text):
             return self._json_units(text, file)
         return _FileReading(self, text, file).listed_units()
 
     def object_blocks(self, text: str, file: str) -> list[ObjectBlock]:
-        """Give the object nodes of a text that lists them without motions: a kitchen, or goals."""
+        """Give the object nodes of a text that lists them without motions: a kitchen, or goals.
+
+        Parameters:
+            text: The text.
+            file: The name of the file, for messages and sources.
+        """
         return _FileReading(self, text, file).object_blocks()
 
     def _json_units(self, text: str, file: str) -> Iterator[ListedUnit]:
@@ -126,7 +172,11 @@ class FoonReader:
             yield unit
 
     def parse_new(self, lines: Iterable[str]) -> None:
-        """Parse the lines not met before together, which is faster than each in its turn."""
+        """Parse all lines not met before, together, which is faster than one by one.
+
+        Parameters:
+            lines: The lines.
+        """
         known = self._lines
         new = [
             line
@@ -142,7 +192,11 @@ class FoonReader:
                 self.labels[line[1:]] = parsed.label
 
     def parse(self, line: str) -> Line | LineError:
-        """Parse a line, or remember what came of it."""
+        """Give what a line says, or its error; each distinct line is parsed once.
+
+        Parameters:
+            line: The line.
+        """
         parsed = self._lines.get(line)
         if parsed is None:
             try:

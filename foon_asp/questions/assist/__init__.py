@@ -23,14 +23,19 @@ from foon_asp.text import read_rates
 
 @dataclass(frozen=True, repr=False)
 class Assistance(Result):
-    """The best trees of which a person does at most 0, 1, 2, ... units, in this order.
+    """The best trees if a person does at most 0, 1, 2, ... units, in this order.
 
-    Each of ``rows`` has ``most``, ``status``, ``success``, ``costs``, ``units`` by id and ``helped``, the ids
-    of those that the person does; :attr:`task_trees` has the trees as values. ``person`` has the rates of the
-    motions that the person can do, or is ``None`` for one who never fails. ``greatest`` is the best success
-    with any number of units, ``None`` where there is no tree at all and where a limit came first. ``wanted``
-    is the success that was to be reached and ``most`` how many units were asked for, if they were.
-    ``complete`` says that every row is proved and none is left out of what was asked for.
+    ``problem`` is the problem asked about. Each of ``rows`` has ``most``, ``status``, ``success``,
+    ``costs``, ``units`` by id and ``helped``, the ids of those that the person does; :attr:`task_trees` has
+    the trees as values. ``person`` has the person's success rates by motion, or is ``None`` for a person who
+    never fails. ``greatest`` is the best success with any help; it is ``None`` if there is no tree or a
+    limit was reached. ``wanted`` is the success to reach and ``most`` the number of units, if they were
+    given. ``complete`` tells whether all rows asked for are there and proved.
+
+    Example:
+        >>> helped = foon_asp.assist(foon_asp.load().problem("macaroni"), 1)
+        >>> [len(row.helped) for row in helped.rows], helped.complete
+        ([0, 1], True)
     """
 
     problem: Problem

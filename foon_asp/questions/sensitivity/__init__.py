@@ -32,12 +32,17 @@ _WIDTH = 60  # columns
 
 @dataclass(frozen=True, repr=False)
 class Sensitivity(Result):
-    """The tree that is the best by ``success``, and how wrong each rate may be, by itself, so that it stays.
+    """How wrong each success rate may be before another tree is the best.
 
-    ``intervals`` has one for each motion that a tree for the goals may have, in order of the relative change
-    that makes another tree the best, the smallest first; those that never do come last. ``others`` are the
-    motions of the network that no such tree has: their rates change nothing. Both are empty where there is
-    no tree, or where it was not proved to be the best.
+    ``outcome`` is the best tree by ``success``. ``intervals`` has one for each motion that a tree for the
+    goals may have, ordered by the smallest relative change that makes another tree the best; motions for
+    which none does come last. ``others`` are the motions of the network that no such tree has: their rates
+    change nothing. Both are empty if there is no tree, or if it was not proved the best.
+
+    Example:
+        >>> found = foon_asp.sensitivity(foon_asp.load().problem("ice"))
+        >>> len(found.intervals), found.first.interval.motion
+        (4, 'pound')
     """
 
     outcome: Answer
