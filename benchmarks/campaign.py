@@ -11,7 +11,7 @@ _AT_ONCE = 50  # networks between two lines
 
 
 def main(words: Sequence[str]) -> int:
-    """Ask of so many networks; gives 1 where an answer is wrong."""
+    """Ask about ``number`` networks; gives 1 if an answer is wrong."""
     number, first = int(words[0]), int(words[1]) if len(words) > 1 else 0
     began, total = time.monotonic(), Counter({"wrong": 0})
     for start in range(first, first + number, _AT_ONCE):

@@ -119,7 +119,7 @@ def networks(options: argparse.Namespace) -> Iterator[tuple[str, Data, list[str 
 
 
 def spread(items: Sequence[Any], count: int) -> list[Any]:
-    """Take so many items, evenly and with both ends; all of them where there are no more, or for 0."""
+    """Take ``count`` items, evenly and with both ends; all of them if there are no more, or for 0."""
     if not 0 < count < len(items):
         return list(items)
     if count == 1:

@@ -52,7 +52,7 @@ def main() -> int:
     parser.add_argument("--family", action="append", default=[], metavar="NAME", help="see generate.py")
     parser.add_argument("--units", action="append", type=int, default=[])
     parser.add_argument("--seed", action="append", type=int, default=[])
-    parser.add_argument("--goals", type=int, help="the last so many goals of each, all by default")
+    parser.add_argument("--goals", type=int, help="the number of last goals of each, by default all")
     parser.add_argument("--objectives", default="units,inputs,success")
     parser.add_argument("--containers", type=ContainerRule, default=ContainerRule.STRICT)
     parser.add_argument("--limit", type=float, default=60, metavar="SECONDS")

@@ -28,7 +28,7 @@ def main() -> None:
     """Ask, compare and print."""
     parser = argparse.ArgumentParser(description="Measure what a session saves.")
     parser.add_argument("--data", type=Path, default=bundled_kitchen())
-    parser.add_argument("--goals", type=int, default=20, help="so many goals, drawn by chance")
+    parser.add_argument("--goals", type=int, default=20, help="the number of goals, drawn by chance")
     options = parser.parse_args()
     data = read_data(find_data(options.data))
     rng = random.Random(1)

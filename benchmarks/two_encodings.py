@@ -28,7 +28,7 @@ def main() -> None:
     """Run the comparison and print it."""
     parser = argparse.ArgumentParser(description="Compare the two encodings of task trees.")
     parser.add_argument("--data", type=Path, default=ENCODINGS.parent / "data" / "kitchen")
-    parser.add_argument("--every", type=int, default=4, help="take every so many of the makeable objects")
+    parser.add_argument("--every", type=int, default=4, help="take one of every N makeable objects")
     options = parser.parse_args()
     data = read_data(find_data(options.data))
     for rule in ContainerRule:

@@ -85,7 +85,7 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-# Where each public name lives beside the questions; a room is imported when a name of it is first asked for.
+# Where each public name besides the questions lives; a room is imported when a name of it is first asked for.
 _ROOMS = {
     "questions.answer": ("Answer",),
     "questions.solve_soft": ("SoftAnswer", "solve_soft"),
@@ -115,5 +115,5 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    """Name what is public, for those who complete names with a key."""
+    """Give the public names, for completion."""
     return [*__all__, "__version__"]

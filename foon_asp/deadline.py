@@ -139,12 +139,12 @@ class Deadline:
 
     @property
     def stopped(self) -> str | None:
-        """At what it was stopped, and while doing what, in words; ``None`` before."""
+        """The limit that stopped the work, and what was being done, as a text; ``None`` before."""
         return None if self._by is None else f"{self._by} while {self._doing}"
 
     @property
     def advice(self) -> str:
-        """What to do about it, in words."""
+        """What to do about it, as a text."""
         return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:
@@ -175,7 +175,7 @@ class Deadline:
         """Stop what is in a ``with`` block at the limits: for work that does not look at them itself.
 
         Raises :class:`LimitError` in the middle of it. So there may be nothing to lose in the block, and
-        nothing that goes on after ctrl-C. With ``late`` it is stopped where it is overdue.
+        nothing that continues after ctrl-C. With ``late`` it is stopped only when overdue.
         """
         return Watch(self, doing, late)
 

@@ -788,7 +788,7 @@ FAULTS: dict[str, tuple[Callable[[Foon], object], str]] = {
     ),
     "both": (
         lambda f: foon_asp.alternatives(f.problem("ice"), best=1, different=2),
-        "best and different ask for different things",
+        "best and different exclude each other",
     ),
     "within": (
         lambda f: foon_asp.alternatives(f.problem("ice"), within=5),

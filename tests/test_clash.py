@@ -205,7 +205,7 @@ def test_a_clash_of_two_files(cli: Cli, two_files: tuple[Path, Path]) -> None:
     assert "no clash: the 4 constraints can hold together" in held.out
     solved = cli("solve", *words)
     assert solved.code == 1
-    assert "foon-asp clash says which do" in solved.out
+    assert "foon-asp clash finds those that do" in solved.out
     why = cli("why-not", *words, "--format", "json")
     assert why.code == 1
     assert len(why.json["clash"]["smallest_clash"]) == 3
@@ -287,4 +287,4 @@ def test_words_of_the_questions_are_taken(cli: Cli, tmp_path: Path, name: str) -
     file.write_text(f"{name}.\n:- use(3).\n")
     ran = cli("clash", "--goal", "ice", "--constraint", file)
     assert ran.code == 2
-    assert "which is not a constraint's to define" in ran.err
+    assert "which a constraint may not define" in ran.err

@@ -130,7 +130,7 @@ def test_the_answer_that_is_broken_above_is_one(cli: Cli, tmp_path: Path) -> Non
     ("content", "message"),
     [
         ({**ANSWER, "units": [{"motion": "cut"}]}, "'inputs' is missing"),
-        ({**ANSWER, "units": [UNIT | {"motion": 3}]}, "not written as such"),
+        ({**ANSWER, "units": [UNIT | {"motion": 3}]}, "not written as one"),
         ({**ANSWER, "units": [UNIT | {"inputs": ["bread"]}]}, "expected an answer of foon-asp"),
         ({**ANSWER, "units": [UNIT | {"inputs": [NODE | {"label": "roll"}]}]}, "'bread' are those of 'roll'"),
         (

@@ -232,7 +232,7 @@ def test_other_questions_take_what_stands(shell: Cli, cli: Cli) -> None:
         ("objective", "expected objective LIST, of units, inputs"),
         ("constraint nothing", "nothing: no such file; expected an encoding (.lp) or a ready-made one"),
         ("constraint forbid_motion x=1", "no encoding in use has the constant 'x'"),
-        ("drop forbid_motion", "no constraint 'forbid_motion' stands; those that stand are: none"),
+        ("drop forbid_motion", "this session has no constraint 'forbid_motion'; the session has: none"),
         ("time-limit soon", "found the time limit 'soon', expected seconds, or none"),
         ("show me", "found 'me' behind show"),
         ("help me", "found 'me', expected a word of the session or a question"),

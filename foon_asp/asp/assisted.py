@@ -12,7 +12,7 @@ _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
 
 def assisted(twins: Mapping[int, int], most: int) -> Bounded:
-    """Ask for trees in which a person does at most so many units, and no unit is done twice.
+    """Ask for trees in which a person does at most ``most`` units, and no unit is done twice.
 
     ``twins`` gives for each unit that is a person's the same unit as the robot does it, both by their ids in
     the whole network. For :class:`foon_asp.asp.Settings`.

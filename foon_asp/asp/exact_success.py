@@ -92,7 +92,7 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
 
 
 def _minus_log(rate: Fraction, digits: int) -> Decimal:
-    """Give ``-ln`` of a rate to so many digits: it is off by less than 10^-digits of itself."""
+    """Give ``-ln`` of a rate with ``digits`` digits: the relative error is below 10^-digits."""
     lost = 1 - rate
     zeros = -_CONTEXT.divide(Decimal(lost.numerator), Decimal(lost.denominator)).adjusted()
     # The logarithm of 1 + x has as many digits fewer than 1 + x as x begins with zeros.

@@ -118,7 +118,7 @@ def _unit_atom(problem: Problem, unit: int) -> str:
 
 
 def _unit_atoms(problem: Problem, unit: int, scales: Scales | None, with_sources: bool) -> list[_Atom]:
-    """Give what the facts say of a unit, beside that it is one."""
+    """Give the facts about a unit, except that it is one."""
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
     ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
@@ -147,7 +147,7 @@ def _object_atom(problem: Problem, o: int) -> str:
 
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
-    """Give what the facts say of an object node, beside that it is one and whether it is at hand."""
+    """Give the facts about an object node, except that it is one and whether it is at hand."""
     node, i = problem.network.objects[o], problem.network.object_number(o)
     atoms = [("label", f"{i},{quote(node.label)}")]
     atoms += [("state", f"{i},{quote(state)}") for state in sorted(node.states)]
@@ -298,7 +298,7 @@ def write_exactly_alike(numbers: Sequence[int]) -> str:
 
 
 def write_distances(trees: Sequence[Collection[int]], chosen: int) -> str:
-    """Ask for so many of some trees, given by their units."""
+    """Ask for a choice of ``chosen`` trees, given by their units."""
     sets = list(map(frozenset, trees))
     facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
     for number, one in enumerate(sets):

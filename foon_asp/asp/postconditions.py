@@ -18,7 +18,7 @@ from foon_asp.reduce import ExactCosts, Reduced
 
 
 class Postconditions:
-    """What the answers to one question are held against.
+    """Checks of the answers to one question.
 
     ``levels`` are the objectives as optimized. ``own`` says that all rules are ours: then a tree that does
     not execute is our fault. Whatever does not hold raises :class:`BugError` with what the question was.
@@ -94,8 +94,8 @@ class Postconditions:
     def outcome(self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None) -> None:
         """Require that an outcome with a tree claims what is so.
 
-        ``best`` is the best tree that was heard of on the way, and ``reduced`` what the reductions made of
-        the question, where they were asked.
+        ``best`` is the best tree reported during the search, and ``reduced`` what the reductions made of the
+        question, where they were asked.
         """
         assert outcome.units is not None
         assert outcome.costs is not None

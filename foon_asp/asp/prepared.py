@@ -41,7 +41,7 @@ class Prepared:
 
     @cached_property
     def holds(self) -> Postconditions:
-        """What the answers are held against."""
+        """What the answers are checked with."""
         return Postconditions(self.problem, self.levels, self.settings, self.program.own)
 
     @cached_property

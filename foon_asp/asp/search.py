@@ -38,7 +38,7 @@ def run(
     """Ground the files and facts and search for the best answer.
 
     ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-    ``predicates``, by name and arity, have atoms that are wanted beside ``use``, which begin with a number.
+    ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a number.
     ``products`` says how many products of rates the facts describe, ``endless`` that nobody knows whether the
     grounding comes to an end. Stopped at a limit, or at ctrl-C, it gives what is known by then. Raises what
     :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.

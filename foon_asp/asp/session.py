@@ -42,7 +42,7 @@ class Session:
         levels: Sequence[Objective],
         deadline: Deadline,
     ) -> "OpenProgram":
-        """Give a ground program for a question: one at hand, or a new one where none fits.
+        """Give a ground program for a question: a kept one, or a new one if none fits.
 
         ``units`` are those that there are, by id, and ``levels`` the objectives as optimized. Raises like
         :func:`foon_asp.asp.search.ground`.
@@ -200,7 +200,7 @@ class OpenProgram:
         self._ground.close()
 
     def _product(self, exponents: Mapping[int, int], deadline: Deadline) -> int:
-        """Give the number of a product of rates, grounding what is said of it when it is new."""
+        """Give the number of a product of rates, grounding its part if it is new."""
         key = tuple(sorted(exponents.items()))
         if key in self._products:
             return self._products[key]

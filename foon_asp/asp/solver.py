@@ -175,7 +175,7 @@ class _Solver:
         return self._optimal(best) if proved else self._limited(best, ended.lower)
 
     def _in_hand(self, units: Units) -> Units:
-        """Give the best tree that was heard of; of replaced encodings nobody knows, and these units count."""
+        """Give the best tree reported; with replaced encodings that is not known, and these units count."""
         assert self.heard.best is not None
         return units if self.program.replaced else self.heard.best[0]
 

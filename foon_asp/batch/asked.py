@@ -23,7 +23,7 @@ class Asked(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The question in words, the same in every run: what a row of results is known by."""
+        """The question as text, the same in every run: it identifies a row of results."""
         return json_line(self.shown())
 
     def shown(self) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""Rows of results on disk, as they come, so that a run that was killed goes on where it was."""
+"""Rows of results on disk, written as they come, so that a run that was killed can be resumed."""
 
 import contextlib
 import os

@@ -52,7 +52,7 @@ def answer_all(work: Work, questions: Iterable[Asked], jobs: int) -> Iterator[tu
 def _next(
     work: Work, waiting: Iterator[Asked], workers: "dict[Connection, _Worker]", worker: "_Worker | None"
 ) -> None:
-    """Give the next question to a worker, to a new one where there is none; without questions, end it."""
+    """Give the next question to a worker, starting one if needed; without questions, end the worker."""
     asked = next(waiting, None)
     if asked is None:
         if worker:

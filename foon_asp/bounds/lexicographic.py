@@ -135,7 +135,7 @@ def minus(one: Vector, other: Vector) -> Vector:
 
 @lru_cache(maxsize=4096)
 def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
-    """Give ``-log(rate)`` to so many digits, and by how much it may be off; the rate is below 1."""
+    """Give ``-log(rate)`` to ``digits`` digits, and its greatest error; the rate is below 1."""
     # close to 1, the logarithms of denominator and numerator share their first digits
     shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
     precise = Context(prec=digits + shared + 10)

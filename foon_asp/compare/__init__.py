@@ -1,4 +1,4 @@
-"""Searches held against the optimum, for one goal or thousands."""
+"""Searches compared with the optimum, for one goal or thousands."""
 
 from foon_asp.compare.comparison import MEASURED as MEASURED
 from foon_asp.compare.comparison import Comparison as Comparison

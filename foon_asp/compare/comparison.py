@@ -11,7 +11,7 @@ from foon_asp.problem import ContainerRule, Objective, Problem, conditions, mult
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.search import Ending, Search, SearchSettings
 
-# The objectives whose optima a tree is held against.
+# The objectives whose optima a tree is compared with.
 MEASURED = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
 
 
@@ -99,7 +99,7 @@ def compare(
 
 
 def _require_consistent(comparison: Comparison) -> None:
-    """Hold that no tree that executes is better than a proved optimum: if one were, that is our bug."""
+    """Require that no tree that executes is better than a proved optimum: if one were, that is our bug."""
     for judgement in comparison.judgements:
         if judgement.executes not in {Verdict.AS_LISTED, Verdict.REORDERED}:
             continue

@@ -52,8 +52,8 @@ class Dataset:
     Whoever asks it for goals and problems leaves the rest to it; ``data`` is everything, for those that need
     it. ``listed`` are the entries of the goals file, ``names`` what goals are looked up in, ``rates`` the
     success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
-    rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words;
-    ``has_kitchen`` says that a kitchen was given, be it an empty one.
+    rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words; ``has_kitchen`` says
+    that a kitchen was given, even an empty one.
     """
 
     def __init__(

@@ -128,7 +128,7 @@ def input_origins(
 
 
 def fraction_json(value: Fraction | None) -> Json | None:
-    """Give an exact number and a float beside it for people; ``None`` stays ``None``.
+    """Give an exact number, and a float for people; ``None`` stays ``None``.
 
     There is no float (``None``) beside a number above all of them.
     """

@@ -33,11 +33,11 @@ ENGINES: Final = (
     Engine(highs.NAME, lambda: True, highs.solve_with_highs),
     Engine(fast_downward.NAME, fast_downward.installed, fast_downward.solve_with_fast_downward),
 )
-"""Those of ours that are asked beside bare clingo."""
+"""The built-in engines that are asked besides bare clingo."""
 
 
 def find_engines() -> tuple[Engine, ...]:
-    """Give all engines that are asked beside bare clingo, those of other packages after ours.
+    """Give all engines that are asked besides bare clingo, the built-in ones first.
 
     Raises :class:`UserError` where a package offers one by a name that is taken.
     """
@@ -65,7 +65,7 @@ class Check(NamedTuple):
 def cross_check(
     asked: Asked, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
 ) -> list[Check]:
-    """Ask every engine what an answer says, each for at most so many seconds.
+    """Ask every engine about an answer, each for at most ``seconds``.
 
     Without ``seconds``, each has its part of what is left to the question, or a minute.
     Bare clingo is asked under whatever rules there are; ``engines`` where all rules are ours, or rule units

@@ -1,9 +1,9 @@
 """The same question put to stock clingo: a process of its own, on the text that ``foon-asp facts`` prints.
 
 Whatever the constraints, soft files, constants and encodings are, it reads them as they stand. Nothing is
-reduced before it, kept from a question before it, or known to it of our answer while it looks for its own;
-it searches in another way than ours, too. What it says is held against our answer here, in exact numbers:
-the costs it adds up against those of its units, its tree against the simulation, our tree against its rules.
+reduced before it, kept from a question before it, or known to it of our answer while it looks for its own; it
+searches in another way than ours, too. What it says is compared with our answer here, in exact numbers: the
+costs it adds up against those of its units, its tree against the simulation, our tree against its rules.
 
 By ``success`` and others that are fractions clingo goes by rounded weights, which are no answer yet. Every
 tree that is at least as good as ours has a rounded weight within a bound that is worked out here anew; see
@@ -52,7 +52,7 @@ def check_with_bare_clingo(asked: Asked, seconds: float) -> None:
     """Hold an answer against clingo's own.
 
     Raises :class:`DisagreementError` where both cannot be right, and :class:`NotCheckedError` where clingo
-    did not finish within so many seconds.
+    did not finish within ``seconds``.
     """
     outcome = asked.outcome
     program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
@@ -146,7 +146,7 @@ class _Clingo:
 
 
 class _Check:
-    """One answer held against clingo's."""
+    """One answer, compared with clingo's."""
 
     def __init__(self, asked: Asked, program: BareProgram, clingo: _Clingo) -> None:
         self.asked, self.program, self.clingo = asked, program, clingo

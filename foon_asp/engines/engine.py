@@ -52,7 +52,7 @@ class Solve(Protocol):
     ) -> EngineAnswer:
         """Find a best tree by objectives, of which the first counts most, without the forbidden units.
 
-        It may look at the first of the objectives alone, and says so. It gives up after so many seconds.
+        It may look only at the first of the objectives, and then says so. It gives up after ``seconds``.
         Raises :class:`NotCheckedError` for what it cannot be asked.
         """
 

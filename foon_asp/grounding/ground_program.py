@@ -19,7 +19,7 @@ class GroundProgram:
     """Files and text, grounded; raises :class:`ProgramError` for what clingo refuses.
 
     It raises that, too, for what clingo would leave out with no more than a message. ``products`` says how
-    many products of rates the text describes. A search ends at the ``deadline``, where there is one.
+    many products of rates the text describes. A search ends at the ``deadline``, if any.
     """
 
     deadline: Deadline | None = None
@@ -52,10 +52,10 @@ class GroundProgram:
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
     ) -> bool:
-        """Search for the best answer, and say whether all was gone through; trees are heard of in any thread.
+        """Search for the best answer, and tell whether the search was exhausted; any thread may report trees.
 
         ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-        ``predicates``, by name and arity, have atoms that are wanted beside ``use``, which begin with a
+        ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a
         number. Raises :class:`UserError` for an option that clasp does not take, for answers that are none,
         and what ``on_tree`` raises.
         """

@@ -64,9 +64,8 @@ class Grounded:
         """Search for the best answer; at a limit, or at ctrl-C, what was found before.
 
         ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (the first answer will do).
-        ``predicates``, by name and arity, have atoms that are wanted beside ``use``, which begin with a
-        number. Raises
-        what ``on_tree`` raises, and :class:`UserError` for answers that are none.
+        ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a
+        number. Raises what ``on_tree`` raises, and :class:`UserError` for answers that are none.
         """
         result = Run()
         began = time.perf_counter()

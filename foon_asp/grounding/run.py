@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class ProgramError(Exception):
-    """clingo refused a program or an option; ``messages`` are what it said of it."""
+    """clingo refused a program or an option; ``messages`` are its reasons."""
 
     def __init__(self, messages: Sequence[str], otherwise: str) -> None:
         super().__init__(otherwise)

@@ -1,7 +1,7 @@
-"""What goes on in the other process: commands about one program, until nobody gives any more.
+"""The other process: it obeys commands about one program, until no more come.
 
-A thread reads the commands, so that the end of whoever gives them is noticed while clingo grounds, and the
-process ends with it.
+A thread reads the commands, so that the end of the parent is noticed while clingo grounds, and the process
+ends with it.
 """
 
 import contextlib

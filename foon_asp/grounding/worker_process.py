@@ -63,7 +63,7 @@ class WorkerProgram:
         on_tree: Callable[[Heard], None],
         on_bound: Callable[[list[int]], None],
     ) -> bool:
-        """Search for the best answer, and say whether all was gone through; trees are heard of here."""
+        """Search for the best answer, and tell whether the search was exhausted; trees are reported here."""
         hear: dict[str, Callable[[Any], None]] = {"tree": on_tree, "bound": on_bound}
         return bool(self._worker.ask(self.deadline, "search", opt_mode, list(predicates), hear=hear))
 

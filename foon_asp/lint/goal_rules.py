@@ -1,4 +1,4 @@
-"""What there is to say of goals and kitchens beside a network."""
+"""Findings about goals and kitchens, compared with a network."""
 
 from collections.abc import Iterator
 

@@ -61,7 +61,7 @@ class Offer(NamedTuple):
         return self.fault(what.message if by_us else what.text, what.trace)
 
     def units(self, given: object, number: int) -> tuple[int, ...]:
-        """Take what it gave for the units of a tree, by id, of a network that has so many.
+        """Take the result as units of a tree, by id; the network has ``number`` units.
 
         Raises :class:`UserError` for anything else.
         """

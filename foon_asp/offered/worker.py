@@ -1,6 +1,6 @@
-"""What goes on in the other process: functions of another package are called, until nobody asks any more.
+"""The other process: it calls functions of another package, until no more requests come.
 
-A thread reads the requests, so that the end of whoever asks is noticed while a function runs, and the process
+A thread reads the requests, so that the end of the parent is noticed while a function runs, and the process
 ends with it.
 """
 

@@ -66,8 +66,8 @@ class DeadEnds(NamedTuple):
 
     ``goals`` are those that cannot. ``makers`` has every object node that is needed for one of them, on any
     way, and cannot be had, with the units that would make it, those first that take the fewest things more.
-    ``roots`` are what is behind all of them, those on the easiest way first. ``available`` has a 1 for every
-    node, by id, that is at hand or can be made.
+    ``roots`` are the causes, those on the easiest way first. ``available`` has a 1 for every node, by id,
+    that is at hand or can be made.
     """
 
     goals: tuple[int, ...]

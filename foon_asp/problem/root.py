@@ -47,19 +47,19 @@ class Root:
         return self.of**other.degree < other.of**self.degree
 
     def below(self, digits: int) -> Fraction:
-        """Give the greatest decimal of so many significant digits that is no greater."""
+        """Give the greatest decimal with ``digits`` significant digits that is not greater."""
         places = self._places(digits)
         return self._scaled(places) / Fraction(10) ** places
 
     def above(self, digits: int) -> Fraction:
-        """Give the least decimal of so many significant digits that is no less."""
+        """Give the least decimal with ``digits`` significant digits that is not less."""
         places = self._places(digits)
         scaled = self._scaled(places)
         exact = scaled**self.degree == self.of * Fraction(10) ** (places * self.degree)
         return (scaled + (not exact)) / Fraction(10) ** places
 
     def _places(self, digits: int) -> int:
-        """Give how many places after the point there are where so many digits are significant."""
+        """Give the number of places after the point that leaves ``digits`` significant digits."""
         bits = self.of.numerator.bit_length() - self.of.denominator.bit_length()
         places = digits - bits * 3 // (10 * self.degree)  # about: three tenths of a digit a bit
         while self._scaled(places) >= 10**digits:
@@ -69,7 +69,7 @@ class Root:
         return places
 
     def _scaled(self, places: int) -> int:
-        """Give the whole part of the number moved by so many places."""
+        """Give the whole part of the number times ten to the ``places``."""
         return whole_root(self.degree, math.floor(self.of * Fraction(10) ** (places * self.degree)))
 
 

@@ -1,4 +1,4 @@
-"""What every answer is held against: does a tree execute?"""
+"""What every answer is checked with: does a tree execute?"""
 
 from foon_asp.proof.simulation import Obstacle as Obstacle
 from foon_asp.proof.simulation import Simulation as Simulation

@@ -78,7 +78,7 @@ class LimitError(RefusedError):
 
 
 class Verified(NamedTuple):
-    """What a certificate proves of the data it was held against.
+    """What a certificate proves about the data it was checked with.
 
     ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
     ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
@@ -192,7 +192,7 @@ def verify(
 
 
 class _Check:
-    """One certificate, held against the network it speaks about.
+    """One certificate, checked against its network.
 
     A *member* is a unit, by its id, or a kitchen item ``k``, by the number of units plus ``k``. Items are
     members only where the objective ``kitchen`` counts them.
@@ -583,7 +583,7 @@ class _Check:
         return total
 
     def _spend_on(self, bits: int) -> None:
-        """Count the steps of an operation on fractions of so many bits, whose time grows with the square."""
+        """Count the steps of an operation on fractions of ``bits`` bits, whose time grows with the square."""
         if bits > _LONG:
             raise LimitError("its fractions add up to numbers that are too long")
         self._spend(5 + (bits // 512) ** 2)

@@ -229,7 +229,7 @@ def alternatives(
 
 
 def _most_different(pool: Alternatives, count: int, how: Settings) -> Alternatives:
-    """Choose so many trees of a pool that differ most."""
+    """Choose ``count`` trees of a pool that differ most."""
     pool = replace(pool, wanted=count)
     if len(pool.trees) <= count:
         return pool
@@ -252,7 +252,7 @@ def _most_different(pool: Alternatives, count: int, how: Settings) -> Alternativ
 
 
 def _far_apart(trees: Sequence[Alternative], count: int) -> list[int]:
-    """Choose so many trees, one after the other, each as far from those before it as can be."""
+    """Choose ``count`` trees one by one, each as different as possible from those before it."""
     units = [frozenset(tree.units) for tree in trees]
     chosen = [0]
     while len(chosen) < count:
@@ -268,9 +268,9 @@ def _ranked(
     most: int,
     worse: Fraction | None,
 ) -> Alternatives:
-    """Take trees in order until there are so many, or one that is too dear; ``None`` is never too dear.
+    """Take trees in order until there are ``most``, or until one is worse by more than ``worse``.
 
-    With ``worse`` 0 only optimal trees are taken, by the whole list of objectives.
+    ``None`` allows any tree. With ``worse`` 0 only optimal trees are taken, by the whole list of objectives.
     """
     order = levels(objectives)
     ranked = Ranked(problem, objectives, how, caller().reporter)

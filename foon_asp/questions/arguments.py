@@ -1,4 +1,4 @@
-"""What callers write, turned into what the rooms take; faults are said in the words of Python."""
+"""What callers write, turned into what the rooms take; errors use the words of Python."""
 
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
@@ -95,7 +95,7 @@ def file_weights(given: Mapping[File, int]) -> dict[Path, int]:
 
 
 def at_least(number: int, least: int, what: str) -> int:
-    """Hold that a number is large enough."""
+    """Require that a number is large enough."""
     if number < least:
         raise UserError(f"found {what}={number}, expected a whole number from {least}")
     return number

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _Warner(Reporter):
-    """Hears of warnings alone, and passes them on in Python's own way."""
+    """Receives only warnings, and passes them on as Python does."""
 
     def warning(self, message: str) -> None:
         """Warn at the line of the caller."""
@@ -24,9 +24,9 @@ class _Warner(Reporter):
 class Caller(NamedTuple):
     """Who asks.
 
-    ``reporter`` hears of warnings and progress. ``session`` keeps ground programs for the next question.
-    ``deadline`` is that of the whole command. ``read_seconds`` is how long reading took, where somebody wants
-    to know it. ``lenient`` says that lines of trees that are not understood are left out.
+    ``reporter`` receives warnings and progress. ``session`` keeps ground programs for the next question.
+    ``deadline`` is that of the whole command. ``read_seconds`` is how long reading took, if it is to be
+    shown. ``lenient`` says that lines of trees that are not understood are left out.
     """
 
     reporter: Reporter
@@ -40,7 +40,7 @@ _CALLER: ContextVar[Caller | None] = ContextVar("caller", default=None)
 
 
 def caller() -> Caller:
-    """Give who asks; by default Python, which is warned and knows of nothing else."""
+    """Give who asks; by default Python, which receives only warnings."""
     return _CALLER.get() or Caller(_Warner())
 
 

@@ -1,4 +1,4 @@
-"""The searches of the literature held against the optimum."""
+"""The searches of the literature, compared with the optimum."""
 
 import contextlib
 from collections.abc import Iterable, Sequence

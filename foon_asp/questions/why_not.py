@@ -1,4 +1,4 @@
-"""Why there is no tree: what cannot be made, what is behind it, and names one edit away."""
+"""Why there is no tree: what cannot be made, the causes, and names one edit away."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -146,8 +146,7 @@ def why_not(
     """Explain why there is no task tree: what is missing, and which cycles feed only themselves.
 
     The time grows about linearly with the network, and all of a store is read. If every goal can be made and
-    there are ``constraints`` or ``encodings``, it is found out which of them clash, as by
-    :func:`foon_asp.clash`.
+    there are ``constraints`` or ``encodings``, those that clash are found, as by :func:`foon_asp.clash`.
 
     Returns:
         The ``goals`` that cannot be made, the ``roots`` of that, and the ``clash``.

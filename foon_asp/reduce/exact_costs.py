@@ -20,7 +20,7 @@ _LONGEST = 50_000  # factors of the products of rates that are compared
 
 
 class TooFineError(Exception):
-    """There are rates of 0, or some with so many digits that rounding could hide a difference."""
+    """Some rates are 0, or have too many digits: rounding could hide a difference."""
 
 
 class ExactCosts:

@@ -19,8 +19,8 @@ def near(
     ``rest(a)`` is what the cuts leave of the cost of action ``a``. Such a derivation leads from each of its
     actions to a goal, each needing what the one before gives, so the rests along the way count (no action
     that ``a`` builds upon is among them). With ``before``, the least rests of an action with all that it
-    needs, those count instead of its own. Dijkstra's algorithm from the goals, which goes no farther than
-    the limit lets it, and with ``most`` only until it has so many actions.
+    needs, those count instead of its own. Dijkstra's algorithm from the goals, which goes no farther than the
+    limit lets it, and only until it has ``most`` actions, if given.
     """
     needs, makers, start = graph.needs, graph.makers, graph.start
     buckets: dict[int, list[int]] = {0: list(graph.goals)}

@@ -48,10 +48,10 @@ class Listener:
     """Hears of trees and bounds as they are found; override what you want to know."""
 
     def tree(self, units: frozenset[int]) -> None:
-        """Hear of a tree that is better than the one before."""
+        """Receive a tree that is better than the one before."""
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Hear of a lower bound on all trees."""
+        """Receive a lower bound on all trees."""
 
 
 def reduce(

@@ -48,7 +48,7 @@ def improved(
     expired: Callable[[], bool],
     thorough: bool,
 ) -> set[int]:
-    """Look for a cheaper tree among the actions; gives the tree itself where none is found.
+    """Look for a cheaper tree among the actions; gives the same tree if none is found.
 
     First the trees that estimates lead to, by the costs and by what cuts leave of them; then, to be thorough,
     for each action of the best one, a tree without it that uses as much as it can of the others.

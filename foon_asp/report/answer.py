@@ -25,7 +25,7 @@ _NAMED = 6  # motions that are named of those that come, and of those that go
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:
-    """Give what is measured by an objective in words: whole, or to four digits with ``≈`` where rounded."""
+    """Write a value by an objective: whole, or with four digits and ``≈`` if rounded."""
     if multiplies(objective):
         return success_text(Fraction(figure))
     shown = str(figure) if objective.row.whole else _four_digits(Fraction(figure))
@@ -148,7 +148,7 @@ def _four_digits(value: Fraction) -> str:
 
 
 def success_texts(values: Sequence[Fraction]) -> list[str]:
-    """Write successes to so many significant digits that different ones look different, four at least.
+    """Write successes with enough significant digits that different ones look different, at least four.
 
     ``≈`` stands before what is rounded.
     """

@@ -1,4 +1,4 @@
-"""Certificates in words: what one that was just written proves, and what one that was verified does."""
+"""Certificates as text: what a new one proves, and what a verified one proves."""
 
 from collections.abc import Mapping
 from decimal import Context, Decimal
@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # the rest of these rooms takes clingo along, which `verify` 
 
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> list[str]:
-    """Say what an answer rests on after a certificate was looked for; ``file`` is where it was written."""
+    """Say what proves an answer after the search for a certificate; ``file`` is where that was written."""
     if outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]
     if certificate is None:

@@ -95,7 +95,7 @@ def _cell_text(text: str) -> str:
 
 
 def summary_lines(summaries: Sequence[Summary], proved: bool) -> Iterator[str]:
-    """Say in words what a paper could print of many goals."""
+    """Summarize many goals in the way a paper would."""
     goals = max((summary.goals for summary in summaries), default=0)
     yield f"{goals} goals; " + ("every optimum is proved" if proved else "NOT every optimum is proved")
     for summary in summaries:

@@ -147,7 +147,7 @@ class _Canvas:
 
 
 def _lines(text: str, width: int) -> tuple[str, ...]:
-    """Wrap a text; one without a letter is an empty line."""
+    """Wrap a text; an empty text is an empty line."""
     return tuple(wrap(_printable(text), width)) or ("",)
 
 

@@ -8,7 +8,7 @@ from foon_asp.errors import UserError
 
 
 def write_whole(file: Path, content: bytes) -> None:
-    """Write beside the file and rename; what was there before stays until then, and after a failure.
+    """Write to a file beside it and rename; the old file stays until then, and after a failure.
 
     A file that is replaced passes on its permissions, and one that is write-protected is not replaced; a link
     stays, and the file that it names is written. A pipe or device is written to as it is. Raises

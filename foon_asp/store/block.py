@@ -34,7 +34,7 @@ class Table(StrEnum):
     PRICE = "price"
 
 
-# How many values share a block: so many are read to get one, and each block costs a row.
+# How many values share a block: all of them are read to get one, and each block costs a row.
 SIZES = {
     Table.UNIT: 16,
     Table.NODE: 16,

@@ -27,9 +27,9 @@ def is_database_of_ours(file: Path) -> bool:
 class StoreFile:
     """An opened store, read only. Any number of processes can have one open, and it is never written.
 
-    It is closed by :meth:`close`, or when nothing refers to it any more.
-    Raises :class:`UserError`, here and at every block, for a file that is no store, was made by a newer
-    program, is cut off or damaged. Every block that is read is held against its checksum.
+    It is closed by :meth:`close`, or when nothing refers to it any more. Raises :class:`UserError`, here and
+    at every block, for a file that is no store, was made by a newer program, is cut off or damaged. Every
+    block that is read is compared with its checksum.
     """
 
     def __init__(self, file: Path) -> None:

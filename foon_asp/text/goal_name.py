@@ -16,7 +16,7 @@ _NEAR = 3  # labels shown that are like one that nobody has
 
 
 class Wording(NamedTuple):
-    """How messages call what is named, where it was looked for, and what stands before a name to paste."""
+    """How messages name the thing, where it was looked up, and what comes before a name to paste."""
 
     thing: str
     where: str
@@ -63,10 +63,10 @@ class NodeNames(Protocol):
         """Give how many nodes have a label, and the first of them, a dozen or more."""
 
     def beginning(self, start: str, most: int) -> Sequence[str]:
-        """Give labels that begin so, in alphabetical order, at most so many."""
+        """Give labels that begin with ``start``, in alphabetical order, at most ``most``."""
 
     def near(self, label: str, most: int) -> Sequence[str]:
-        """Give labels that are like one, the likest first, at most so many."""
+        """Give labels similar to ``label``, the most similar first, at most ``most``."""
 
 
 def find_goal(
@@ -120,9 +120,10 @@ def find_goal(
 
 
 def nodes_beginning(start: str, names: NodeNames, most: int) -> list[int]:
-    """Give the ids of nodes whose one-line notation begins so, in the order of their labels; so many at most.
+    """Give the ids of nodes whose one-line notation begins with ``start``, ordered by label.
 
-    Up to the first semicolon that is a label, and of it as many letters as there are.
+    At most ``most`` are given. Up to the first semicolon that is a label, and of it as many letters as there
+    are.
     """
     label, semicolon, _ = start.partition(";")
     labels = [label] if semicolon else names.beginning(label, most)
@@ -186,11 +187,11 @@ class SomeNames:
         return len(found), found
 
     def beginning(self, start: str, most: int) -> Sequence[str]:
-        """Give labels that begin so, in alphabetical order, at most so many."""
+        """Give labels that begin with ``start``, in alphabetical order, at most ``most``."""
         return sorted(label for label in self._labels if label.startswith(start))[:most]
 
     def near(self, label: str, most: int) -> Sequence[str]:
-        """Give labels that are like one, the likest first, at most so many."""
+        """Give labels similar to ``label``, the most similar first, at most ``most``."""
         return near_labels(label, self._labels, most)
 
 

@@ -22,7 +22,7 @@ _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 class JsonObject(NamedTuple):
     """An object node as an object line and state lines, and the container that is named without a word.
 
-    ``remarks`` say in words what was mended, and what the node has that lines have no place for.
+    ``remarks`` say what was repaired, and what the node has that lines cannot hold.
     """
 
     line: ObjectLine
@@ -97,7 +97,7 @@ def optional_name(value: object, key: str) -> str | None:
 
 
 def number(value: dict[str, object], key: str) -> str:
-    """Give the digits of a number, which may be written as text; empty where there is none."""
+    """Give the digits of a number, which may be written as text; empty if there is none."""
     found = value.get(key)
     if found in (None, "", "None"):
         return ""

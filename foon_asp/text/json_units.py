@@ -77,7 +77,7 @@ def _videos(value: object) -> tuple[str, ...]:
 
 
 def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, list[str]]:
-    """Read a unit; what of it had to be left out or assumed is said in words beside it."""
+    """Read a unit, with remarks on what was left out or assumed."""
     value, source = element
     if not isinstance(value, dict) or not value.keys() >= _NEEDED:
         raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_NEEDED))}")

@@ -186,7 +186,7 @@ def assist(
 
 
 def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict[str, Fraction] | None:
-    """Read the rates of a person, beside which those of the robot have to be known, and above 0."""
+    """Read the rates of a person; those of the robot must be known and above 0."""
     problem.require_known_for([Objective.SUCCESS])
     assert problem.rates is not None
     for motion, rate in problem.rates.items():

@@ -60,9 +60,9 @@ class PricedHelp:
         self._answers: dict[Fraction, _Answer | None] = {}
 
     def best(self, most: int, trees: int | None = None) -> tuple[int, ...] | None:
-        """Give the best tree with help for so many units, proved, in an order that executes.
+        """Give the best tree with help for at most ``most`` units, proved, in an order that executes.
 
-        ``None`` where a limit came first, and where more than so many trees had to be looked at.
+        ``None`` if a limit was reached, or if more than ``trees`` trees would have to be examined.
         """
         found = self._at_one_price(most)
         return self._in_order(most, trees) if found is None and not self.stopped else found
@@ -99,16 +99,16 @@ class PricedHelp:
         return None if self.stopped else best
 
     def bound(self, most: int) -> Fraction | None:
-        """Give a success that no tree with help for so many units exceeds, if anything is known."""
+        """Give a success that no tree with help for ``most`` units exceeds, if one is known."""
         return min(self._bounds(most), default=(None,))[0]
 
     def good(self, most: int) -> tuple[int, ...] | None:
-        """Give the best tree, with help for so many units, of those that are known."""
+        """Give the best known tree with help for ``most`` units."""
         known = {answer.units for answer in self._answers.values() if answer is not None}
         return min(known, key=lambda tree: self._key(tree, most), default=None)
 
     def costs(self, units: Sequence[int], most: int) -> Costs:
-        """Compute what a tree costs with help for so many of its units."""
+        """Compute what a tree costs with help for ``most`` of its units."""
         motions, helped = self._problem.network.motions, self.helped(units, most)
         own = {unit: self._better[motions[unit]] for unit in helped}
         return replace(self._problem, own_rates=own).costs(units)
