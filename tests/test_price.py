@@ -183,6 +183,16 @@ def test_a_menu_adds_prices_up_and_a_front_trades_them() -> None:
     assert "price 0.3" in menu(replace(problem, goals=(*problem.goals, kitchen)), "price").text()
 
 
+def test_a_bound_on_sums_that_wrap_is_refused() -> None:
+    """The best tree by success costs 2^31: clingo took "above 2^31 - 1" for "from -2^31 on"."""
+    problem = two_ways(["1", "1"], ["0.5"])
+    prices = dict(zip(problem.network.motions, map(Fraction, ("2147483647", "1", "2")), strict=True))
+    asked = replace(problem, unit_prices=UnitPrices(prices, {}))
+    with pytest.raises(UserError, match="by the objective price all units together cost more than fits"):
+        pareto(asked, "success,price")
+    assert len(pareto(asked, "units,price").points) == 1  # what leads needs no bound
+
+
 @pytest.mark.parametrize("level", [1, 2])
 @pytest.mark.parametrize("rule", RULES)
 def test_below_level_3_the_least_counts_and_is_proved(level: int, rule: ContainerRule) -> None:

@@ -18,24 +18,28 @@ class CostScale(NamedTuple):
     """Integer weights for the costs of units by an objective whose costs are fractions and add up.
 
     ``weights[c]`` is ``floor(scale * c)``; ``exact`` says that nothing had to be rounded. ``places[c]``
-    numbers the costs: how often a tree has each of them tells what it costs.
+    numbers the costs: how often a tree has each of them tells what it costs. ``total`` is what all units
+    weigh together.
     """
 
     scale: Fraction
     exact: bool
     weights: Mapping[Fraction, int]
     places: Mapping[Fraction, int]
+    total: int
 
 
 def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     """Scale costs so that none is rounded, or where that does not fit clingo, as finely as is of use."""
+    costs = list(costs)
     different = sorted(set(costs))
     most = max(different, default=Fraction(0))
     common = math.lcm(*(cost.denominator for cost in different))
     exact = common * most <= _LARGEST
     scale = Fraction(common) if exact else min(Fraction(_FINE), _LARGEST / most)
     weights = {cost: math.floor(scale * cost) for cost in different}
-    return CostScale(scale, exact, weights, {cost: place for place, cost in enumerate(different)})
+    places = {cost: place for place, cost in enumerate(different)}
+    return CostScale(scale, exact, weights, places, sum(weights[cost] for cost in costs))
 
 
 class Scales:
@@ -94,7 +98,11 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Give what clingo adds up for a cost; raises :class:`UserError` for an objective that is rounded."""
+        """Give what clingo adds up for a cost that bounds others.
+
+        Raises :class:`UserError` for an objective that is rounded, and where sums may not fit: where clingo
+        compares a sum with a number, what all units weigh together wraps, and the bound is lost.
+        """
         if objective.row.whole:
             return int(cost)
         scale = self.costs[objective]
@@ -102,6 +110,11 @@ class Scales:
             raise UserError(
                 f"the objective {objective} has to be rounded for the solver, so it cannot be bounded: leave "
                 "it out, or the other objective that has to be rounded"
+            )
+        if scale.total > _LARGEST:
+            raise UserError(
+                f"by the objective {objective} all units together cost more than fits into clingo's numbers, "
+                "which have 32 bits, so no bound can be put on it: leave it out, or take fewer digits"
             )
         return int(scale.scale * cost)
 
@@ -111,7 +124,7 @@ class Scales:
         costs = (self._problem.figure(self.rounded, unit) for unit in units)
         if multiplies(self.rounded):
             return sum(rate != 1 for rate in costs)  # also those that weigh 0
-        scale, _, weights, _ = self.costs[self.rounded]
+        scale, _, weights, *_ = self.costs[self.rounded]
         return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
 
     def vector(self, units: Iterable[int]) -> dict[int, int]:
