@@ -1,4 +1,4 @@
-"""Putting a program together: our encodings or a replacement, and what the user adds."""
+"""Assembling a program: the built-in encodings or a replacement, and what the user adds."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -37,7 +37,7 @@ _OF_ONE_SEARCH = ("optimize", 2)
 
 
 def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
-    """Find and look over the encodings that the settings ask for.
+    """Find and check the encodings that the settings ask for.
 
     Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
     no encoding has and for clingo options that would change what an answer means.
@@ -113,7 +113,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:
-    """Give a folder of encodings: the path itself, or one of ours by name (``by_need``)."""
+    """Give a folder of encodings: the path itself, or a built-in one by name (``by_need``)."""
     if path is None:
         return ours
     folder = ours / path.name if not path.is_dir() and path.name == str(path) else path
@@ -124,7 +124,7 @@ def _find_encodings(path: Path | None, ours: Path) -> Path:
 
 
 def find_constraint(path: Path) -> Path:
-    """Give a constraint file: the path itself, or one of ours by name (``forbid_motion``)."""
+    """Give a constraint file: the path itself, or a ready-made one by name (``forbid_motion``)."""
     if path.is_file():
         return path
     library = encodings_folder() / "constraints"
@@ -137,7 +137,7 @@ def find_constraint(path: Path) -> Path:
 
 
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
-    """Look over the user's options; those of ours that they set differently give way."""
+    """Check the user's options, which replace ours of the same name."""
     names = [option.partition("=")[0] for option in options]
     for option, name in zip(options, names, strict=True):
         if not (name.startswith("--") and len(name) > 2) and not name.startswith("-t"):

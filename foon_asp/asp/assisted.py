@@ -1,4 +1,4 @@
-"""Units that are a person's: a bound on how many a tree has, and constraints that look at them."""
+"""Units done by a person: a bound on their number, and constraints that look at them."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -21,7 +21,7 @@ def assisted(twins: Mapping[int, int], most: int) -> Bounded:
 
 
 def sees_who_does_it(constraints: Sequence[Path]) -> bool:
-    """Whether constraints look at who does a unit: at success rates, or at units that are a person's.
+    """Whether constraints look at who does a unit: at success rates, or at units done by a person.
 
     ``constraints`` are paths or names of ours. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
     """

@@ -1,4 +1,4 @@
-"""Bounds from above on what a tree costs by objectives that count."""
+"""Upper bounds on the costs of a tree by objectives that add up."""
 
 from collections.abc import Iterable, Mapping
 

@@ -1,4 +1,4 @@
-"""A question as bare clingo is asked: which files, which constants, and the text of ``foon-asp facts``."""
+"""A question for bare clingo: files, constants, and the text of ``foon-asp facts``."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +13,7 @@ from foon_asp.problem import Objective, Problem, levels, reach, relevant
 
 
 class BareProgram(NamedTuple):
-    """What stands on the command line of clingo.
+    """What a command line of clingo needs.
 
     ``files`` are encodings and constraints, ``constants`` the arguments that set constants, and ``facts`` the
     text of one more file, as ``foon-asp facts`` prints it. No reduction, bound or second step is in it.

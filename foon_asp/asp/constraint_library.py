@@ -1,4 +1,4 @@
-"""The ready-made constraints, as their own files describe them."""
+"""The ready-made constraints, as described in their files."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ _SECTION = re.compile(r"(\w+): +(\S.*)$")
 
 
 class Parameter(NamedTuple):
-    """A constant of a constraint: its name, its own value as written, and one that the file gives as example.
+    """A constant of a constraint: its name, its default as written, and an example from the file.
 
     Own values of ``""``, ``#sup`` and ``#inf`` stand for "not set".
     """

@@ -1,4 +1,4 @@
-"""Encoding files: ours, a user's constraints, and what can be said of them before solving."""
+"""Encoding files, built-in or the user's, and checks of them before solving."""
 
 import difflib
 import re
@@ -60,7 +60,7 @@ _WORD = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 @dataclass
 class Encoding:
-    """One ``.lp`` file, parsed: what it defines, what it looks at, and its constants.
+    """One ``.lp`` file, parsed: the predicates it defines and uses, and its constants.
 
     ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies and ``declared`` those under
     ``#defined``, with the place where each is met first; the name of a negated atom (``-p``) begins with a
@@ -213,7 +213,7 @@ def _source(location: Location) -> Source:
 def check_encodings(
     added: Sequence[Encoding], base: Sequence[Encoding], others: Sequence[Encoding] = ()
 ) -> list[Diagnostic]:
-    """Look over the files of the user's: constraints that are ``added``, and what is not ours in ``base``.
+    """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
     ``others`` are further files of ours that are loaded. Returns warnings: atoms that nothing defines, with
     the nearest predicate that something does. Raises :class:`InputError` for what would change which trees
@@ -264,7 +264,7 @@ def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnost
 
 
 def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
-    """Find rules for predicates that are not a constraint's to define."""
+    """Find rules for predicates that a constraint may not define."""
     return [
         located(
             Severity.ERROR,
@@ -279,7 +279,7 @@ def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagno
 
 
 def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
-    """Find names of ours that a constraint has in it otherwise."""
+    """Find reserved names elsewhere in a constraint."""
     atoms = [
         (f"{name}/{arity}", source)
         for noted in (encoding.used, encoding.declared)
@@ -299,7 +299,7 @@ def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
-    """Find rules for predicates of ours in a file that replaces one that has none for them."""
+    """Find rules for reserved predicates in a replaced file whose original does not define them."""
     name = encoding.path.name
     ours = [
         file for file in (encodings_folder() / name, encodings_folder() / "by_need" / name) if file.is_file()
@@ -319,7 +319,7 @@ def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
-    """Find constants that would take the place of a name of ours, or of another file's."""
+    """Find constants that would replace a name in the facts or in another file."""
     return [
         located(
             Severity.ERROR,
@@ -376,7 +376,7 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
 
 
 def string_constant(value: str) -> str:
-    """Give the text that a setting of a constant means where the constant is a string, in quotes or not.
+    """Give the text that is meant by a setting of a string constant, with or without quotes.
 
     Raises :class:`UserError` for a quote at the beginning with no string of clingo's after it.
     """
@@ -390,7 +390,7 @@ def string_constant(value: str) -> str:
 
 
 def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Warn of constants without a meaning until they are set: their own value is "", #sup or #inf."""
+    """Warn about constants that have no effect until they are set: their default is "", #sup or #inf."""
     given = {setting.partition("=")[0] for setting in constants}
     return [
         f"{encoding.path}: warning: the constant {name} is not set and the constraint has no effect; "
@@ -440,7 +440,7 @@ def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
 
 
 def _left_out(what: str, part: str) -> str:
-    """Say what is wrong where clingo would leave a part of a program out."""
+    """Explain why clingo would leave out a part of a program."""
     no_value = f"a term has no value here: {part.removeprefix('(').removesuffix(')')}"
     reason = {
         "operation undefined": no_value,
@@ -454,5 +454,5 @@ def _left_out(what: str, part: str) -> str:
 
 
 def located(severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
-    """Make a diagnostic with the line of the encoding that it is about."""
+    """Make a diagnostic with its line of the encoding."""
     return Diagnostic(severity, code, message, source, excerpt(source))

@@ -1,4 +1,4 @@
-"""The text of an encoding, looked over before clingo reads it: files included, letters and numbers.
+"""The text of an encoding, checked before clingo reads it: included files, letters and numbers.
 
 clingo opens any file that an ``#include`` names, takes a number that is too large modulo 2^32, and ends the
 whole process where its message about an odd letter is not UTF-8. So none of that may get to it.
@@ -34,7 +34,7 @@ _SUFFIX = ".lp"
 
 
 def included_files(path: Path) -> list[Path]:
-    """Give an encoding and the files that it includes, theirs too, each once.
+    """Give an encoding and all files that it includes, directly or not, each once.
 
     A file may include those in its own folder, and below. Raises :class:`InputError` for other files, for a
     ``#script``, for letters that clingo does not know, and for numbers that it has not.
@@ -53,7 +53,7 @@ def included_files(path: Path) -> list[Path]:
 
 
 def excerpt(source: Source) -> str:
-    """Give the line of an encoding that a place is in; of any other file nothing is ever quoted."""
+    """Give the line of an encoding at a place; files of other kinds are never quoted."""
     path = Path(source.file)
     if path.suffix != _SUFFIX or not path.is_file():
         return ""
@@ -62,7 +62,7 @@ def excerpt(source: Source) -> str:
 
 
 class _Token(NamedTuple):
-    """A token, the kind of it, and where in the text it begins."""
+    """A token, its kind, and where in the text it begins."""
 
     kind: str
     text: str
@@ -124,7 +124,7 @@ def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
 
 
 def _refused(file: Path, target: str) -> str:
-    """Say why a file may not include another, named as it is named there; nothing where it may."""
+    """Say why a file may not include another, named as in the file; empty if it may."""
     folder = file.parent.resolve()
     path = file.parent / target
     if "\0" in target or not path.resolve().is_relative_to(folder) or ".." in Path(target).parts:
@@ -143,7 +143,7 @@ def _refused(file: Path, target: str) -> str:
 
 
 def _tokens(text: str) -> Iterator[_Token]:
-    """Give the tokens of a program but blanks and comments."""
+    """Give the tokens of a program, without blanks and comments."""
     place = 0
     while match := _TOKEN.match(text, place):
         kind = str(match.lastgroup)

@@ -54,7 +54,7 @@ class RateScale(NamedTuple):
 
 
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
-    """Scale rates in (0, 1] as finely as clingo's 32-bit integers allow, but no finer than is of use.
+    """Scale rates in (0, 1] as finely as clingo's 32-bit integers allow and as is useful.
 
     That is 10^8 at most, and more only where a rate next to 1 would weigh next to nothing. Raises
     ``ValueError`` for other rates.

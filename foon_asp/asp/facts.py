@@ -77,7 +77,7 @@ def write_open_facts(
     scales: Scales,
     looked_at: Collection[tuple[str, int]],
 ) -> str:
-    """Describe a question as :func:`write_facts` does, but leave open some of what is the case.
+    """Describe a question as :func:`write_facts` does, but leave some facts open.
 
     ``closed`` are facts, ``left_open`` externals: pairs of ``unit``, ``object`` or ``kitchen`` and an id of
     the network. What else the facts say of a unit or a node that is left open holds only where it is there,
@@ -157,7 +157,7 @@ def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
 
 
 def described(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Give the object nodes that facts about some units speak of, the goals among them, in order."""
+    """Give the object nodes in the facts about some units, including the goals, in order."""
     network = problem.network
     touched = {o for unit in units for side in (network.inputs, network.outputs) for o in side[unit]}
     return sorted(touched.union(problem.goals))
@@ -196,7 +196,7 @@ def write_wanted(number: int) -> str:
 
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
-    """Say which object nodes can be bought at which price, a whole number, and which only if need be."""
+    """Say which object nodes can be bought, at which price (a whole number), and which only if necessary."""
     facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
     return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
 
@@ -207,7 +207,7 @@ def write_list(number: int, items: Iterable[int]) -> str:
 
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
-    """Say what it costs to drop each constraint, by number, and which are not dropped."""
+    """Give the cost of dropping each constraint, by number, and those that are kept."""
     facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 
@@ -227,17 +227,17 @@ def write_soft(weights: Mapping[int, int]) -> str:
 
 
 def write_least_penalty(priority: int) -> str:
-    """Ask for the least sum of the weights of what is broken, with a priority among the objectives."""
+    """Minimize the weights of broken constraints, with a priority among the objectives."""
     return f"optimize(_soft,{priority}).\n"
 
 
 def write_greatest_penalty(penalty: int) -> str:
-    """Bound the sum of the weights of what is broken."""
+    """Bound the weights of broken constraints."""
     return f"_greatest_penalty({_check(penalty)}).\n"
 
 
 def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
-    """Give a bound: objectives that count, one of which is to be no more than its number.
+    """Give a bound: objectives with numbers, of which at least one must not be exceeded.
 
     Raises ``ValueError`` for ``success``, which does not count.
     """
@@ -249,7 +249,7 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
 
 
 def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Bound costs by objectives that are fractions, each set of them from above by one of it at least.
+    """Bound costs by objectives with fractions: of each set, at least one bound must hold.
 
     Raises :class:`UserError` for an objective that is rounded.
     """
@@ -271,7 +271,7 @@ def write_tree(units: Collection[int]) -> str:
 
 
 def write_avoided(number: int, units: Iterable[int]) -> str:
-    """Rule out a tree, by the ids of its units in the whole network, and all that hold it."""
+    """Rule out a tree, by the ids of its units in the whole network, and all trees that contain it."""
     return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
 
 
@@ -323,7 +323,7 @@ def quote(text: str) -> str:
 
 
 def _source_names(sources: Iterable[Source]) -> dict[str, None]:
-    """Give the names by which a constraint can mean the places of a unit: files, with folders and without."""
+    """Give the names of a unit's places for constraints: files, with folders and without, and videos."""
     names = (name for s in sources for name in (s.file, PurePath(s.file).name, *s.videos))
     return dict.fromkeys(names)
 

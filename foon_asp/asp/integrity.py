@@ -37,7 +37,7 @@ class IntegrityConstraint(NamedTuple):
 def relax(
     files: Sequence[Path], constants: Sequence[str], soft: bool, deadline: Deadline | None = None
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
-    """Number the integrity constraints of some files, from 1, and put all that they say in other words.
+    """Number the integrity constraints of some files, from 1, and rewrite the files accordingly.
 
     Without ``soft``, constraint number C holds unless ``_dropped(C)`` does (``questions/clash.lp``). With it,
     it is a rule for ``_broken(C,Way)``, where ``Way`` has the values of its variables
@@ -69,7 +69,7 @@ def relax(
 
 @contextmanager
 def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
-    """Give faults in a text that holds the rules their places in the files."""
+    """Translate errors in a text with the rules into places in the files."""
     try:
         yield
     except InputError as error:
@@ -87,7 +87,7 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
 
 
 def _look_over(path: Path, deadline: Deadline) -> None:
-    """Raise what is wrong with a file while it still has its places: in other words it is only text."""
+    """Raise the errors of a file while places are known: once rewritten it is only text."""
     read_encoding(path)
     try:  # without facts, for unsafe variables alone
         ground((path,), "", (), deadline, endless=True).close()
@@ -158,7 +158,7 @@ def _source(statement: AST) -> Source:
 
 
 def _text(statement: AST) -> str:
-    """Give a statement as it stands in its file, on one line."""
+    """Give a statement as written in its file, on one line."""
     begin, end = statement.location.begin, statement.location.end
     lines = Path(begin.filename).read_bytes().split(b"\n")[begin.line - 1 : end.line]
     lines[-1] = lines[-1][: end.column - 1]  # columns of clingo count bytes

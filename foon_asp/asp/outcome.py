@@ -1,4 +1,4 @@
-"""What a search ended with."""
+"""The result of a search."""
 
 from enum import StrEnum
 from fractions import Fraction
@@ -26,7 +26,7 @@ class Status(StrEnum):
 
 
 class Proof(StrEnum):
-    """What a claim rests on.
+    """What proves a claim.
 
     ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search; see
     docs/reductions.md. ``certificate``: a certificate that was verified without either.

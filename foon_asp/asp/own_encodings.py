@@ -1,4 +1,4 @@
-"""Which encodings are ours, word for word: cuts and certificates rely on what those say.
+"""Which encodings are unchanged built-in ones: cuts and certificates rely on them.
 
 ``encodings/SHA256SUMS`` holds the digest of each, with the line ends of Unix. One of ours that was changed in
 place is what runs, but it is then treated like a user's: what it says may be something else.
@@ -16,14 +16,14 @@ _DIGESTS = "SHA256SUMS"
 
 
 def is_own(file: Path) -> bool:
-    """Whether an encoding is one of ours, and says what it said when it was released."""
+    """Whether an encoding is an unchanged built-in one."""
     digests = _digests()
     known = digests.get(file) or digests.get(file.resolve())
     return known is not None and known == digest(file)
 
 
 def question_encoding(name: str) -> Path:
-    """Give an encoding of ours that a question needs and that cannot be replaced, such as ``soft.lp``.
+    """Give a built-in encoding that a question needs and that cannot be replaced, such as ``soft.lp``.
 
     Raises :class:`UserError` where it was changed.
     """

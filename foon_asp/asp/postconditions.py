@@ -1,7 +1,4 @@
-"""What has to hold of every answer before it leaves, whatever found it: solver, cuts, a list of trees.
-
-All of it is worked out anew from the units of a tree. What fails is a bug of ours, and is never an answer.
-"""
+"""Checks of every answer before it is given, however it was found: by solver, by cuts, or in a list."""
 
 import shlex
 from collections.abc import Callable, Collection, Sequence
@@ -92,7 +89,7 @@ class Postconditions:
         )
 
     def outcome(self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None) -> None:
-        """Require that an outcome with a tree claims what is so.
+        """Require that the claims of an outcome with a tree are true.
 
         ``best`` is the best tree reported during the search, and ``reduced`` what the reductions made of the
         question, where they were asked.
@@ -115,7 +112,7 @@ class Postconditions:
             self._reduced(outcome, costs, reduced, reduced.costs)
 
     def settled(self, tree: Collection[int], chosen: Collection[int], by: Sequence[Objective]) -> None:
-        """Require that a tree has by some objectives what was settled on."""
+        """Require that a tree has the settled costs by some objectives."""
         ours, theirs = self.problem.costs(tree), self.problem.costs(chosen)
         self.require(
             ours.key(by) == theirs.key(by),
@@ -126,7 +123,7 @@ class Postconditions:
         )
 
     def no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
-        """Require that a tree is no better than what is proved of a question with that tree, and others."""
+        """Require that a tree is no better than the proved optimum of a question that allows it, too."""
         if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
             return
         theirs = easier.costs
@@ -139,7 +136,7 @@ class Postconditions:
         )
 
     def _bounds(self, outcome: Outcome, costs: Costs) -> None:
-        """Require that bounds leave room for the tree, and none where it is called optimal."""
+        """Require that the bounds allow the tree, and meet its costs if it is called optimal."""
         exact = {objective: costs.measure(objective) for objective in self.levels}
         self.require(
             outcome.status is not Status.OPTIMAL or outcome.bounds == exact,
@@ -199,7 +196,7 @@ class Postconditions:
         )
 
     def _question(self) -> str:
-        """Say what was asked, so that it can be asked again."""
+        """Describe the question, so that it can be asked again."""
         problem, how = self.problem, self._settings
         words = ["foon-asp", "facts"]
         for goal in problem.goals:

@@ -1,4 +1,4 @@
-"""The first half of every question: what is left of its network, how it is measured, by which program."""
+"""The first half of every question: the network left after the cut, its measures, and its program."""
 
 from collections.abc import Collection, Sequence
 from contextlib import nullcontext
@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # often there is nothing left to ask clingo
 
 @dataclass(frozen=True)
 class Prepared:
-    """A question made ready to be searched.
+    """A question, prepared for the search.
 
     ``levels`` are the objectives as optimized and ``units`` what is left of the network after the cut, where
     ``tree`` is some tree: ``None`` where nothing makes the goals. ``reduced`` is what the reductions made of
@@ -53,7 +53,7 @@ class Prepared:
 
     @cached_property
     def facts(self) -> str:
-        """What the problem is, as text, without what is asked of it.
+        """The facts of the problem, as text, without those of the question.
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
@@ -71,7 +71,7 @@ class Prepared:
         encodings: Sequence[Path] = (),
         predicates: Sequence[tuple[str, int]] = (),
     ) -> "Run":
-        """Ask clingo with more facts, and with encodings beside those of the program.
+        """Ask clingo with additional facts and encodings.
 
         As :func:`foon_asp.asp.search.run` does; nothing is known where a limit comes before.
         """

@@ -1,4 +1,4 @@
-"""Trees in order of their costs, one by one, none of which holds another."""
+"""Trees in order of their costs, one by one; none contains another."""
 
 from bisect import insort
 from collections.abc import Iterator, Sequence
@@ -25,7 +25,7 @@ class _Tree(NamedTuple):
 
 
 class Ranked:
-    """The trees of a question from the best on, under a lexicographic list of objectives.
+    """The trees of a question, the best first, under a lexicographic list of objectives.
 
     A tree that holds all the units of one before it, and others to spare, is not among them. Iterate to get
     each tree as unit ids in an executable order, with its costs. ``complete`` says afterwards that there are

@@ -1,4 +1,4 @@
-"""What units cost, as integers for clingo: as it is, to scale, or rounded down and settled exactly later."""
+"""The costs of units as integers for clingo: unchanged, scaled, or rounded down and settled later."""
 
 import copy
 import math
@@ -80,7 +80,7 @@ class Scales:
 
     @property
     def likeness(self) -> list[int | Fraction | None]:
-        """What is the same for questions whose units weigh the same."""
+        """A key that is equal for questions whose units have the same weights."""
         return [self.rates and self.rates.scale, *(each.scale for each in self.costs.values())]
 
     def weight(self, objective: Objective, units: Iterable[int]) -> int:
@@ -119,7 +119,10 @@ class Scales:
         return int(scale.scale * cost)
 
     def doubt(self, units: Iterable[int]) -> int:
-        """Give how many units weigh less than they cost by the rounded objective: what that hides is less."""
+        """Give the number of units that weigh less than they cost by the rounded objective.
+
+        The error is below that number.
+        """
         assert self.rounded is not None
         costs = (self._problem.figure(self.rounded, unit) for unit in units)
         if multiplies(self.rounded):
@@ -161,7 +164,10 @@ class Scales:
         return weight / self.costs[objective].scale if objective in self.costs else weight
 
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
-        """Whether units of a weight can cost so much by an objective: just that, where nothing is rounded."""
+        """Whether units of a weight can have some costs by an objective.
+
+        Exactly these, if nothing is rounded.
+        """
         bound = self.bound(objective, weight)
         if objective is not self.rounded:
             return figure == bound

@@ -1,4 +1,4 @@
-"""One run of clingo over encodings and facts, with limits and without any claim of its own."""
+"""One run of clingo over encodings and facts, with limits; it claims nothing itself."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -74,7 +74,7 @@ def ground(
 
 
 def refused(error: ProgramError) -> UserError:
-    """Turn what clingo says of a program into one error with places and source lines."""
+    """Turn clingo's messages into one error with places and source lines."""
     from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
     return fault(error.messages, error.otherwise)

@@ -25,7 +25,7 @@ Case = tuple[str, int]  # that there is a unit or an object, or that one is in t
 
 
 class Session:
-    """Ground programs of the questions asked last, for :attr:`foon_asp.asp.Settings.session`.
+    """Ground programs of the latest questions, for :attr:`foon_asp.asp.Settings.session`.
 
     An answer is what it is without: in status, proof and costs by the objectives. Among trees that are as
     good it may be another one.
@@ -62,14 +62,14 @@ class Session:
         return like
 
     def forget(self, program: "OpenProgram") -> None:
-        """Drop a program that was left halfway."""
+        """Drop a program whose search was interrupted."""
         if program in self._programs:
             self._programs.remove(program)
         program.close()
 
 
 class OpenProgram:
-    """A ground program that leaves some cases open, and what is asked.
+    """A ground program that leaves some facts open.
 
     ``closed`` is always the case, ``left_open`` may be. ``pairs`` are objectives with the priorities that
     they may have. ``scales`` say how its units are measured.
@@ -108,7 +108,7 @@ class OpenProgram:
         self._products: dict[tuple[tuple[int, int], ...], int] = {}
 
     def is_like(self, program: Program, problem: Problem) -> bool:
-        """Whether it speaks of the same network and rules, whatever is in the kitchen and asked for."""
+        """Whether it has the same network and rules, whatever the kitchen and the goals."""
         ours = self._problem
         return (
             program == self._program
@@ -121,7 +121,7 @@ class OpenProgram:
         )
 
     def fits(self, problem: Problem, cases: frozenset[Case], levels: Sequence[Objective]) -> bool:
-        """Whether it can be made to say just what a question says."""
+        """Whether it can be set to exactly the facts of a question."""
         return (
             self._closed <= cases <= self._closed | self._open
             and self._pairs.issuperset(_pairs(levels))
@@ -196,7 +196,7 @@ class OpenProgram:
         return ended
 
     def close(self) -> None:
-        """Say that it is not needed any more."""
+        """Release the program."""
         self._ground.close()
 
     def _product(self, exponents: Mapping[int, int], deadline: Deadline) -> int:
@@ -225,7 +225,7 @@ def _pairs(levels: Sequence[Objective]) -> list[tuple[Objective, int]]:
 
 
 def _cases(problem: Problem, units: Collection[int]) -> Iterable[Case]:
-    """Give what is the case in a question: just what its facts say when it is asked by itself."""
+    """Give the facts of a question that are left open here, as when it is asked by itself."""
     yield from (("unit", unit) for unit in units)
     for o in described(problem, units):
         yield "object", o

@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # clingo, which often is not needed
 
 
 class Relaxed(NamedTuple):
-    """Constraint files that are loaded in other words.
+    """Constraint files that are loaded rewritten.
 
     ``files`` are looked over like other constraints, but ``rules`` stand in for what they say, together with
     ``encoding``, one of ours (``encodings/questions``). ``places`` says where each rule comes from.
@@ -30,7 +30,7 @@ class Relaxed(NamedTuple):
 
 
 class Bounded(NamedTuple):
-    """Requirements of ours that only bound what a tree costs from above.
+    """Upper bounds on the costs of a tree, as encodings of ours.
 
     ``files`` are encodings of ours (``encodings/questions``) and ``rules`` the facts that they read. A tree
     that meets them has to meet them still when units are left out of it: then what the goals do not need

@@ -40,7 +40,7 @@ class SoftOutcome(NamedTuple):
 def soft_rules(
     settings: Settings, weights: Mapping[Path, int]
 ) -> tuple[tuple[IntegrityConstraint, ...], dict[int, int], Relaxed]:
-    """Number the integrity constraints of soft files, with their weights, and put them in other words.
+    """Number the integrity constraints of soft files, with their weights, and rewrite them.
 
     Raises :class:`UserError` for a file that is among the constraints of the settings, too.
     """

@@ -1,4 +1,4 @@
-"""Optimal task trees: the cut, the runs of clingo, and the claim that comes out of them."""
+"""Optimal task trees: the cut, the runs of clingo, and the resulting claim."""
 
 import itertools
 import time
@@ -87,12 +87,12 @@ def solve(
 
 
 def solve_prepared(first: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
-    """Find the best task tree of a question that was made ready, under some rules more, and prove it."""
+    """Find the best task tree of a prepared question, with additional rules, and prove it."""
     return _Solver(first, objectives, _Heard(first.problem, objectives, Reporter()), {}, rules).solve()
 
 
 class _Heard(Listener):
-    """Hears of trees and bounds, keeps the best tree and passes on what is better."""
+    """Receives trees and bounds, keeps the best tree and passes on improvements."""
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], reporter: Reporter) -> None:
         self.problem, self.levels, self.reporter = problem, levels(tuple(objectives)), reporter
@@ -116,7 +116,7 @@ class _Heard(Listener):
 
 
 class _Solver:
-    """A question that was made ready, on its way to its outcome."""
+    """A prepared question that is being solved."""
 
     def __init__(
         self,
@@ -206,7 +206,7 @@ class _Solver:
         return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
 
     def _limited(self, units: Units, lower: Sequence[int]) -> Outcome:
-        """State what is known at a limit; nobody knows what replaced encodings have bounds on."""
+        """State what is known at a limit; what the bounds of replaced encodings mean is not known."""
         bounds = {} if self.program.replaced else self._bounds(lower)
         return self._outcome(Status.FEASIBLE, self._in_hand(units), bounds)
 
@@ -341,7 +341,7 @@ class _Solver:
         return Units(units)
 
     def _settle(self, best: Units) -> tuple[Units, bool]:
-        """Look at every total that rounding may have hidden; see docs/exact-success.md.
+        """Examine every total that rounding may have hidden; see docs/exact-success.md.
 
         Returns the tree that is best exactly, and whether the search came to its end.
         """
@@ -392,7 +392,7 @@ class _Solver:
         return chosen, True
 
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
-        """Hold clingo's cost vector (modulo 2^32) against what the units weigh, and that against their costs.
+        """Compare clingo's costs (modulo 2^32) with the weights of units, and these with what units cost.
 
         A replaced objectives.lp may measure something else: then the optimum is the one it defines. A program
         that is kept measures all levels, and what was not asked for as nothing.
@@ -422,7 +422,7 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Raise :class:`UserError` where a replaced objectives.lp measures some trees as we do, not this."""
+        """Raise :class:`UserError` if a replaced objectives.lp measures only some trees as we do."""
         if not agree:
             raise UserError(
                 f"{self.program.files[1]} measures some trees as the objectives {', '.join(self.levels)} do, "

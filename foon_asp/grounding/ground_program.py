@@ -88,7 +88,7 @@ class GroundProgram:
         return bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
 
     def close(self) -> None:
-        """Say that it is not needed any more."""
+        """Release the program."""
 
 
 def _wait(handle: SolveHandle, deadline: Deadline) -> None:

@@ -1,1 +1,1 @@
-"""What can be asked: one file for each question, with what is found, how it is said, and its options."""
+"""The questions: one file for each, with its result, the text and JSON of that, and its options."""

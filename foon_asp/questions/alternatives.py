@@ -1,4 +1,4 @@
-"""What else: all optimal trees, the next best, those that differ most, and what all have in common."""
+"""Other trees: all optimal ones, the next best, those that differ most, and what all have in common."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace

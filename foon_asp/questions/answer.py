@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # what a command that prints an answer can do without
 
 
 def of_status(status: Status) -> Ending:
-    """Say how a question ended whose answer has a status."""
+    """Give the ending of a question from the status of its answer."""
     return {
         Status.OPTIMAL: Ending.DONE,
         Status.INFEASIBLE: Ending.NEGATIVE,
@@ -87,7 +87,7 @@ class Answer(Result, Outcome):
 def answered(
     problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
 ) -> Answer:
-    """Solve a problem, and note how long reading took where who asks knows."""
+    """Solve a problem, and note how long reading took, if known."""
     who = caller()
     answer = Answer._make(find(problem, objectives, how, reporter or who.reporter))
     if who.read_seconds is not None:

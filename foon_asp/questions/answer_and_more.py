@@ -1,4 +1,4 @@
-"""An answer of which more is said than what was proved by solving."""
+"""An answer with additional lines about its proof."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ A = TypeVar("A", bound=Result)
 
 @dataclass(frozen=True, repr=False)
 class AnswerAndMore(Result, Generic[A]):
-    """An ``answer``, and more that is said of it, line by line."""
+    """An ``answer``, and additional lines about it."""
 
     answer: A
 
     def lines(self) -> Sequence[str]:
-        """Say what else is known."""
+        """Give the additional lines."""
         raise NotImplementedError
 
     @property
@@ -27,7 +27,7 @@ class AnswerAndMore(Result, Generic[A]):
         return self.answer.ending
 
     def text(self) -> str:
-        """Give the answer, and what is said of it."""
+        """Give the answer, and the additional lines."""
         return self.answer.text() + "".join(f"{line}\n" for line in self.lines())
 
     def json_dict(self) -> Json:
@@ -41,7 +41,7 @@ class AnswerAndMore(Result, Generic[A]):
         return self.answer.foon()
 
     def remark(self, format_: str) -> str:
-        """Say what is not said in a format, and what is said of the answer."""
+        """Give what a format cannot tell, and the additional lines."""
         said = self.answer.remark(format_)
         return "\n".join([*([said] if said else []), *self.lines()])
 

@@ -33,7 +33,7 @@ def settings(
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Settings:
-    """Put together how to solve, within limits that begin now."""
+    """Assemble settings, with limits that begin now."""
     given = constants or ()
     if isinstance(given, Mapping):
         given = [f"{name}={value}" for name, value in given.items()]
@@ -63,7 +63,7 @@ def begin(time_limit: float | None, memory_limit: int | str | None) -> Deadline:
 
 
 def asked_with(problem: Problem, how: Settings) -> Problem:
-    """Give a problem over all that the rules of these settings may be about."""
+    """Give the whole problem if the settings have rules, which may be about any unit."""
     return whole(problem) if how.constraints or how.replaced is not None else problem
 
 

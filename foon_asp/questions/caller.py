@@ -1,4 +1,4 @@
-"""Who asks: a caller of Python, or a command that reports progress and has begun before it read its data."""
+"""Who asks: Python, or a command, which shows progress and started before it read its data."""
 
 import contextlib
 from collections.abc import Iterator

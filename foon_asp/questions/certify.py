@@ -1,4 +1,4 @@
-"""Answers, and trees that some program wrote, with proofs that are checked without a solver."""
+"""Certificates for answers and for trees of other programs, checked without a solver."""
 
 import contextlib
 from collections.abc import Sequence
@@ -53,7 +53,7 @@ class Certified(AnswerAndMore[Answer]):
     place: str = "in memory"
 
     def lines(self) -> list[str]:
-        """Say what the answer rests on."""
+        """Say what proves the answer."""
         return certificate_lines(self.answer, self.certificate, self.place)
 
     def written(self, file: File) -> Self:
@@ -109,7 +109,7 @@ class Proof(Result):
 
 
 def certified(problem: Problem, objectives: Sequence[Objective], how: Settings) -> Certified:
-    """Solve a problem, and look for a certificate; at a limit and at ctrl-C the answer stands without."""
+    """Solve a problem, and look for a certificate; at a limit or ctrl-C the answer comes without one."""
     deadline = how.begun
     how = how._replace(deadline=deadline)
     answer = answered(whole(problem), objectives, how)
@@ -189,7 +189,7 @@ def certify_tree(problem: Problem, objectives: tuple[Objective, ...], file: Path
 
 
 def _executable(problem: Problem, file: Path, covered: Coverage) -> list[int] | str:
-    """Read a tree and put it into an order that executes; say why there is none."""
+    """Read a tree in an order that executes, or say why it has none."""
     tree = [unit_at_level(unit, problem.network.level) for unit, _ in read_listed(file)[0]]
     units = [problem.network.unit_id(unit) for unit in tree]
     known = [unit for unit in units if unit is not None]

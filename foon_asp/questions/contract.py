@@ -1,4 +1,4 @@
-"""What a question is: a function that Python calls, with options that a command line is made from."""
+"""Questions: functions for Python, with options from which a command line is made."""
 
 from collections.abc import Callable, Mapping
 from enum import Flag, StrEnum, auto
@@ -68,7 +68,7 @@ class Option(NamedTuple):
 
 
 class Question:
-    """What a function that answers a question says of itself for a command line.
+    """The description of a question for a command line.
 
     ``help`` follows the line of the index, with examples and exit codes. ``formats`` are those of the result,
     the default first. ``suffixes`` are the endings of file names, with the format that each stands for, if a
@@ -118,7 +118,7 @@ def question(
     pose: Pose = one_problem,
     command: Callable[..., Result] | None = None,
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a decorator that lets a function be asked on a command line, too: :func:`question_of` says how."""
+    """Make a decorator that describes a function for a command line, see :func:`question_of`."""
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
         ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, command or ask)
@@ -128,6 +128,6 @@ def question(
 
 
 def question_of(ask: Callable[..., object]) -> Question:
-    """Give what a function says of itself for a command line."""
+    """Give the description of a question for a command line."""
     found: Question = ask.__dict__["question"]
     return found

@@ -1,4 +1,4 @@
-"""Answers that other engines were asked about, too: ``foon-asp solve --cross-check``."""
+"""Answers that other engines checked: ``foon-asp solve --cross-check``."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Docstrings of questions, of which the help of their options is a part."""
+"""Docstrings of questions, completed by the help of their options."""
 
 import inspect
 import re

@@ -1,4 +1,4 @@
-"""What a question gives: it says itself as text and as JSON, and shows itself as a picture."""
+"""The result of a question: text, JSON, and a picture."""
 
 from collections.abc import Iterable
 from enum import StrEnum
@@ -37,7 +37,7 @@ class NoTreeError(UserError):
 
 
 class Result:
-    """What a question gives. ``print`` shows what the command line prints, a notebook that and a picture."""
+    """The result of a question; ``print`` shows the text of the command line, a notebook also a picture."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""An outcome for people, for programs and as FOON text."""
+"""An outcome as text, as JSON and as FOON text."""
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -105,7 +105,7 @@ def goal_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def headline(outcome: Outcome) -> str:
-    """Say in one line what is claimed."""
+    """Give the claim in one line."""
     rule = outcome.problem.conditions
     best = ", then ".join(outcome.objectives)
     if outcome.costs is None:

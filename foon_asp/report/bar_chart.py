@@ -76,7 +76,7 @@ class BarChart(NamedTuple):
 
 
 def write_chart(chart: BarChart, file: Path) -> None:
-    """Draw a chart into a file, as SVG or PNG by its suffix; it is there whole or not at all."""
+    """Draw a chart into a file, as SVG or PNG by its suffix; the file is complete or not written at all."""
     check_suffix(file)
     if not chart.groups:
         raise UserError(f"{file}: no goal to draw a chart of")

@@ -55,7 +55,7 @@ def check_suffix(file: Path) -> None:
 
 
 def write_figure(draw: Callable[["Figure"], None], file: Path) -> None:
-    """Write what is drawn, as SVG or PNG by the file's suffix; it is there whole or not at all.
+    """Write what is drawn, as SVG or PNG by the file's suffix; the file is complete or not written at all.
 
     It looks the same whatever settings of matplotlib the user has, and those stay as they are. Raises
     :class:`UserError` for another suffix, and where matplotlib is not installed.
