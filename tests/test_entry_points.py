@@ -274,11 +274,14 @@ def test_a_package_that_cannot_be_read_is_named(cli: Cli, packages: Packages) ->
     points = packages.folder / "foon_odd-1.0.dist-info" / "entry_points.txt"
     points.write_text("[console_scripts]\nnonsense\n")  # no matter of ours
     assert cli("search", "bfs", "--goal", "ice").code == 0
-    points.write_text("[foon_asp.searches]\nnonsense\n")
-    ran = cli("search", "bfs", "--goal", "ice")
-    assert ran.code == 2
-    assert "a package offers foon_asp.searches and cannot be read: " in ran.err
-    assert str(packages.folder) in ran.err
+    points.write_bytes(b"[console_scripts]\n# \xff\n")
+    assert cli("search", "bfs", "--goal", "ice").code == 0
+    for nonsense in (b"[foon_asp.searches]\nnonsense\n", b"[foon_asp.searches]\nmine = a:b\n# \xff\n"):
+        points.write_bytes(nonsense)
+        ran = cli("search", "bfs", "--goal", "ice")
+        assert ran.code == 2
+        assert "a package offers foon_asp.searches and cannot be read: " in ran.err
+        assert str(packages.folder) in ran.err
 
 
 def test_of_a_package_that_is_there_twice_the_first_counts(

@@ -85,7 +85,10 @@ def find_offers(group: str) -> list[Offer]:
 
     found: dict[str, list[Offer]] = {}
     for distribution in metadata.distributions():
-        text = distribution.read_text("entry_points.txt")
+        try:
+            text = distribution.read_text("entry_points.txt")
+        except UnicodeDecodeError as error:
+            text = error.object.decode(errors="replace")  # to see whether it is any matter of ours
         if not text or group not in text:
             continue
         try:
