@@ -453,7 +453,7 @@ def test_a_store_is_read_by_itself(cli: Cli, soup: tuple[DataFiles, Path]) -> No
     files, store = soup
     ran = cli("solve", "--network", store, "--network", files.network[0], "--goal", "soup")
     assert ran.code == 2
-    assert "a store is read by itself" in ran.err
+    assert "a store is read alone" in ran.err
     ran = cli("import", store, files.network[0], "--store", store)
     assert ran.code == 2
     assert "is a store already" in ran.err

@@ -14,7 +14,8 @@ GOALS = Option(
 EACH_GOAL = GOALS._replace(help="A goal, by label or in one-line notation; each goal is answered by itself.")
 CONTAINERS = Option(
     "containers",
-    "Whether a unit needs all its inputs, or not the containers whose only ingredient is an input too.",
+    "Whether a unit needs all its inputs (strict), or need not be given a container whose only ingredient is "
+    "an input too (implied).",
     part=Part.PROBLEM,
     default="strict",
     choices=tuple(map(str, ContainerRule)),

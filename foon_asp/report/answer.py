@@ -19,7 +19,7 @@ from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reac
 from foon_asp.text import write_units
 from foon_asp.text.json_value import Json
 
-_DIGITS = 4  # of a success, where so many tell several apart
+_DIGITS = 4  # of a success, if these tell several apart
 _MOST_DIGITS = 40
 _NAMED = 6  # motions that are named of those that come, and of those that go
 
