@@ -376,7 +376,7 @@ def test_draws_the_whole_network(cli: Cli, tmp_path: Path) -> None:
         (["-o", "picture.jpg"], "end it in .dot .svg .png .mmd .md"),
         (["-o", "no/such/folder/a.dot"], "cannot be written"),
         (["--tree", "t.txt", "--unit", "3", "--format", "dot"], "two different drawings"),
-        (["--unit", "3", "--objective", "success", "--format", "dot"], "nothing to choose"),
+        (["--unit", "3", "--objective", "success", "--format", "dot"], "nothing is solved here"),
         (["--goal", "macarony", "--format", "dot"], "similar are"),
         (["--tree", os.devnull, "--format", "dot"], "no functional unit"),
     ],

@@ -234,7 +234,7 @@ def test_other_questions_take_what_stands(shell: Cli, cli: Cli) -> None:
         ("constraint forbid_motion x=1", "no encoding in use has the constant 'x'"),
         ("drop forbid_motion", "this session has no constraint 'forbid_motion'; the session has: none"),
         ("time-limit soon", "found the time limit 'soon', expected seconds, or none"),
-        ("show me", "found 'me' behind show"),
+        ("show me", "found 'me' after show"),
         ("help me", "found 'me', expected a word of the session or a question"),
         ("solve --bset 3", "No such option '--bset'"),
         ("solve --goal tea --data elsewhere", "a session keeps the data it was started with"),

@@ -122,9 +122,10 @@ from pathlib import Path
 from foon_asp.text import find_data, read_data
 from foon_asp.proof.verify import read_certificate, verify
 data = read_data(find_data(Path({str(universal)!r})))
+given = data.network, data.kitchen, data.rates, data.utensils
 began = time.perf_counter()
 content = read_certificate(Path({str(file)!r}).read_text())
-verify(content, data.network, data.kitchen, data.rates, data.utensils)
+verify(content, *given)
 print(time.perf_counter() - began)
 """
 
