@@ -426,7 +426,7 @@ def test_the_command(cli: Cli, tmp_path: Path) -> None:
     ran = cli("assist", "--goal", "macaroni", "--time-limit", "0", "--format", "json")
     assert ran.code == 3
     assert not ran.json["complete"]
-    for wrong in ("0", "1.1", "often", "1/0"):
+    for wrong in ("0", "1.1", "often", "1/0", "1e999999999", "1e-999999999"):
         assert cli("assist", "--goal", "macaroni", "--reach", wrong).code == 2
 
 

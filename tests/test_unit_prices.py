@@ -351,6 +351,8 @@ def test_build_takes_prices() -> None:
         ({"mix": "cheap"}, "found 'cheap' for the price of 'mix', expected a number such as '0.85'"),
         ({"mix": float("nan")}, "found nan for the price of 'mix', expected a number"),
         ({"mix": 10**1001}, "of at most 1,000 digits"),
+        ({"mix": "1e999999999"}, "found 1e999999999 for the price of 'mix', expected an exponent of at most"),
+        ({"mix": Decimal("1E-999999999")}, "expected an exponent of at most 1,000"),
         ({unit("mix", D, A): 1}, "no unit of the network is 'mix: d → a'"),
     ],
 )

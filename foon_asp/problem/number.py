@@ -1,5 +1,6 @@
 """Exact numbers that callers write."""
 
+import re
 from decimal import Decimal
 from fractions import Fraction
 
@@ -10,11 +11,18 @@ Number = int | str | float | Decimal | Fraction
 
 
 _LONGEST = 3322  # bits of a price: a thousand digits
+_EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
+_LARGEST_EXPONENT = 1000  # 1e999999999 takes hours to write out
 
 
 def exact(given: Number, what: str) -> Fraction:
     """Read an exact number; raises :class:`UserError` that says ``what`` it was to be."""
     try:
+        power = _EXPONENT.search(str(given)) if isinstance(given, str | Decimal) else None
+        if power and abs(int(power[1])) > _LARGEST_EXPONENT:
+            raise UserError(
+                f"found {str(given)[:40]} for {what}, expected an exponent of at most {_LARGEST_EXPONENT:,}"
+            )
         return Fraction(repr(given) if isinstance(given, float) else given)
     except (ValueError, ZeroDivisionError, OverflowError):
         raise UserError(f"found {given!r} for {what}, expected a number such as '0.85'") from None
