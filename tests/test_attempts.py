@@ -101,3 +101,13 @@ def test_what_never_succeeds_has_no_number_of_attempts() -> None:
     with pytest.raises(ValueError, match=r"^'attempts' cannot be computed: it needs rates above 0$"):
         costs.measure(Objective.ATTEMPTS)
     assert costs.measure(Objective.SUCCESS) == 0
+
+
+def test_sums_of_more_digits_than_are_written_have_no_certificate() -> None:
+    """Seven units of a rate with 900 digits each are tried 6,300 digits often."""
+    rates = [f"0.{'9' * 899}{last}" for last in "1234567"]
+    problem = two_ways(rates, ["0.1"])
+    found = solve(problem, BY)
+    assert found.status is Status.OPTIMAL
+    assert found.units is not None
+    assert certify(problem, (*BY, Objective.UNITS), found.units) is None

@@ -7,6 +7,7 @@ from functools import cache
 from foon_asp.bounds import Hypergraph, Lexicographic, Vector
 from foon_asp.certificate.coverage import Coverage
 from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.proof import verify
 
 
 class Arrays:
@@ -51,16 +52,16 @@ class Arrays:
         return [*units, *(action for o, action in self.items.items() if o in needed)]
 
     def stated(self, vector: Sequence[Fraction]) -> list[object]:
-        """Write a cost or weight as certificates do, one part for each objective."""
+        """Write a cost or weight as certificates do, one part an objective; raises like :func:`written`."""
         parts: list[object] = []
         place = 0
         for objective in self.objectives:
             values = vector[place : place + self.parts(objective)]
             place += len(values)
             if multiplies(objective):
-                parts.append({str(r): str(e) for r, e in zip(self.rates, values, strict=True) if e})
+                parts.append({str(r): written(e) for r, e in zip(self.rates, values, strict=True) if e})
             else:
-                parts.append(str(values[0]))
+                parts.append(written(values[0]))
         return parts
 
     def member(self, action: int) -> dict[str, int]:
@@ -88,3 +89,11 @@ class Arrays:
             else:
                 cost.append(Fraction(next(left)))
         return tuple(cost)
+
+
+def written(number: Fraction) -> str:
+    """Write a fraction as certificates do; raises :class:`LimitError` for one that is too long."""
+    try:
+        return str(number)
+    except ValueError:  # Python writes no whole number of more than 4,300 digits
+        raise verify.LimitError("a fraction has more digits than are written") from None

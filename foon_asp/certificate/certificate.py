@@ -6,8 +6,8 @@ docs/proofs.md describes the format. Nothing is given out that ``foon_asp.proof.
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from foon_asp.bounds import CheaperError, Cut, Cutter, Hopeless, Packing, Proof, Prover
-from foon_asp.certificate.arrays import Arrays
+from foon_asp.bounds import CheaperError, Cut, Cutter, Hopeless, Packing, Proof, Prover, Vector
+from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Known, Objective, Problem
@@ -93,7 +93,7 @@ def certify(
     if relaxed is None:
         return None
     packing, bound = relaxed
-    return _write(arrays, covered, "bound", units, packing, arrays.stated(bound))
+    return _write(arrays, covered, "bound", units, packing, bound)
 
 
 def certify_infeasible(problem: Problem, covered: Coverage = NOTHING) -> Certificate | None:
@@ -113,7 +113,7 @@ def _write(
     claim: str,
     units: Sequence[int] | None,
     proof: Proof,
-    bound: list[object] | None = None,
+    bound: Vector | None = None,
 ) -> Certificate | None:
     problem = arrays.problem
     cuts: dict[tuple[int, ...], int] = {}
@@ -133,15 +133,16 @@ def _write(
             "using": stated(proof.using),
         }
 
-    found = stated(proof)
     costs: list[object] | None = None
-    if units is not None:
-        measured = problem.costs(units)
-        figures = [measured.measure(objective) for objective in arrays.objectives]
-        try:
-            costs = [figure if isinstance(figure, int) else str(figure) for figure in figures]
-        except ValueError:  # Python writes no whole number of more than 4,300 digits
-            return None
+    try:
+        found = stated(proof)
+        least = None if bound is None else arrays.stated(bound)
+        if units is not None:
+            measured = problem.costs(units)
+            figures = [measured.measure(objective) for objective in arrays.objectives]
+            costs = [figure if isinstance(figure, int) else written(figure) for figure in figures]
+    except verify.LimitError:
+        return None
     content: dict[str, Any] = {
         "format": verify.FORMAT,
         "version": verify.VERSION,
@@ -157,7 +158,7 @@ def _write(
         "not_covered": list(covered.not_covered),
         "tree": None if units is None else list(units),
         "costs": costs,
-        "bound": bound,
+        "bound": least,
         "cuts": [list(objects) for objects in cuts],
         "proof": found,
     }
