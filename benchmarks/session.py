@@ -2,7 +2,8 @@
 
 A series of questions about goals that can be made, by two objectives; before each of the later ones an item
 of the kitchen is gone. Each is asked without rules of the user's (nothing is kept then: reductions come
-first), with a constraint, and with the same constraint in a session. Answers are compared.
+first), with a constraint, and with the same constraint in a session. Answers are compared. Times are those of
+the processor, which other programs do not change.
 
     python benchmarks/session.py                  the bundled kitchen
     python benchmarks/session.py --data DIR --goals 20
@@ -46,9 +47,9 @@ def main() -> None:
             for objective in (Objective.UNITS, Objective.SUCCESS):
                 answers = []
                 for way, settings in ways.items():
-                    began = time.perf_counter()
+                    began = time.process_time()
                     outcome = solve(asked, (objective,), settings)
-                    seconds.setdefault((way, objective), []).append(time.perf_counter() - began)
+                    seconds.setdefault((way, objective), []).append(time.process_time() - began)
                     costs = outcome.costs.key(levels((objective,))) if outcome.costs else None
                     answers.append((outcome.status, costs))
                 if answers[1] != answers[2]:
