@@ -5,6 +5,7 @@ import io
 import json
 import pickle
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Self
 
@@ -129,6 +130,22 @@ def test_json_csv_and_markdown_agree(cli: Cli) -> None:
                 float(Fraction(search["ratios"]["units"]["exact"])), rel=1e-5
             )
     assert sum(line.startswith("| ") for line in markdown.splitlines()) == 1 + 3 * (1 + len(SEARCHES))
+
+
+def test_measures_of_any_length_are_cells(tmp_path: Path, cli: Cli) -> None:
+    """A product of six rates with 900 digits has more than Python writes at once."""
+    nodes = [f"O\tdough\nS\t{step}\n" for step in range(7)]
+    units = [f"{before}M\tknead {step}\n{after}//\n" for step, (before, after) in enumerate(pairwise(nodes))]
+    network, kitchen, rates = (tmp_path / name for name in ("net.txt", "kitchen.txt", "motion.txt"))
+    network.write_text("//\n" + "".join(units))
+    kitchen.write_text(nodes[0])
+    rates.write_text("".join(f"knead {step}\t0.{'9' * 899}{step + 1}\n" for step in range(6)))
+    files = ("--network", network, "--kitchen", kitchen, "--rates", rates, "--goal", "dough; 6")
+    ran = cli("compare", *files, "--search", "bfs", "--format", "csv")
+    assert ran.code == 0, ran.err
+    (row,) = csv.DictReader(io.StringIO(ran.out))
+    assert len(row["success"]) > 10_000
+    assert row["success"] == row["success_optimum"]
 
 
 @pytest.fixture

@@ -134,9 +134,14 @@ def fraction_json(value: Fraction | None) -> Json | None:
     """
     if value is None:
         return None
+    return {"exact": fraction_text(value), "approx": approximate(value)}
+
+
+def fraction_text(value: Fraction) -> str:
+    """Write an exact number, of however many digits."""
     # through Decimal: products of long rates have more digits than Python turns into text at once
     parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
-    return {"exact": "/".join(parts) if value.denominator != 1 else parts[0], "approx": approximate(value)}
+    return "/".join(parts) if value.denominator != 1 else parts[0]
 
 
 def approximate(value: Fraction) -> float | None:

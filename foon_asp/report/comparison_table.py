@@ -13,6 +13,7 @@ from rich.text import Text
 
 from foon_asp.asp import Status
 from foon_asp.compare import MEASURED, Comparison, Judgement, Optimum, Summary
+from foon_asp.document.json_document import fraction_text
 from foon_asp.escapes import escaped
 from foon_asp.problem import Objective, multiplies
 from foon_asp.proof import Verdict
@@ -81,8 +82,8 @@ def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
                 optimum = comparison.optima.get(objective, Optimum("", None))
                 ratio = comparison.ratio(judgement, objective)
                 measure = judgement.measures.get(objective)
-                row += ["" if measure is None else str(measure)]
-                row += ["" if optimum.value is None else str(optimum.value), optimum.status]
+                row += ["" if measure is None else fraction_text(measure)]
+                row += ["" if optimum.value is None else fraction_text(optimum.value), optimum.status]
                 row += ["" if ratio is None else f"{float(ratio):.6g}"]
             writer.writerow(map(_cell_text, row))
     return file.getvalue()
