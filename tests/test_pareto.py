@@ -3,7 +3,7 @@
 import math
 import random
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
@@ -12,8 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from foon_asp.asp import Outcome, Reporter, Settings, exact_success, solve
-from foon_asp.deadline import Deadline
+from foon_asp.asp import exact_success
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.questions.pareto import Front, pareto
@@ -23,6 +22,7 @@ from foon_asp.text import find_data, find_goal, read_data
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import MOTIONS, SERIES, random_problem
+from tests.stopped_search import stopped_after
 from tests.test_alternatives import choosing
 
 pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
@@ -189,21 +189,7 @@ def test_what_was_found_before_a_limit_is_on_the_front(
     whole = pareto(problem, objectives)
     # That there is no other point can be seen at once, so the last search is stopped by ctrl-C alone.
     for searches in range(len(whole.points) + interrupted):
-        left = iter(range(searches))
-
-        def stopping(
-            problem: Problem,
-            objectives: Sequence[Objective],
-            settings: Settings,
-            reporter: Reporter,
-            left: Iterator[int] = left,
-        ) -> Outcome:
-            if next(left, None) is not None:
-                return solve(problem, objectives, settings, reporter)
-            if interrupted:
-                raise KeyboardInterrupt
-            return solve(problem, objectives, settings._replace(deadline=Deadline(0.0)), reporter)
-
+        stopping = stopped_after(searches, lambda _: interrupted)
         monkeypatch.setattr("foon_asp.questions.pareto.solve", stopping)
         front = pareto(problem, objectives)
         assert not front.complete

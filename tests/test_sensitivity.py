@@ -1,7 +1,7 @@
 """How wrong rates may be: cases checked by hand, and every end held against all trees of small networks."""
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 import foon_asp
-from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-from foon_asp.deadline import Deadline
+from foon_asp.asp import Outcome, Status, solve
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Root
@@ -31,6 +30,7 @@ from tests.random_problems import (
     random_problem,
     random_steps,
 )
+from tests.stopped_search import stopped_after
 from tests.test_alternatives import choosing
 
 RULES = list(ContainerRule)
@@ -397,21 +397,7 @@ def test_what_was_found_before_a_limit_is_said(interrupted: bool, monkeypatch: p
     whole = sensitivity(problem)
     done = False
     for searches in range(12):
-        left = iter(range(searches))
-
-        def stopping(
-            problem: Problem,
-            objectives: Sequence[Objective],
-            settings: Settings,
-            reporter: Reporter,
-            left: Iterator[int] = left,
-        ) -> Outcome:
-            if next(left, None) is not None:
-                return solve(problem, objectives, settings, reporter)
-            if interrupted and problem.as_seen is not None:
-                raise KeyboardInterrupt
-            return solve(problem, objectives, settings._replace(deadline=Deadline(0.0)), reporter)
-
+        stopping = stopped_after(searches, lambda asked: interrupted and asked.as_seen is not None)
         for module in ("sensitivity", "sensitivity.envelope"):
             monkeypatch.setattr(f"foon_asp.questions.{module}.solve", stopping)
         result = sensitivity(problem)
