@@ -619,6 +619,23 @@ def test_below_level_3_a_unit_needs_what_all_need_and_makes_what_any_makes(level
     assert tried({cup}, [1], paste) == LACKS.replace("0", "1")
 
 
+def test_below_level_3_a_unit_has_a_price_if_all_that_it_stands_for_have_one() -> None:
+    merged = network_at_level(DETAILED, 2)
+    one, other = DETAILED.unit(0), DETAILED.unit(1)
+    by_price: Content = {"claim": "bound", "objective": ["price"], "bound": ["0"], "tree": [0]}
+
+    def priced(units: dict[FunctionalUnit, Fraction]) -> Problem:
+        prices = UnitPrices({"stir": Fraction(2)}, units)
+        utensils, rule = frozenset({"cup"}), ContainerRule.IMPLIED
+        return Problem(merged, frozenset({0}), (2,), None, utensils, rule, unit_prices=prices)
+
+    known = {one: Fraction(7), other: Fraction(5)}
+    assert accepted(priced(known), **by_price, costs=["5"]).costs == (5,)
+    for unit, price in known.items():
+        said = "a unit has none of the prices that a claim needs"
+        assert refusal(priced({unit: price}), **by_price, costs=[str(price)]) == said
+
+
 # --- digests
 
 
@@ -795,6 +812,29 @@ def test_success_rates_have_13_000_bits() -> None:
         with pytest.raises(LimitError) as refused:
             accepted(problem, **values)
         assert str(refused.value) == "the success rate of the tree is too long a number to be written"
+
+
+@pytest.mark.parametrize(
+    ("written", "longer"),
+    [
+        (Fraction(2**13_000 - 1), Fraction(2**13_000)),
+        (Fraction(1, 2**13_000 - 1), Fraction(1, 2**13_000)),
+    ],
+)
+def test_costs_have_13_000_bits(written: Fraction, longer: Fraction) -> None:
+    """In the numerator as in the denominator."""
+    made = network(("one", [START], [END]))
+    for price in (written, longer):
+        prices = UnitPrices({"one": price}, {})
+        problem = Problem(made, frozenset({0}), (1,), None, frozenset(), unit_prices=prices)
+        claim: Content = {"claim": "bound", "objective": ["price"], "bound": ["0"]}
+        values: Content = {**claim, "tree": [0], "costs": [str(price)]}
+        if price == written:
+            assert accepted(problem, **values).costs == (price,)
+            continue
+        with pytest.raises(LimitError) as refused:
+            accepted(problem, **values)
+        assert str(refused.value) == "what the tree costs is too long a number to be written"
 
 
 # --- reading
