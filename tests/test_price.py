@@ -193,6 +193,13 @@ def test_a_bound_on_sums_that_wrap_is_refused() -> None:
     assert len(pareto(asked, "units,price").points) == 1  # what leads needs no bound
 
 
+def test_a_bound_on_sums_that_just_fit() -> None:
+    problem = two_ways(["1", "1"], ["0.5"])
+    prices = dict(zip(problem.network.motions, map(Fraction, ("2147483644", "1", "2")), strict=True))
+    points = pareto(replace(problem, unit_prices=UnitPrices(prices, {})), "success,price").points
+    assert [point.costs.measure(Objective.PRICE) for point in points] == [2147483645, 2]
+
+
 @pytest.mark.parametrize("level", [1, 2])
 @pytest.mark.parametrize("rule", RULES)
 def test_below_level_3_the_least_counts_and_is_proved(level: int, rule: ContainerRule) -> None:
