@@ -54,10 +54,13 @@ class Postconditions:
         return listed
 
     def no_tree(self) -> None:
-        """Require that nothing makes all goals, going through all that could lead to them."""
+        """Require that nothing makes all goals, going through all that could lead to them.
+
+        Sets of which a restriction requires one are goals as well.
+        """
         needs, gives, makers = self.problem.needs, self.problem.gives, self.problem.makers
         kitchen = self.problem.kitchen
-        wanted = {goal for goal in self.problem.goals if goal not in kitchen}
+        wanted = {goal for goal in self.problem.targets if goal not in kitchen}
         stack, missing = list(wanted), dict[int, int]()
         takers: dict[int, list[int]] = {}
         ready: list[int] = []
@@ -75,8 +78,11 @@ class Postconditions:
                         wanted.add(o)
                         stack.append(o)
         made: set[int] = set()
+        ran = bytearray(len(needs))
         while ready:
-            for o in gives[ready.pop()]:
+            unit = ready.pop()
+            ran[unit] = 1
+            for o in gives[unit]:
                 if o not in made:
                     made.add(o)
                     for unit in takers.get(o, ()):
@@ -84,7 +90,10 @@ class Postconditions:
                         if not missing[unit]:
                             ready.append(unit)
         self.require(
-            any(goal not in made and goal not in kitchen for goal in self.problem.goals),
+            any(
+                goal not in kitchen and not any(ran[unit] for unit in makers[goal])
+                for goal in self.problem.targets
+            ),
             lambda: "the answer is that there is no tree, but the goals can be made",
         )
 

@@ -18,6 +18,7 @@ from foon_asp.problem.containers import (
 from foon_asp.problem.costs import Costs, tree_costs
 from foon_asp.problem.number import Number
 from foon_asp.problem.objective import Known, Measured, Objective
+from foon_asp.problem.restriction import Restriction
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
@@ -73,7 +74,8 @@ class Problem:
     motion; :meth:`rate` gives the rate of any unit. ``unit_prices`` are the prices of units, or ``None``;
     :meth:`price` gives that of a unit. For a store, ``network`` is the part that can matter for the goals.
     ``origin`` is the data that it was made from, or ``None`` for a problem made by hand. ``as_seen`` is the
-    problem whose rates the user's rules look at, if others are used.
+    problem whose rates the user's rules look at, if others are used. ``restriction`` is what rules leave of
+    the network, for this question only: a variation of it has to find its own.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -91,6 +93,7 @@ class Problem:
     origin: Origin | None = field(default=None, kw_only=True)
     as_seen: "Problem | None" = field(default=None, kw_only=True)
     unit_prices: UnitPrices | None = field(default=None, kw_only=True)
+    restriction: Restriction | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
@@ -196,9 +199,19 @@ class Problem:
         return network_sides(self.network, self.containers, self.utensils)[1]
 
     @cached_property
-    def makers(self) -> tuple[tuple[int, ...], ...]:
-        """For each object node, the units that make it under the container rule, in order."""
-        return network_makers(self.network, self.containers, self.utensils)
+    def makers(self) -> Sequence[tuple[int, ...]]:
+        """For each object node, the units that make it under the container rule, in order.
+
+        A restriction removes units, and adds the units of each required set, as if they made one node more.
+        """
+        makers = network_makers(self.network, self.containers, self.utensils)
+        return makers if self.restriction is None else self.restriction.makers(makers)
+
+    @property
+    def targets(self) -> tuple[int, ...]:
+        """What a tree has to make: the goals, and one node more for each set that a restriction requires."""
+        size, restriction = len(self.network.objects), self.restriction
+        return (*self.goals, *range(size, size + (len(restriction.required) if restriction else 0)))
 
     def __repr__(self) -> str:
         return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"

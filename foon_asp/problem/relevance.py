@@ -12,7 +12,8 @@ class Reached(NamedTuple):
 
     ``units`` are all units that some tree can contain, in an order in which they execute.
     ``makers[o]`` is the first of them to make object ``o`` (kitchen items have none), so following the
-    makers back never runs in a circle. ``available`` has a 1 for every object at hand or made.
+    makers back never runs in a circle. ``available`` has a 1 for every object at hand or made. A restriction
+    leaves its units out, and each set that it requires has a maker like an object (``Problem.targets``).
     """
 
     units: tuple[int, ...]
@@ -23,6 +24,8 @@ class Reached(NamedTuple):
 def reach(problem: Problem) -> Reached:
     """Close the kitchen under the units: the counting algorithm, linear in the size of the network."""
     network, needs, gives = problem.network, problem.needs, problem.gives
+    restriction = problem.restriction
+    removed = restriction.removed if restriction else None
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
     waiting: list[list[int]] = [[] for _ in network.objects]
@@ -36,6 +39,8 @@ def reach(problem: Problem) -> Reached:
         available[o] = 1
 
     def execute(unit: int) -> None:
+        if removed and removed(unit):
+            return
         order.append(unit)
         for o in gives[unit]:
             if not available[o]:
@@ -51,6 +56,11 @@ def reach(problem: Problem) -> Reached:
             missing[unit] -= 1
             if not missing[unit]:
                 execute(unit)
+    if restriction and restriction.required:
+        places = {unit: place for place, unit in enumerate(order)}
+        for o, units in enumerate(restriction.required, start=len(network.objects)):
+            if able := [place for unit in units if (place := places.get(unit)) is not None]:
+                makers[o] = order[min(able)]
     return Reached(tuple(order), makers, available)
 
 
@@ -60,7 +70,7 @@ def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
     Goes backwards from the goals through all reached makers and stops at the kitchen.
     """
     units, _ = backwards(
-        problem.goals, problem.makers, problem.needs, problem.kitchen, frozenset(reached.units)
+        problem.targets, problem.makers, problem.needs, problem.kitchen, frozenset(reached.units)
     )
     return tuple(sorted(units))
 
@@ -95,7 +105,7 @@ def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
 
     It promises nothing about costs: it is what a search stopped at once still has in hand.
     """
-    chosen = follow(problem.goals, reached.makers, problem.needs, problem.kitchen)
+    chosen = follow(problem.targets, reached.makers, problem.needs, problem.kitchen)
     return None if chosen is None else tuple(unit for unit in reached.units if unit in chosen)
 
 

@@ -1,10 +1,10 @@
 """A question as plain arrays: actions that need and give objects, towards some goals."""
 
 from collections.abc import Container, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from foon_asp.bounds import Hypergraph
-from foon_asp.problem import Objective, Problem, backwards
+from foon_asp.problem import Left, Objective, Problem, backwards
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -14,7 +14,8 @@ class Graph(Hypergraph):
     Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
     taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is
     empty; elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
-    ``goals`` are those not there from the start.
+    ``goals`` are those not there from the start. A set of units of which a restriction requires one is one
+    more object, which each of its units gives, and a goal.
     """
 
     units: int
@@ -31,23 +32,34 @@ class Graph(Hypergraph):
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
     """Give the graph of a problem under a list of objectives."""
-    network, kitchen = problem.network, problem.kitchen
+    network, kitchen, restriction = problem.network, problem.kitchen, problem.restriction
     units, size = len(network), len(network.objects)
-    goals = tuple(o for o in dict.fromkeys(problem.goals) if o not in kitchen)
+    goals = tuple(o for o in dict.fromkeys(problem.targets) if o not in kitchen)
+    gives: Sequence[Sequence[int]] = problem.gives
+    if restriction and restriction.required:
+        gives = more = list(problem.gives)
+        for o, able in enumerate(restriction.required, start=size):
+            for unit in able:
+                more[unit] = (*more[unit], o)
+    graph = Graph(
+        size + (len(restriction.required) if restriction else 0),
+        problem.needs,
+        gives,
+        start=kitchen,
+        known_makers=problem.makers,
+        units=units,
+        goals=goals,
+    )
     if not any(objective.row.item for objective in objectives):
-        return Graph(
-            size,
-            problem.needs,
-            problem.gives,
-            start=kitchen,
-            known_makers=problem.makers,
-            units=units,
-            goals=goals,
-        )
-    makers = list(problem.makers)
-    for o in kitchen:
-        makers[o] = (units + o,)
-    gives: list[Sequence[int]] = [[o for o in given if o not in kitchen] for given in problem.gives]
-    gives += [(o,) for o in range(size)]
-    needs = [*problem.needs, *([()] * size)]
-    return Graph(size, needs, gives, start=frozenset(), known_makers=makers, units=units, goals=goals)
+        return graph
+    taken = {o: (units + o,) for o in kitchen}
+    made = problem.makers
+    return replace(
+        graph,
+        needs=[*problem.needs, *([()] * size)],
+        gives=[*([o for o in given if o not in kitchen] for given in gives), *((o,) for o in range(size))],
+        start=frozenset(),
+        known_makers=made.instead(taken)
+        if isinstance(made, Left)
+        else [taken.get(o, able) for o, able in enumerate(made)],
+    )
