@@ -20,10 +20,10 @@ from typing import Any, NamedTuple, TypeVar
 from foon_asp.asp import solve
 from foon_asp.bounds.relaxation import Covering
 from foon_asp.certificate import certify
-from foon_asp.compare import makeable
+from foon_asp.compare.many import makeable
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import read_certificate, verify
-from foon_asp.text import find_data, read_data
+from foon_asp.text.data_folder import find_data, read_data
 
 Result = TypeVar("Result")
 _OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)

@@ -43,13 +43,14 @@ from generate import Family, generate
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import CLINGO_OPTIONS
-from foon_asp.compare import makeable
+from foon_asp.compare.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.engines import EngineAnswer, agree
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, executable_order, levels
 from foon_asp.proof import Verdict, simulate_for
 from foon_asp.reduce import reduce
-from foon_asp.text import Data, find_data, find_goal, read_data
+from foon_asp.text.data_folder import Data, find_data, read_data
+from foon_asp.text.goal_name import find_goal
 
 OURS = "foon-asp"
 OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.INPUTS_AND_INGREDIENTS, Objective.SUCCESS)

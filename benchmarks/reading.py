@@ -24,7 +24,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from foon_asp.network import Contents, NetworkBuilder, ObjectNode, Relation, Source
-from foon_asp.text import FoonReader
+from foon_asp.text.reader import FoonReader
 
 Unit = tuple[str, list[ObjectNode], list[ObjectNode]]
 CONTENDERS = ("splitter", "reader")

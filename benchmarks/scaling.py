@@ -32,8 +32,9 @@ from generate import Family, generate
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach, relevant
-from foon_asp.store import import_files
-from foon_asp.text import find_data, find_goal, read_data
+from foon_asp.store.import_files import import_files
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.goal_name import find_goal
 
 STEPS = ("reading", "import", "indexing", "cone", "reduction", "search")
 

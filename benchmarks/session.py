@@ -19,10 +19,10 @@ from pathlib import Path
 
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.session import Session
-from foon_asp.compare import makeable
+from foon_asp.compare.many import makeable
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import find_data, read_data
+from foon_asp.text.data_folder import find_data, read_data
 
 
 def main() -> None:

@@ -30,7 +30,12 @@ def mark(phase):
 from pathlib import Path
 from foon_asp.asp import solve
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
-from foon_asp.text import FoonReader, find_data, find_goal, read_labels, read_object_list, read_rates
+from foon_asp.text.data_folder import find_data
+from foon_asp.text.goal_name import find_goal
+from foon_asp.text.label_list import read_labels
+from foon_asp.text.object_list import read_object_list
+from foon_asp.text.rate_table import read_rates
+from foon_asp.text.reader import FoonReader
 from foon_asp.cli.verbs import verb_command
 verb_command("solve")
 mark("import")

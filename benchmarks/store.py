@@ -26,13 +26,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.problem import ContainerRule
-from foon_asp.store import Store
-from foon_asp.text import find_goal
+from foon_asp.store.store import Store
+from foon_asp.text.goal_name import find_goal
 
 READ = """
 import gc, sys
 from pathlib import Path
-from foon_asp.text import FoonReader
+from foon_asp.text.reader import FoonReader
 gc.set_threshold(100_000, 50, 50)  # as the command line has it
 reader = FoonReader()
 for unit in reader.units(reader.text(Path(sys.argv[1])), sys.argv[1]):

@@ -15,9 +15,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from foon_asp.asp import Settings, solve
-from foon_asp.compare import makeable
+from foon_asp.compare.many import makeable
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.text import find_data, read_data
+from foon_asp.text.data_folder import find_data, read_data
 
 # A folder with each encoding; the founded one goes in as a replacement too, so that both get the same cut.
 ENCODINGS = Path(__file__).resolve().parents[1] / "encodings"

@@ -79,9 +79,9 @@ if TYPE_CHECKING:
     from foon_asp.questions.verify import verify as verify
     from foon_asp.questions.why_not import Explanation as Explanation
     from foon_asp.questions.why_not import why_not as why_not
-    from foon_asp.text import FoonReader as FoonReader
-    from foon_asp.text import parse_node as parse_node
-    from foon_asp.text import write_units as write_units
+    from foon_asp.text.line import parse_node as parse_node
+    from foon_asp.text.reader import FoonReader as FoonReader
+    from foon_asp.text.writer import write_units as write_units
 
 __version__ = "0.1.0"
 
@@ -98,7 +98,9 @@ _ROOMS = {
     "problem": ("ContainerRule", "Costs", "Objective", "Problem"),
     "proof": ("Simulation", "Verdict"),
     "proof.verify": ("RefusedError",),
-    "text": ("FoonReader", "parse_node", "write_units"),
+    "text.line": ("parse_node",),
+    "text.reader": ("FoonReader",),
+    "text.writer": ("write_units",),
 }
 _NAMES = {
     **{name: room for room, names in _ROOMS.items() for name in names},

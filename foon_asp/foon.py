@@ -12,7 +12,8 @@ from foon_asp.dataset.paths import File, Files, files
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, UnitPrices
 from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
-from foon_asp.text import Data, GoalError, find_data
+from foon_asp.text.data_folder import Data, find_data
+from foon_asp.text.goal_name import GoalError
 from foon_asp.warning import warn
 
 

@@ -23,8 +23,9 @@ from foon_asp.problem import Problem as PlainProblem
 from foon_asp.questions.index import INDEX
 from foon_asp.report import picture
 from foon_asp.resources import bundled_kitchen
-from foon_asp.store import Store, import_files
-from foon_asp.text import find_data
+from foon_asp.store.import_files import import_files
+from foon_asp.store.store import Store
+from foon_asp.text.data_folder import find_data
 from tests.conftest import CORPUS, Cli, Ran
 from tests.random_problems import random_problem
 

@@ -17,12 +17,18 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import solve
-from foon_asp.batch import Asked, Work, answer_all, answer_row, open_results, read_questions
+from foon_asp.batch.answer_row import answer_row
+from foon_asp.batch.asked import Asked
+from foon_asp.batch.question_file import read_questions
+from foon_asp.batch.results import open_results
+from foon_asp.batch.workers import Work, answer_all
 from foon_asp.cli.batch_data import Opening
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import InputError, find_data, find_goal, read_data
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli, valid
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many

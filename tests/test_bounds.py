@@ -6,12 +6,10 @@ from fractions import Fraction
 
 import pytest
 
-from foon_asp.bounds import (
-    Cutter,
-    Hypergraph,
-    Lexicographic,
-)
+from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.exact_optimum import exact_optimum
+from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.lexicographic import Lexicographic
 
 COUNT = Lexicographic([None])
 

@@ -11,7 +11,9 @@ from foon_asp.asp import Outcome, Status, solve
 from foon_asp.network import ObjectNode
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives, reach
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import Data, find_data, find_goal, read_data, read_object_list
+from foon_asp.text.data_folder import Data, find_data, read_data
+from foon_asp.text.goal_name import find_goal
+from foon_asp.text.object_list import read_object_list
 
 FOLDER = bundled_kitchen()
 FILES = find_data(FOLDER)

@@ -44,17 +44,18 @@ BESIDE = {
 # module costs every start
 MAY_BE_LOADED = """
 asp: assembly outcome own_encodings postconditions prepared program settings solver
-bounds: coprime_base cut exact_optimum hypergraph landmark_cuts lexicographic lower_bound relaxation
+bounds: coprime_base hypergraph landmark_cuts lexicographic
 cli: asking click_option exit_code held main named_path options output output_file progress
     question_command verbs weighted_files
 dataset: dataset names paths reading
 document: json_document
 network: functional_unit level network node_pattern object_node source spelling task_tree
     unit_prices
-problem: containers costs number objective order problem relevance root
+problem: containers costs number objective order problem relevance restriction root
 proof: simulation
 questions: answer arguments caller contract docstring index options posing result solve
-reduce: derivation dominance exact_costs forced graph narrow near reduction reductions upper_bound
+reduce: derivation dominance exact_costs forced graph narrow near reduction reductions
+    upper_bound
 report: answer
 text: data_folder diagnostics exact_price goal_name grammar json_fault json_list json_node
     json_object json_units json_value label_list line listed_unit motion_times object_list

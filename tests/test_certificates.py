@@ -27,7 +27,9 @@ from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, Verified, read_certificate, verify
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import find_data, find_goal, read_data, write_units
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.goal_name import find_goal
+from foon_asp.text.writer import write_units
 from tests import oracle
 from tests.conftest import Cli
 from tests.gap_problem import gap_problem

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
-from foon_asp.bounds import Packing
+from foon_asp.bounds.lower_bound import Packing
 from foon_asp.certificate import (
     Certificate,
     Coverage,

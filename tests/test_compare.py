@@ -12,17 +12,10 @@ from typing import Any, Self
 import pytest
 
 import foon_asp
-from foon_asp.compare import (
-    Comparison,
-    Distance,
-    Judgement,
-    Optimum,
-    ResultsFile,
-    comparison_json,
-    many,
-    summarize_comparisons,
-)
-from foon_asp.compare.results_file import read_comparison
+from foon_asp.compare import many
+from foon_asp.compare.comparison import Comparison, Judgement, Optimum
+from foon_asp.compare.results_file import ResultsFile, comparison_json, read_comparison
+from foon_asp.compare.summary import Distance, summarize_comparisons
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
 from foon_asp.proof import Verdict

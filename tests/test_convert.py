@@ -10,16 +10,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foon_asp.network import ObjectNode
-from foon_asp.text import FoonReader, InputError
 from foon_asp.text.conversion import Converter
 from foon_asp.text.conversion_loss import Loss
 from foon_asp.text.conversion_times import in_one_field, in_two_fields
+from foon_asp.text.diagnostics import InputError
 from foon_asp.text.dialect import Dialect, dialect_of, is_object_list
 from foon_asp.text.json_layout import lay_out
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import MotionFields
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import names, steady, texts
 

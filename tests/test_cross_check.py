@@ -28,7 +28,7 @@ from foon_asp.engines.highs import solve_with_highs
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.proof.verify import digests
-from foon_asp.text import find_data, read_data
+from foon_asp.text.data_folder import find_data, read_data
 from tests import oracle
 from tests.conftest import Cli
 from tests.gap_problem import gap_problem

@@ -2,7 +2,8 @@
 
 import pytest
 
-from foon_asp.bounds import Cut, Cutter, Hypergraph
+from foon_asp.bounds.cut import Cut, Cutter
+from foon_asp.bounds.hypergraph import Hypergraph
 
 # 0 and 1 are at hand; 4 is made of 2 and 3, 2 from 0 or from 3, 3 from 1 or from 2; 5 from 4 is of no concern
 KITCHEN = Hypergraph(

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.bounds import Lexicographic
 from foon_asp.bounds.coprime_base import coprime_base, powers
+from foon_asp.bounds.lexicographic import Lexicographic
 from foon_asp.certificate import NotBestError, certify
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Objective, Problem, levels

@@ -26,7 +26,8 @@ from foon_asp.asp.facts import FACT_PREDICATES
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import find_data, find_goal, read_data
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli, Ran
 
 FOLDER = Path(__file__).resolve().parent.parent / "encodings"

@@ -7,9 +7,9 @@ from itertools import combinations
 
 import pytest
 
-from foon_asp.bounds import Lexicographic, Vector
 from foon_asp.bounds import exact_optimum as exact_optimum_module
 from foon_asp.bounds.exact_optimum import ExactOptimum, exact_optimum
+from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.bounds.relaxation import Covering
 
 COUNT = Lexicographic([None])

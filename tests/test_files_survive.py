@@ -11,8 +11,7 @@ from typing import Any
 
 import pytest
 
-from foon_asp.compare import ResultsFile, comparison_json
-from foon_asp.compare.results_file import read_comparison
+from foon_asp.compare.results_file import ResultsFile, comparison_json, read_comparison
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import bundled_kitchen

@@ -15,7 +15,8 @@ from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verify import LimitError, RefusedError, read_certificate, seal
 from foon_asp.report.certified import verified_text
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import find_data, find_goal, read_data
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli
 from tests.handmade_certificate import Content, check, handmade
 

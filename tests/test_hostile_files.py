@@ -9,7 +9,7 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.session import Session
 from foon_asp.asp.soft import solve_soft
 from foon_asp.problem import ContainerRule, Problem, parse_objectives
-from foon_asp.text import InputError
+from foon_asp.text.diagnostics import InputError
 from tests import oracle
 from tests.hostile_files import HostileFile, hostile_files, our_names, some_hostile_files
 from tests.random_problems import random_problem

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
-from foon_asp.bounds import Cuts, Hypergraph, WeightedCut, landmark_cuts
+from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut, landmark_cuts
 
 # 0 is at hand; 3 is made of 1 and 2 or of 2 and 0, 2 of 0 in two ways, 1 of nothing, or with 4 of 3
 KITCHEN = Hypergraph(

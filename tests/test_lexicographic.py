@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from foon_asp.bounds import Lexicographic, lexicographic
+from foon_asp.bounds import lexicographic
 from foon_asp.bounds.coprime_base import coprime_base, powers
-from foon_asp.bounds.lexicographic import minus_log
+from foon_asp.bounds.lexicographic import Lexicographic, minus_log
 
 ONE, HALF = Fraction(1), Fraction(1, 2)
 COUNT = Lexicographic([None])

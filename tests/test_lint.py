@@ -9,13 +9,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from foon_asp.lint import CATALOG, lint, mended
+from foon_asp.lint.catalog import CATALOG
+from foon_asp.lint.linter import lint
+from foon_asp.lint.mending import mended
 from foon_asp.lint.near_names import near_names
 from foon_asp.lint.sheet import Sheet
 from foon_asp.network import Network, NetworkBuilder, ObjectNode
 from foon_asp.network.dead_cycles import dead_cycles
 from foon_asp.report.lint_text import lint_text
-from foon_asp.text import Diagnostic, FoonReader, Severity
+from foon_asp.text.diagnostics import Diagnostic, Severity
+from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import steady, texts
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import pytest
 
-from foon_asp.lint import CATALOG
+from foon_asp.lint.catalog import CATALOG
 from tests.conftest import ROOT, Cli
 
 PAGE = (ROOT / "docs" / "lint.md").read_text(encoding="utf-8")

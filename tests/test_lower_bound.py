@@ -8,20 +8,12 @@ from typing import Any
 
 import pytest
 
-from foon_asp.bounds import (
-    Branch,
-    CheaperError,
-    Cut,
-    Cutter,
-    Hopeless,
-    Hypergraph,
-    Lexicographic,
-    Packing,
-    Proof,
-    Prover,
-    lower_bound,
-)
+from foon_asp.bounds import lower_bound
+from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.exact_optimum import ExactOptimum, exact_optimum
+from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.lexicographic import Lexicographic
+from foon_asp.bounds.lower_bound import Branch, CheaperError, Hopeless, Packing, Proof, Prover
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.errors import BugError
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, NetworkBuilder, ObjectNode, Source
-from foon_asp.text import FoonReader
 from foon_asp.text.merged_network import merged_text
+from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_unit
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import names, steady, units

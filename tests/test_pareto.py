@@ -18,7 +18,8 @@ from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.report.answer import success_text, success_texts
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import find_data, find_goal, read_data
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.goal_name import find_goal
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import MOTIONS, SERIES, random_problem

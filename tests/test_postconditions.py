@@ -23,7 +23,7 @@ from foon_asp.questions.pareto import pareto
 from foon_asp.questions.regret import regret
 from foon_asp.reduce import ALL, NONE, ExactCosts, Reduced, reduce
 from foon_asp.resources import bundled_kitchen, encodings_folder
-from foon_asp.text import FoonReader
+from foon_asp.text.reader import FoonReader
 from tests.conftest import Cli
 from tests.random_problems import random_problem
 from tests.test_exact_success import two_ways

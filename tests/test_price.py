@@ -23,8 +23,8 @@ from foon_asp.questions.menu import menu
 from foon_asp.questions.pareto import pareto
 from foon_asp.reduce import ALL, NONE, Reduction
 from foon_asp.report.disagreement import disagreement_files
-from foon_asp.store import import_files
-from foon_asp.text import find_data, read_data
+from foon_asp.store.import_files import import_files
+from foon_asp.text.data_folder import find_data, read_data
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import (

@@ -9,20 +9,16 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text import (
-    FoonReader,
-    InputError,
-    LineError,
-    find_data,
-    find_goal,
-    parse_node,
-    read_data,
-    read_labels,
-    read_object_list,
-    read_rates,
-    write_units,
-)
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.goal_name import find_goal
+from foon_asp.text.label_list import read_labels
+from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.rate_table import read_rates
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.writer import write_units
 from tests.conftest import CORPUS
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many

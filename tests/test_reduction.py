@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Status, solve
-from foon_asp.bounds import Cuts, landmark_cuts
+from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.reduce import ALL, NONE, SAFE, ExactCosts, Listener, Reduced, Reduction, reduce, reduction
 from foon_asp.reduce.derivation import derive

@@ -11,7 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
-from foon_asp.text import STORE_MAGIC, FoonReader, InputError, read_object_list
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.object_list import read_object_list
+from foon_asp.text.plain_file import STORE_MAGIC
+from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
 
 TREE = b"# Source:\thttp://video\n//\nO1\tegg\t1\nS2\twhole\nM3\tcrack\t0:01\t0:02\nO1\tegg\t0\t15\nS4\tin\t[bowl]\n//\n"

@@ -18,7 +18,9 @@ from foon_asp.asp.soft import solve_soft
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen, encodings_folder
-from foon_asp.text import InputError, find_data, find_goal, read_data
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many

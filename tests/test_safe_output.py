@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foon_asp.cli.output import SafeStream
-from foon_asp.compare import Comparison, Judgement, Optimum
+from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable, escaped, escaped_lines
 from foon_asp.problem import Objective

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.compare import compare
+from foon_asp.compare.comparison import compare
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Problem
@@ -22,7 +22,8 @@ from foon_asp.search import (
     greedy_success,
     iterative_deepening,
 )
-from foon_asp.text import Data, find_data, find_goal, read_data
+from foon_asp.text.data_folder import Data, find_data, read_data
+from foon_asp.text.goal_name import find_goal
 from tests import oracle
 from tests.conftest import Cli
 from tests.hard_problem import hard_problem

@@ -22,7 +22,7 @@ from foon_asp.cli.shell_line import Word, quoted, take_apart
 from foon_asp.cli.shell_prompt import history_file
 from foon_asp.cli.shell_session import QUESTIONS, WORDS, ShellSession
 from foon_asp.errors import UserError
-from foon_asp.text import write_units
+from foon_asp.text.writer import write_units
 from tests.conftest import ROOT, Cli, Ran
 from tests.hard_problem import hard_problem
 

@@ -23,9 +23,14 @@ from foon_asp.asp.bare_program import bare_program
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.store import Store, builder, import_files
+from foon_asp.store import builder
 from foon_asp.store.block import SIZES, VERSION, Table, seal, unseal
-from foon_asp.text import Data, DataFiles, InputError, find_data, find_goal, read_data, write_units
+from foon_asp.store.import_files import import_files
+from foon_asp.store.store import Store
+from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.goal_name import find_goal
+from foon_asp.text.writer import write_units
 from tests.conftest import ROOT, Cli, Ran
 from tests.random_problems import random_problem
 

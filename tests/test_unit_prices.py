@@ -19,8 +19,11 @@ from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitPrices
 from foon_asp.problem import Known, Objective, Problem, Row
 from foon_asp.proof.verify import digests
 from foon_asp.search import SEARCHES, SearchSettings
-from foon_asp.store import Store, import_files
-from foon_asp.text import DataFiles, InputError, find_data, read_data, read_unit_prices
+from foon_asp.store.import_files import import_files
+from foon_asp.store.store import Store
+from foon_asp.text.data_folder import DataFiles, find_data, read_data
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.unit_price_list import read_unit_prices
 from tests.conftest import Cli
 from tests.test_objectives import made_up
 from tests.test_store import write_soup

@@ -9,11 +9,12 @@ import pytest
 
 from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.certificate import certify_outcome
-from foon_asp.compare import makeable
+from foon_asp.compare.many import makeable
 from foon_asp.engines import Asked, cross_check
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import read_certificate, verify
-from foon_asp.text import Data, find_data, find_goal, read_data
+from foon_asp.text.data_folder import Data, find_data, read_data
+from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -120,7 +121,7 @@ def test_verifying_takes_less_time_than_importing_clingo(cli: Cli, universal: Pa
 import gc
 import time
 from pathlib import Path
-from foon_asp.text import find_data, read_data
+from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.proof.verify import read_certificate, verify
 data = read_data(find_data(Path({str(universal)!r})))
 given = data.network, data.kitchen, data.rates, data.utensils

@@ -8,7 +8,8 @@ import pytest
 
 from foon_asp.asp import Status, solve
 from foon_asp.problem import ContainerRule, Objective, Problem, reach, relevant
-from foon_asp.text import Data, find_data, find_goal, read_data
+from foon_asp.text.data_folder import Data, find_data, read_data
+from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli
 from tests.random_problems import random_prices
 

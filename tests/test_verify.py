@@ -17,7 +17,8 @@ from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source,
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, Verified, seal, verify
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import find_data, find_goal, read_data
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.goal_name import find_goal
 from tests import oracle
 from tests.gap_problem import gap_problem
 from tests.random_problems import MOTIONS, random_problem

@@ -17,7 +17,7 @@ from foon_asp.grounding.messages import listener
 from foon_asp.network import Source
 from foon_asp.problem import Objective
 from foon_asp.resources import encodings_folder
-from foon_asp.text import Diagnostic, InputError, Severity
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 Signature = tuple[str, int]
 

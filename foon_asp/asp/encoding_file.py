@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.text import Diagnostic, InputError, Severity
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 # The tokens of clingo's own lexer, as far as they matter here.
 _TOKEN = re.compile(

@@ -15,7 +15,7 @@ from foon_asp.asp.search import ground
 from foon_asp.asp.settings import Relaxed
 from foon_asp.deadline import Deadline
 from foon_asp.network import Source
-from foon_asp.text import Diagnostic, InputError
+from foon_asp.text.diagnostics import Diagnostic, InputError
 
 _TEXT = "<block>"  # what clingo calls text that is in no file
 _PASSED_OVER = {ASTType.Program, ASTType.Comment}

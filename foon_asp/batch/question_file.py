@@ -10,9 +10,10 @@ from foon_asp.batch.asked import Asked, Asker
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import ContainerRule, parse_objectives
-from foon_asp.text import Diagnostic, InputError, Severity, read_plain_text
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_fault import json_fault
 from foon_asp.text.json_value import json_line, read_json
+from foon_asp.text.plain_file import read_plain_text
 
 _LONGEST = 1e9  # seconds, some thirty years
 _KEYS = ("goal", "objective", "containers", "kitchen", "time_limit")

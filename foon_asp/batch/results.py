@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 from foon_asp.asp import Status
 from foon_asp.batch.answer_row import Row
 from foon_asp.batch.asked import Asked
-from foon_asp.compare import RowsFile
+from foon_asp.compare.rows_file import RowsFile
 from foon_asp.errors import UserError
 from foon_asp.text.json_value import schema_name
 

@@ -4,7 +4,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache
 
-from foon_asp.bounds import Hypergraph, Lexicographic, Vector
+from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.certificate.coverage import Coverage
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.proof import verify

@@ -6,7 +6,9 @@ docs/proofs.md describes the format. Nothing is given out that ``foon_asp.proof.
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from foon_asp.bounds import CheaperError, Cut, Cutter, Hopeless, Packing, Proof, Prover, Vector
+from foon_asp.bounds.cut import Cut, Cutter
+from foon_asp.bounds.lexicographic import Vector
+from foon_asp.bounds.lower_bound import CheaperError, Hopeless, Packing, Proof, Prover
 from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.errors import BugError

@@ -7,7 +7,7 @@ from operator import sub
 from typing import Any
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
-from foon_asp.bounds import Vector
+from foon_asp.bounds.lexicographic import Vector
 from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage, coverage

@@ -6,17 +6,13 @@ from pathlib import Path
 
 import click
 
-from foon_asp.batch import (
-    Asked,
-    Row,
-    Tally,
-    Work,
-    answer_all,
-    answer_on_cluster,
-    each_question,
-    open_results,
-    read_questions,
-)
+from foon_asp.batch.answer_row import Row
+from foon_asp.batch.asked import Asked
+from foon_asp.batch.cluster import answer_on_cluster
+from foon_asp.batch.question_file import each_question, read_questions
+from foon_asp.batch.results import open_results
+from foon_asp.batch.tally import Tally
+from foon_asp.batch.workers import Work, answer_all
 from foon_asp.cli import options
 from foon_asp.cli.batch_data import Opening, digest
 from foon_asp.cli.click_option import click_options

@@ -8,14 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from foon_asp.batch import Asked
+from foon_asp.batch.asked import Asked
 from foon_asp.cli import options
-from foon_asp.compare import makeable
+from foon_asp.compare.many import makeable
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
-from foon_asp.text import find_data, read_object_list
+from foon_asp.text.data_folder import find_data
+from foon_asp.text.object_list import read_object_list
 
 
 @dataclass(frozen=True)

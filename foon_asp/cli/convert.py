@@ -12,8 +12,8 @@ from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import utf_8, write_whole
-from foon_asp.text import Diagnostic, InputError, summarize
 from foon_asp.text.conversion import Converted, Converter
+from foon_asp.text.diagnostics import Diagnostic, InputError, summarize
 from foon_asp.text.dialect import Dialect
 from foon_asp.text.folder_files import FolderFile, foon_files
 from foon_asp.text.plain_file import read_plain_text

@@ -9,7 +9,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.errors import UserError
 from foon_asp.report.whole_file import write_whole
-from foon_asp.text import Diagnostic, InputError
+from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.folder_files import foon_files
 from foon_asp.text.formatter import Change, format_text
 from foon_asp.text.plain_file import read_plain_text

@@ -8,8 +8,9 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.errors import UserError
-from foon_asp.store import import_files
-from foon_asp.text import find_data, summarize
+from foon_asp.store.import_files import import_files
+from foon_asp.text.data_folder import find_data
+from foon_asp.text.diagnostics import summarize
 
 
 @click.command("import")

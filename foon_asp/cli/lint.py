@@ -9,12 +9,14 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.errors import UserError
-from foon_asp.lint import CATALOG, lint, mended
+from foon_asp.lint.catalog import CATALOG
+from foon_asp.lint.linter import lint
+from foon_asp.lint.mending import mended
 from foon_asp.report.lint_annotations import lint_annotations
 from foon_asp.report.lint_json import lint_json
 from foon_asp.report.lint_text import lint_text
 from foon_asp.report.whole_file import write_whole
-from foon_asp.text import Diagnostic, Severity
+from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
 from foon_asp.text.json_value import json_text
 

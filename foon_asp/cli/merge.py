@@ -13,8 +13,11 @@ from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder
 from foon_asp.report.whole_file import utf_8, write_whole
-from foon_asp.text import FoonReader, network_files, read_unit_prices, summarize
+from foon_asp.text.data_folder import network_files
+from foon_asp.text.diagnostics import summarize
 from foon_asp.text.merged_network import merged_text
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.unit_price_list import read_unit_prices
 
 
 @click.command("merge")

@@ -15,7 +15,7 @@ from foon_asp.dataset.reading import read_dataset as read_data
 from foon_asp.deadline import Deadline, LimitError, Watch
 from foon_asp.errors import UserError
 from foon_asp.questions.options import LIMITS
-from foon_asp.text import find_data
+from foon_asp.text.data_folder import find_data
 
 _DEADLINE = "foon_asp.deadline"
 _PATH = click.Path(path_type=NamedPath)

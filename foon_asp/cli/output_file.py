@@ -7,7 +7,7 @@ import click
 
 from foon_asp.cli.held import held
 from foon_asp.errors import UserError
-from foon_asp.text import find_data
+from foon_asp.text.data_folder import find_data
 
 # The parameters of verbs that name what is written, and those that name data.
 _WRITTEN = {"output", "file", "charts", "results", "results_file", "certificate_file"}

@@ -11,7 +11,7 @@ from foon_asp.cli.shell_line import quoted, take_apart
 from foon_asp.cli.shell_session import QUESTIONS, WORDS, ShellSession
 from foon_asp.cli.verbs import verb_command
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.text import NodeNames, nodes_beginning, notation
+from foon_asp.text.goal_name import NodeNames, nodes_beginning, notation
 
 _MOST = 200  # candidates shown
 

@@ -9,17 +9,10 @@ from foon_asp.cli.shell_line import quoted
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode, pattern_at_level
-from foon_asp.text import (
-    Diagnostic,
-    ListedObject,
-    NodeNames,
-    SomeNames,
-    Wording,
-    find_goal,
-    kitchen_item_warning,
-    read_object_list,
-    summarize,
-)
+from foon_asp.text.data_folder import kitchen_item_warning
+from foon_asp.text.diagnostics import Diagnostic, summarize
+from foon_asp.text.goal_name import NodeNames, SomeNames, Wording, find_goal
+from foon_asp.text.object_list import ListedObject, read_object_list
 
 _HAVE = Wording("kitchen item", "", "have")
 _LACK = Wording("kitchen item", " at hand", "lack")
@@ -106,7 +99,7 @@ def find_nodes(
 ) -> list[int]:
     """Find the nodes that are named, each once; the beginning of a name is enough if only one name has it.
 
-    Raises :class:`UserError` like :func:`foon_asp.text.find_goal`.
+    Raises :class:`UserError` like :func:`foon_asp.text.goal_name.find_goal`.
     """
     if not words:
         raise UserError(f"name an object node: {wording.before} NAME...")

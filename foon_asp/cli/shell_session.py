@@ -24,7 +24,7 @@ from foon_asp.deadline import Deadline, memory_size, seconds, size_text
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
 from foon_asp.questions.index import INDEX
-from foon_asp.text import Wording, notation
+from foon_asp.text.goal_name import Wording, notation
 
 # The verbs that ask something of a network and a kitchen.
 QUESTIONS = (*INDEX, "facts", "constraints")

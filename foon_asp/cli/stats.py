@@ -10,7 +10,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.network import LEVELS, network_at_level
 from foon_asp.network.statistics import count
 from foon_asp.report.statistics_table import statistics_json, statistics_text
-from foon_asp.text import kitchen_nodes
+from foon_asp.text.data_folder import kitchen_nodes
 from foon_asp.text.json_value import json_text
 
 

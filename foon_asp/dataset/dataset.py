@@ -19,16 +19,9 @@ from foon_asp.problem import (
     container_rule,
     count_unpriced,
 )
-from foon_asp.text import (
-    Data,
-    ListedObject,
-    NodeNames,
-    find_goal,
-    kitchen_item_warning,
-    kitchen_nodes,
-    listed_nodes,
-    read_object_list,
-)
+from foon_asp.text.data_folder import Data, kitchen_item_warning, kitchen_nodes
+from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes
+from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 
 

@@ -3,7 +3,9 @@
 import time
 
 from foon_asp.dataset.dataset import Dataset, left_out
-from foon_asp.text import DataFiles, is_store, read_data, summarize
+from foon_asp.text.data_folder import DataFiles, read_data
+from foon_asp.text.diagnostics import summarize
+from foon_asp.text.plain_file import is_store
 
 
 def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dataset:

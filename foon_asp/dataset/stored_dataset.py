@@ -12,21 +12,13 @@ from foon_asp.dataset.names import changed_prices, changed_rates
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, UnitPrices, network_at_level, pattern_at_level
 from foon_asp.problem import Number, Problem, UnitPricesNamed, Unpriced, container_rule, require_rates
-from foon_asp.store import Store
-from foon_asp.text import (
-    Data,
-    DataFiles,
-    Diagnostic,
-    ListedObject,
-    kitchen_item_warning,
-    kitchen_nodes,
-    read_labels,
-    read_object_list,
-    read_rates,
-    read_unit_prices,
-    summarize,
-    unit_price_warning,
-)
+from foon_asp.store.store import Store
+from foon_asp.text.data_folder import Data, DataFiles, kitchen_item_warning, kitchen_nodes, unit_price_warning
+from foon_asp.text.diagnostics import Diagnostic, summarize
+from foon_asp.text.label_list import read_labels
+from foon_asp.text.object_list import ListedObject, read_object_list
+from foon_asp.text.rate_table import read_rates
+from foon_asp.text.unit_price_list import read_unit_prices
 
 
 def read_stored(files: DataFiles, level: int) -> Dataset:

@@ -19,7 +19,7 @@ from foon_asp.engines.engine import (
     differing,
 )
 from foon_asp.engines.offered_engine import offered_engine
-from foon_asp.offered import find_offers, offers_by_name
+from foon_asp.offered.offer import find_offers, offers_by_name
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
 # Engines compute logarithms of rates in floats or in millionths: closer than this for each unit is equal.

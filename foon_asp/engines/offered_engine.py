@@ -6,7 +6,8 @@ from typing import Any
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.engines.engine import Engine, EngineAnswer, NotCheckedError
 from foon_asp.escapes import escaped
-from foon_asp.offered import Offer, Raised, ask_offered
+from foon_asp.offered.offer import Offer, Raised
+from foon_asp.offered.process import ask_offered
 from foon_asp.problem import Objective, Problem
 
 _NOT_CHECKED = f"{NotCheckedError.__module__}.{NotCheckedError.__name__}"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from foon_asp.lint.names import times
 from foon_asp.lint.sheet import Sheet
 from foon_asp.network import Contents, Relation
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import StateLine
 
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from foon_asp.text import Severity
+from foon_asp.text.diagnostics import Severity
 
 ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 

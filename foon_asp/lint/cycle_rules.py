@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from foon_asp.lint.linted_files import LintedFiles
 from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 
 _SHOWN = 4  # steps of a cycle
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from foon_asp.lint.sheet import Sheet
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import ObjectLine
 
 

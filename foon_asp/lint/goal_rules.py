@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from foon_asp.lint.linted_files import LintedFiles
 from foon_asp.lint.sheet import Entry, Sheet
 from foon_asp.network import Network
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import ObjectLine
 
 _MANY = 10  # entries of a list: if most of it is unknown, it is told of as a whole

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from foon_asp.lint.names import times
 from foon_asp.lint.sheet import Sheet, WrittenLine
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import name_of
 
 _KINDS = {"O": "object", "S": "state", "M": "motion"}

@@ -8,14 +8,15 @@ from typing import NamedTuple
 from foon_asp.lint.catalog import CATALOG
 from foon_asp.lint.sheet import Entry, Sheet
 from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source
-from foon_asp.text import Diagnostic, FoonReader, LineError
+from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.dialect import is_object_list
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
 from foon_asp.text.json_units import is_json
-from foon_asp.text.line import Line
+from foon_asp.text.line import Line, LineError
 from foon_asp.text.listed_unit import ListedUnit
 from foon_asp.text.plain_file import split_lines
+from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 
 _LINE_BREAK = re.compile(r"[\r\n]")

@@ -12,7 +12,7 @@ from foon_asp.lint.linted_files import LintedFiles
 from foon_asp.lint.name_rules import name_findings
 from foon_asp.lint.names import Names
 from foon_asp.lint.unit_rules import unit_findings
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 
 
 def lint(files: Iterable[Path]) -> list[Diagnostic]:

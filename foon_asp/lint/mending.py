@@ -4,7 +4,7 @@ import re
 from codecs import BOM_UTF8
 from collections.abc import Iterable
 
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 
 _LINE = re.compile(rb"([^\r\n]*)(\r\n|\r|\n|\Z)")
 

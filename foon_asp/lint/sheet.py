@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 from foon_asp.lint.catalog import CATALOG
 from foon_asp.network import NodePattern, ObjectNode, Source
-from foon_asp.text import Diagnostic, FoonReader, LineError
-from foon_asp.text.line import Line, ObjectLine, StateLine
+from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.line import Line, LineError, ObjectLine, StateLine
 from foon_asp.text.listed_unit import node_of
+from foon_asp.text.reader import FoonReader
 
 _LETTERS = {"O", "S", "M"}
 _NAME = re.compile(r"[^\t\[\]{},]+")

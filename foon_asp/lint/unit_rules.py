@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from foon_asp.lint.linted_files import Copy, LintedFiles
-from foon_asp.text import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic
 
 
 def unit_findings(files: LintedFiles) -> Iterator[Diagnostic]:

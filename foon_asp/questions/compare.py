@@ -5,16 +5,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from foon_asp.compare import (
-    Comparison,
-    ResultsFile,
-    all_proved,
-    compare_goals,
-    comparison_json,
-    makeable,
-    results_question,
-    summarize_comparisons,
-)
+from foon_asp.compare.comparison import Comparison
+from foon_asp.compare.many import compare_goals, makeable
+from foon_asp.compare.results_file import ResultsFile, comparison_json, results_question
+from foon_asp.compare.summary import all_proved, summarize_comparisons
 from foon_asp.dataset.paths import File
 from foon_asp.document.json_document import document, goals_json, nodes_json
 from foon_asp.errors import UserError

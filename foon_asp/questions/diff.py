@@ -26,7 +26,7 @@ from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NoTreeError, Result
 from foon_asp.questions.tree import Tree, read_listed
 from foon_asp.report.answer import costs_text, counted, headline
-from foon_asp.text import find_goal
+from foon_asp.text.goal_name import find_goal
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
 

@@ -27,7 +27,7 @@ from foon_asp.report.notebook import picture_bundle
 from foon_asp.report.picture import png_picture, svg_picture
 from foon_asp.report.tree_drawing import given_tree, solved_tree
 from foon_asp.report.whole_file import utf_8, write_whole
-from foon_asp.text import Data
+from foon_asp.text.data_folder import Data
 
 _MERMAID_PAGE = ".md"
 

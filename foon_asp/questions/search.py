@@ -16,7 +16,7 @@ from foon_asp.report.drawing import Drawing
 from foon_asp.report.verdict import Listed, verdict_json, verdict_text
 from foon_asp.search import Ending as Searched
 from foon_asp.search import Retrieval, Search, search_names
-from foon_asp.text import write_units
+from foon_asp.text.writer import write_units
 
 
 @dataclass(frozen=True, repr=False)

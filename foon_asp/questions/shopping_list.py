@@ -29,7 +29,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RU
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import answer_json, counted, goal_lines, headline, steps
 from foon_asp.report.drawing import Drawing
-from foon_asp.text import LineError, parse_node
+from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.price_list import Price, read_prices
 
 

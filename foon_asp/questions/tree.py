@@ -13,8 +13,10 @@ from foon_asp.questions.result import NoTreeError
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.notebook import picture_bundle, svg_text
 from foon_asp.report.tree_drawing import given_tree
-from foon_asp.text import FoonReader, summarize, write_units
 from foon_asp.text.answer_file import read_listed_tree
+from foon_asp.text.diagnostics import summarize
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.writer import write_units
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -16,7 +16,7 @@ from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import counted, goal_lines
-from foon_asp.text import ListedObject
+from foon_asp.text.object_list import ListedObject
 
 if TYPE_CHECKING:  # clingo, which is needed where rules have a say
     from foon_asp.questions.clash import Clash

@@ -6,8 +6,9 @@ from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from itertools import pairwise
 
-from foon_asp.bounds import Cuts, Lexicographic
 from foon_asp.bounds.coprime_base import coprime_base, powers
+from foon_asp.bounds.landmark_cuts import Cuts
+from foon_asp.bounds.lexicographic import Lexicographic
 from foon_asp.problem import Objective, Problem, multiplies
 
 _COARSE = 1000  # steps to 1 of -ln(rate) and of fractions, where a cost need not be exact

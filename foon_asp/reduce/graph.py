@@ -3,7 +3,7 @@
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from foon_asp.bounds import Hypergraph
+from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.problem import Left, Objective, Problem, backwards
 
 

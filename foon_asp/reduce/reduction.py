@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import NamedTuple
 
-from foon_asp.bounds import Cuts, landmark_cuts
+from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.problem import Objective, Problem
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.dominance import undominated

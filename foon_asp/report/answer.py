@@ -16,8 +16,8 @@ from foon_asp.document.json_document import (
 )
 from foon_asp.network import Network
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
-from foon_asp.text import write_units
 from foon_asp.text.json_value import Json
+from foon_asp.text.writer import write_units
 
 _DIGITS = 4  # of a success, if these tell several apart
 _MOST_DIGITS = 40

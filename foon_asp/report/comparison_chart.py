@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from foon_asp.compare import Comparison, Judgement
+from foon_asp.compare.comparison import Comparison, Judgement
 from foon_asp.problem import Objective
 from foon_asp.proof import Verdict
 from foon_asp.report.bar_chart import Bar, BarChart, BarGroup

@@ -12,7 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from foon_asp.asp import Status
-from foon_asp.compare import MEASURED, Comparison, Judgement, Optimum, Summary
+from foon_asp.compare.comparison import MEASURED, Comparison, Judgement, Optimum
+from foon_asp.compare.summary import Summary
 from foon_asp.document.json_document import fraction_text
 from foon_asp.escapes import escaped
 from foon_asp.problem import Objective, multiplies

@@ -18,8 +18,10 @@ from foon_asp.proof.verify import digests
 from foon_asp.report.answer import answer_json
 from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import encodings_folder
-from foon_asp.text import decimal_text, write_unit_prices, write_units
+from foon_asp.text.exact_price import decimal_text
 from foon_asp.text.json_value import json_text
+from foon_asp.text.unit_price_list import write_unit_prices
+from foon_asp.text.writer import write_units
 
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy", "up-fast-downward")
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from foon_asp.escapes import UNSAFE, escaped
-from foon_asp.text import Diagnostic, Severity
+from foon_asp.text.diagnostics import Diagnostic, Severity
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
 

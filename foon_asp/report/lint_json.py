@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from foon_asp.document.json_document import document
-from foon_asp.text import Diagnostic, Severity
+from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_value import Json
 
 _LONGEST = 1000  # letters: thousands of findings on one line would repeat it thousands of times

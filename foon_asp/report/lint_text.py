@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from foon_asp.text import Diagnostic, Severity
+from foon_asp.text.diagnostics import Diagnostic, Severity
 
 _IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
 _LINES = 12

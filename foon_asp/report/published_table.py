@@ -6,7 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.compare import Comparison
+from foon_asp.compare.comparison import Comparison
 from foon_asp.problem import Objective
 
 

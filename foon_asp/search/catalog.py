@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from foon_asp.offered import find_offers, offers_by_name
+from foon_asp.offered.offer import find_offers, offers_by_name
 from foon_asp.problem import Problem
 from foon_asp.search.breadth_first import breadth_first
 from foon_asp.search.depth_first import depth_first

@@ -4,7 +4,8 @@ import functools
 from typing import Any
 
 from foon_asp.deadline import Deadline, LimitError
-from foon_asp.offered import Offer, Raised, ask_offered
+from foon_asp.offered.offer import Offer, Raised
+from foon_asp.offered.process import ask_offered
 from foon_asp.problem import Problem
 from foon_asp.search.retrieval import Ending, Retrieval
 from foon_asp.search.search import Search, SearchSettings

@@ -12,7 +12,8 @@ from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, table_statement, unseal
 from foon_asp.store.label_index import label_values, trigram_blocks
 from foon_asp.store.plain_values import entry_values, node_hashes, node_values, pattern_hash
-from foon_asp.text import ListedObject, UnitPriceList
+from foon_asp.text.object_list import ListedObject
+from foon_asp.text.unit_price_list import UnitPriceList
 
 _LATER_COPIES = 100_000  # copies of units written before, kept back to be written together
 

@@ -12,20 +12,14 @@ from foon_asp.errors import UserError
 from foon_asp.problem import require_rates
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.store_file import is_database_of_ours
-from foon_asp.text import (
-    STORE_MAGIC,
-    STORE_SUFFIX,
-    DataFiles,
-    Diagnostic,
-    FoonReader,
-    is_store,
-    kitchen_item_warning,
-    read_labels,
-    read_object_list,
-    read_rates,
-    read_unit_prices,
-    unit_price_warning,
-)
+from foon_asp.text.data_folder import DataFiles, kitchen_item_warning, unit_price_warning
+from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.label_list import read_labels
+from foon_asp.text.object_list import read_object_list
+from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store
+from foon_asp.text.rate_table import read_rates
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.unit_price_list import read_unit_prices
 
 
 class Imported(NamedTuple):

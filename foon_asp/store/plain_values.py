@@ -4,7 +4,7 @@ from typing import Any
 from zlib import crc32
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text import ListedObject
+from foon_asp.text.object_list import ListedObject
 
 
 def node_values(node: ObjectNode, in_kitchen: bool) -> list[object]:

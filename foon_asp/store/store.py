@@ -15,7 +15,7 @@ from foon_asp.store.block import Table
 from foon_asp.store.label_index import LabelIndex
 from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
 from foon_asp.store.store_file import StoreFile
-from foon_asp.text import ListedObject
+from foon_asp.text.object_list import ListedObject
 
 
 class Store:

@@ -10,8 +10,7 @@ from typing import Any, NoReturn, TypeVar
 from foon_asp.errors import UserError
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, table_statement, unseal
 from foon_asp.store.block_shape import check_block, note_line_ends
-from foon_asp.text import STORE_MAGIC
-from foon_asp.text.plain_file import read_beginning
+from foon_asp.text.plain_file import STORE_MAGIC, read_beginning
 
 _HEADER = 100  # bytes; https://www.sqlite.org/fileformat2.html says what is where
 

@@ -8,16 +8,10 @@ import pytest
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text import (
-    Data,
-    DataFiles,
-    InputError,
-    Severity,
-    find_data,
-    read_data,
-    read_labels,
-    read_object_list,
-)
+from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
+from foon_asp.text.diagnostics import InputError, Severity
+from foon_asp.text.label_list import read_labels
+from foon_asp.text.object_list import read_object_list
 
 CORPUS = Path(__file__).resolve().parents[3] / "shared" / "corpus"
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.text import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
 from tests.text.foon_strategies import steady
 
 

@@ -8,7 +8,9 @@ from hypothesis import given
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, NetworkBuilder, NodePattern, ObjectNode, Source
-from foon_asp.text import FoonReader, ListedObject, find_goal, listed_nodes
+from foon_asp.text.goal_name import find_goal, listed_nodes
+from foon_asp.text.object_list import ListedObject
+from foon_asp.text.reader import FoonReader
 from tests.text.foon_strategies import steady, units
 
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text import Diagnostic, InputError, ListedObject, Severity, read_object_list
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.writer import write_node
 from tests.text.foon_strategies import nodes, steady
 

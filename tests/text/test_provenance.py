@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foon_asp.network import Source
-from foon_asp.text import FoonReader
 from foon_asp.text.provenance import is_video, read_copy, read_video, write_copy
+from foon_asp.text.reader import FoonReader
 from tests.text.foon_strategies import steady
 
 UNIT = "O\ta\nM\tmix\nO\tb\n//\n"

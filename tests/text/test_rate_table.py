@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.text import Diagnostic, InputError, read_rates
+from foon_asp.text.diagnostics import Diagnostic, InputError
+from foon_asp.text.rate_table import read_rates
 from tests.text.foon_strategies import names, steady
 
 

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
-from foon_asp.text import Diagnostic, FoonReader, InputError, Severity, write_units
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.line import Line
 from foon_asp.text.plain_file import read_plain_text
-from foon_asp.text.reader import ReadUnit
-from foon_asp.text.writer import write_line
+from foon_asp.text.reader import FoonReader, ReadUnit
+from foon_asp.text.writer import write_line, write_units
 from tests.text.foon_strategies import steady, texts, unit_texts, units
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many

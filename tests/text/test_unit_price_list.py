@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices
-from foon_asp.text import InputError, UnitPriceList, read_unit_prices, write_unit_prices
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.unit_price_list import UnitPriceList, read_unit_prices, write_unit_prices
 
 DOUGH = ObjectNode.of("dough", ["raw"], [("in", "tin")])
 OVEN = ObjectNode.of("oven")

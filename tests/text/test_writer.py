@@ -3,8 +3,8 @@
 from hypothesis import given
 
 from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.text import FoonReader, write_units
-from foon_asp.text.writer import write_node, write_unit
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.writer import write_node, write_unit, write_units
 from tests.text.foon_strategies import nodes, steady, units
 
 BOWL = ObjectNode.of(

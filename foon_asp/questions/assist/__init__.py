@@ -18,7 +18,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, counted, goal_lines, steps, success_text
-from foon_asp.text import read_rates
+from foon_asp.text.rate_table import read_rates
 
 
 @dataclass(frozen=True, repr=False)
