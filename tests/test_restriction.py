@@ -156,3 +156,47 @@ def test_a_required_set_is_one_more_node_to_make() -> None:
     assert list(one.makers[size:]) == [(1,), ()]
     assert reduce(one, levels((Objective.UNITS,))).tree is None
     assert best_left(problem, tuple(range(len(problem.network))), ["units"]) is not None
+
+
+@pytest.mark.usefixtures("_sizes")
+@pytest.mark.parametrize("spare", [False, True])
+@pytest.mark.parametrize("seeds", [range(40), pytest.param(range(40, 400), marks=pytest.mark.slow)])
+def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, spare: bool) -> None:
+    """By the exact costs of every tree there is, and by figures between them."""
+    asked = left_out = 0
+    for seed in seeds:
+        plain, _, every = posed(seed)
+        problem = restricted(plain, seed)
+        found = kept(problem, every)
+        if not spare:  # then rules that leave a tree leave what is left of it without spare units
+            found = [one for one in found if not any(other.units < one.units for other in found)]
+        names = LISTS[seed % len(LISTS)]
+        reduced = reduce(problem, levels(tuple(map(Objective, names))), spare=spare)
+        wide = reduced.wide
+        if wide is None:
+            continue
+        everything = wide.everything()
+        assert all(tree.units <= everything for tree in found)
+        totals = sorted({wide.total(tree.units) for tree in found})
+        for tree in found:  # measured as the objectives do
+            [same] = {
+                one.key([*names, "units"]) for one in found if wide.total(one.units) == wide.total(tree.units)
+            }
+            assert same == tree.key([*names, "units"])
+        for total in totals:
+            for limit in {total - 1, total, total + 1, total * 11 // 10}:
+                within = wide.within(limit, lambda: False)
+                asked, left_out = asked + 1, left_out + (within < everything)
+                assert within <= everything
+                for tree in found:
+                    assert wide.total(tree.units) > limit or tree.units <= within, (seed, names)
+    assert asked > len(seeds)
+    assert left_out > asked / 8
+
+
+def test_the_units_nearest_to_the_goals_make_them_sooner_or_later() -> None:
+    problem = restricted(posed(4)[0], 4)
+    wide = reduce(problem, levels((Objective.UNITS,))).wide
+    assert wide is not None
+    assert wide.nearest(1) <= wide.nearest(3) <= wide.nearest(1000) == wide.everything()
+    assert len(wide.nearest(1)) >= 1

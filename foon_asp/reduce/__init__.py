@@ -9,3 +9,4 @@ from foon_asp.reduce.reductions import NONE as NONE
 from foon_asp.reduce.reductions import SAFE as SAFE
 from foon_asp.reduce.reductions import Reduction as Reduction
 from foon_asp.reduce.reductions import parse_reductions as parse_reductions
+from foon_asp.reduce.wide import Wide as Wide

@@ -17,6 +17,7 @@ from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
 from foon_asp.reduce.upper_bound import improved, without_spare
+from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 _LARGE = 40_000  # actions from which on it pays not to look at all of them
 _FIRST = 4000  # actions nearest to the goals, among which a tree is looked for before all others count
@@ -33,6 +34,7 @@ class Reduced(NamedTuple):
     compares trees exactly and ``bound`` is a lower bound by it on every tree; ``None`` and 0 where there is
     none. ``cuts`` are the weighted cuts of the greatest sum, over the units left at the time. ``interrupted``
     says that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
+    ``wide`` tells which units trees up to a cost can have, whatever rules leave of these trees.
     """
 
     tree: frozenset[int] | None
@@ -42,6 +44,7 @@ class Reduced(NamedTuple):
     bound: int
     cuts: Cuts | None
     interrupted: bool = False
+    wide: Wide | None = None
 
 
 class Listener:
@@ -61,19 +64,21 @@ def reduce(
     expired: Callable[[], bool] = lambda: False,
     listener: Listener | None = None,
     guard: Callable[[], AbstractContextManager[object]] = nullcontext,
+    spare: bool = False,
 ) -> Reduced:
     """Leave of a problem what a search for the best tree still has to look at.
 
     ``objectives`` is the list as it is optimized, ``units`` being in it, so that every unit costs
     something. Without reductions that is what can be made from the kitchen and the goals can need.
     ``expired`` is asked now and then; what takes longer is interrupted, as by ctrl-C, by the ``guard``.
+    ``spare`` says that the trees to be asked about may have units that lead to no goal.
     """
     collecting = gc.isenabled()
     gc.disable()  # nothing here is circular, and a collection walks over the whole network
     try:
         with guard():
             reducer = _Reducer(
-                problem, tuple(objectives), frozenset(reductions), expired, listener or Listener()
+                problem, tuple(objectives), frozenset(reductions), expired, listener or Listener(), spare
             )
         return reducer.reduce(guard)
     finally:
@@ -89,9 +94,10 @@ class _Reducer:
         reductions: frozenset[Reduction],
         expired: Callable[[], bool],
         listener: Listener,
+        spare: bool = False,
     ) -> None:
         self.problem, self.objectives, self.reductions = problem, objectives, reductions
-        self.expired, self.listener = expired, listener
+        self.expired, self.listener, self.spare = expired, listener, spare
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse = CoarseCosts(problem, objectives[0])
         self.left: Collection[int]  # there before a tree is
@@ -99,6 +105,7 @@ class _Reducer:
         self.costs: ExactCosts | None = None
         self.bound = 0
         self.cuts: Cuts | None = None
+        self.wide: Wide | None = None
 
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
         ended = settled = hopeless = False
@@ -158,7 +165,8 @@ class _Reducer:
         """Go around until nothing changes; whether the tree is proved optimal."""
         costs: ExactCosts | None = None
         with suppress(TooFineError):
-            self.costs = costs = ExactCosts(self.problem, self.objectives, self.left)
+            all_costs = range(len(self.graph.needs)) if self.spare else self.left
+            self.costs = costs = ExactCosts(self.problem, self.objectives, all_costs)
         if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
             self._follow_added(costs)
         thorough = False  # as a last resort
@@ -209,6 +217,8 @@ class _Reducer:
             self.expired,
             None if lazy else lambda rest: derive(self.graph, self.left, rest, added=False).cost,
         )
+        if self.wide is None and not cuts.interrupted:  # nothing was left out so far
+            self.wide = Wide(self.problem, self.graph, self.left, costs, cuts, self.spare)
         if self.cuts is None or cuts.bound > self.cuts.bound:
             self.cuts = cuts
         bound = min(cuts.bound, self._total(costs))
@@ -225,7 +235,7 @@ class _Reducer:
 
     def _improve(self, costs: ExactCosts, cuts: Cuts, thorough: bool) -> None:
         """Look for better trees near what cuts leave."""
-        rest = _rests(costs, cuts)
+        rest = rests(costs, cuts)
         few = near(self.graph, self.left, rest, self._total(costs) - cuts.bound, most=_MANY)
         better = improved(self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough)
         if better is not self.tree:
@@ -233,18 +243,10 @@ class _Reducer:
 
     def _drop_dear(self, costs: ExactCosts, cuts: Cuts) -> None:
         """Leave out what only trees have that are no better than the one in hand."""
-        rest = _rests(costs, cuts)
         limit = self._total(costs) - cuts.bound + costs.doubt
         if Reduction.BOUNDS in self.reductions:
             limit -= 1  # what is as good is not looked for
-        left = near(self.graph, self.left, rest, limit)
-        while not self.expired():
-            made = derive(self.graph, left, rest, added=False)
-            nearer = near(self.graph, left, rest, limit, made.before)
-            if len(nearer) == len(left):
-                break
-            left = nearer
-        self.left = left
+        self.left = dear_left_out(self.graph, self.left, rests(costs, cuts), limit, self.expired)
 
     def _take(self, tree: set[int]) -> None:
         self.tree = tree
@@ -261,11 +263,12 @@ class _Reducer:
         early = isinstance(self.left, range)  # nothing was left out, and there is no time to begin with it
         left = tree if settled or early else tree | self._units(self.left)
         return Reduced(
-            tree, tuple(sorted(left)), settled, self.costs, self.bound, self.cuts, early and not settled
+            tree,
+            tuple(sorted(left)),
+            settled,
+            self.costs,
+            self.bound,
+            self.cuts,
+            early and not settled,
+            self.wide,
         )
-
-
-def _rests(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
-    """Give what cuts leave of the costs of actions."""
-    left = cuts.left
-    return lambda action: left[action] if action in left else costs(action)

@@ -1,0 +1,124 @@
+"""What trees up to a cost can have: a question made small for rules that decide which trees count."""
+
+import sys
+from collections.abc import Callable, Collection, Container, Iterable
+from dataclasses import dataclass
+
+from foon_asp.bounds import Cuts, landmark_cuts
+from foon_asp.problem import Problem
+from foon_asp.reduce.derivation import derive
+from foon_asp.reduce.exact_costs import ExactCosts
+from foon_asp.reduce.graph import Graph
+from foon_asp.reduce.near import near
+
+_ROUNDS = 6  # of cuts and what they leave
+
+
+@dataclass(frozen=True, eq=False)
+class Wide:
+    """A question with cuts that hold for every tree, before anything was left out.
+
+    ``left`` are the actions that the cuts are about. With ``spare``, trees may have units that lead to no
+    goal, which rules can ask for; ``costs`` are then those of all actions.
+    """
+
+    problem: Problem
+    graph: Graph
+    left: Collection[int]
+    costs: ExactCosts
+    cuts: Cuts
+    spare: bool
+
+    def total(self, units: Iterable[int]) -> int:
+        """Give what a tree costs, with the items that it takes where these are counted."""
+        tree = set(units)
+        if not self.graph.start and self.problem.kitchen:
+            needed = {o for unit in tree for o in self.problem.needs[unit]}
+            tree |= {self.graph.units + o for o in needed & self.problem.kitchen}
+        return sum(map(self.costs, tree))
+
+    def nearest(self, most: int) -> frozenset[int]:
+        """Give at least so many units, those nearest to the goals by what cuts leave, or all."""
+        return self._units(near(self.graph, self.left, rests(self.costs, self.cuts), sys.maxsize, most=most))
+
+    def everything(self) -> frozenset[int]:
+        """Give all units that a tree can have, whatever it costs."""
+        graph = self.graph
+        if self.spare:
+            return self._units(derive(graph, self._all(), self.costs, added=False).before)
+        made = derive(graph, graph.cone()[0], self.costs, added=False)
+        return self._units(graph.cone(made.before)[0])
+
+    def within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
+        """Give the units that a tree of costs up to a limit can have, and maybe more where time is up.
+
+        What the cuts leave of the costs of a tree is at most its cost less their bound. Where no unit is
+        spare, it is on a way from each unit to a goal; else it is at least in what the unit itself takes.
+        All trees up to the limit are among the units left, so cuts can be found anew among these.
+        """
+        graph, costs, cuts = self.graph, self.costs, self.cuts
+        left: Collection[int] = self._all() if self.spare else self.left
+        for _ in range(_ROUNDS):
+            gap = limit - cuts.bound + costs.doubt
+            if gap < 0:
+                return frozenset()
+            rest = rests(costs, cuts)
+            before = len(left)
+            if self.spare:
+                made = derive(graph, left, rest, added=False).before
+                left = {action for action, least in made.items() if least <= gap}
+            else:
+                left = dear_left_out(graph, left, rest, gap, expired)
+            if len(left) == before or expired():
+                break
+            among = left
+            cuts = landmark_cuts(
+                graph,
+                graph.goals,
+                among,
+                costs,
+                derive(graph, among, costs, added=False).cost,
+                expired,
+                lambda rest, among=among: derive(graph, among, rest, added=False).cost,  # type: ignore[misc]
+            )
+            if cuts.interrupted:
+                raise KeyboardInterrupt
+            if cuts.hopeless:
+                return frozenset()
+        return self._units(left)
+
+    def _all(self) -> list[int]:
+        """Give all actions that a tree may have."""
+        units, restriction = self.graph.units, self.problem.restriction
+        actions = (
+            range(units) if restriction is None else [u for u in range(units) if not restriction.removed(u)]
+        )
+        counted = not self.graph.start
+        return [*actions, *(units + o for o in self.problem.kitchen if counted)]
+
+    def _units(self, actions: Iterable[int]) -> frozenset[int]:
+        return frozenset(a for a in actions if a < self.graph.units)
+
+
+def rests(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
+    """Give what cuts leave of the costs of actions."""
+    left = cuts.left
+    return lambda action: left[action] if action in left else costs(action)
+
+
+def dear_left_out(
+    graph: Graph,
+    allowed: Container[int],
+    rest: Callable[[int], int],
+    limit: int,
+    expired: Callable[[], bool],
+) -> set[int]:
+    """Give the allowed actions that trees without spare units, of rests up to a limit, can have."""
+    left = near(graph, allowed, rest, limit)
+    while not expired():
+        made = derive(graph, left, rest, added=False)
+        nearer = near(graph, left, rest, limit, made.before)
+        if len(nearer) == len(left):
+            break
+        left = nearer
+    return left
