@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Collection, Container, Iterable
 from dataclasses import dataclass
 
-from foon_asp.bounds import Cuts, landmark_cuts
+from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.problem import Problem
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.exact_costs import ExactCosts
