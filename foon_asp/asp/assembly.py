@@ -2,12 +2,16 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from foon_asp.asp.own_encodings import ENCODING_FILES, exact_success, is_own
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
 from foon_asp.resources import encodings_folder
+
+if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
+    from foon_asp.asp.rules import Rules
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
@@ -61,6 +65,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     constants: list[str] = []
     looked_at: frozenset[tuple[str, int]] = frozenset()
     text, is_open = "", False
+    understood: Rules | None = None
     replaced = not all(map(is_own, base))
     endless = replaced or not all(map(is_own, added))
     encodings = folder if settings.encodings is None and replaced else settings.encodings
@@ -90,6 +95,11 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
             and _OF_ONE_SEARCH not in looked_at
             and not any(each.assigns for each in extra)
         )
+        if extra and not encodings and relaxed is None:
+            from foon_asp.asp import rules as user_rules  # noqa: PLC0415
+
+            statements = [statement for each in extra for statement in each.statements]
+            understood = user_rules.Rules(statements, constants[1::2], endless)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # looked at now, since clingo may have nothing to do
         from foon_asp.asp.search import check  # noqa: PLC0415
@@ -109,6 +119,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         endless=endless,
         constants=tuple(constants),
         encodings=encodings,
+        understood=understood,
     )
 
 

@@ -67,7 +67,8 @@ class Encoding:
     minus. ``names`` are those of constants and functions in terms. ``constants`` maps the names of ``#const``
     statements to their values as written, ``constant_sources`` to their places. ``special`` are statements
     and atoms that are no plain rules, by what they are. ``assigns`` says that a variable may get its value
-    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo understands it.
+    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo understands it, and
+    ``statements`` are these, in order.
     """
 
     path: Path
@@ -80,6 +81,7 @@ class Encoding:
     special: list[tuple[ASTType, Source]] = field(default_factory=list)
     assigns: bool = False
     text: str = ""
+    statements: list[AST] = field(default_factory=list)
 
 
 def read_encoding(path: Path) -> Encoding:
@@ -119,6 +121,7 @@ class _Collector(Transformer):
     def statement(self, statement: AST) -> None:
         encoding = self.encoding
         encoding.text += f"{statement}\n"
+        encoding.statements.append(statement)
         kind = statement.ast_type
         source = _source(statement.location)
         if kind == ASTType.Program:

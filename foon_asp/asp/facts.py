@@ -70,6 +70,37 @@ def write_facts(
     return "\n".join(lines) + "\n"
 
 
+def write_facts_read(problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]]) -> str:
+    """Describe units, their object nodes and the goals as :func:`write_facts` does, by some predicates alone.
+
+    Those that depend on scales are not among them.
+    """
+    seen = problem.as_seen or problem
+    name = problem.network.object_number
+    nodes = described(problem, units)
+    lines: list[str] = []
+
+    def add(subject: str, atoms: Iterable[_Atom]) -> None:
+        wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
+        lines.append(". ".join([subject, *wanted]) + ".")
+
+    for unit in units:
+        atoms = _unit_atoms(problem, unit, None, ("source", 2) in read)
+        if problem.rates is not None:
+            number = problem.network.unit_number(unit)
+            atoms.append(("rate", f"{number},{_millionths(seen.rate(unit))}"))
+        add(_unit_atom(problem, unit), atoms)
+    for o in nodes:
+        atoms = _object_atoms(problem, o)
+        if o in problem.kitchen:
+            atoms.append(("kitchen", f"{name(o)}"))
+        add(_object_atom(problem, o), atoms)
+    labels = {problem.network.objects[o].label for o in nodes}
+    lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
+    lines += [f"goal({name(o)})." for o in problem.goals]
+    return "\n".join(lines) + "\n"
+
+
 def write_open_facts(
     problem: Problem,
     closed: Collection[tuple[str, int]],

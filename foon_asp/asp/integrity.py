@@ -9,6 +9,7 @@ from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 from clingo.symbol import SymbolType
 
 from foon_asp.asp.assembly import find_constraint
+from foon_asp.asp.clause import place, written
 from foon_asp.asp.encoding import located, read_encoding
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.search import ground
@@ -55,14 +56,14 @@ def relax(
             if statement.ast_type in _PASSED_OVER:
                 continue
             if not _is_constraint(statement):
-                rules.setdefault(str(statement), _source(statement))
+                rules.setdefault(str(statement), place(statement))
                 continue
             number = len(found) + 1
             names = set(_names(statement))
             given = tuple(setting for setting in constants if setting.partition("=")[0] in names)
-            found.append(IntegrityConstraint(number, path, _source(statement), _text(statement), given))
+            found.append(IntegrityConstraint(number, path, place(statement), written(statement), given))
             rule = _broken(statement, number) if soft else _unless_dropped(statement, number)
-            rules[rule] = _source(statement)
+            rules[rule] = place(statement)
     encoding = question_encoding("soft.lp" if soft else "clash.lp")
     return tuple(found), Relaxed(paths, "".join(f"{rule}\n" for rule in rules), encoding, rules)
 
@@ -77,11 +78,11 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
         found: list[Diagnostic] = []
         for diagnostic in error.diagnostics:
             file, line, *_ = diagnostic.source
-            place = relaxed.places.get(lines[line - 1]) if file == _TEXT and line <= len(lines) else None
+            stands = relaxed.places.get(lines[line - 1]) if file == _TEXT and line <= len(lines) else None
             found.append(
                 diagnostic
-                if place is None
-                else located(diagnostic.severity, diagnostic.code, diagnostic.message, place)
+                if stands is None
+                else located(diagnostic.severity, diagnostic.code, diagnostic.message, stands)
             )
         raise InputError(found) from None
 
@@ -150,17 +151,3 @@ def _walk(node: AST) -> Iterator[AST]:
         for part in child if isinstance(child, ASTSequence) else [child]:
             if isinstance(part, AST):
                 yield from _walk(part)
-
-
-def _source(statement: AST) -> Source:
-    begin = statement.location.begin
-    return Source(begin.filename, begin.line, begin.column)
-
-
-def _text(statement: AST) -> str:
-    """Give a statement as written in its file, on one line."""
-    begin, end = statement.location.begin, statement.location.end
-    lines = Path(begin.filename).read_bytes().split(b"\n")[begin.line - 1 : end.line]
-    lines[-1] = lines[-1][: end.column - 1]  # columns of clingo count bytes
-    lines[0] = lines[0][begin.column - 1 :]
-    return " ".join(b" ".join(lines).decode("utf-8", "replace").split())

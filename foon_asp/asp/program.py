@@ -1,7 +1,10 @@
 """The encodings of one question, put together."""
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
+    from foon_asp.asp.rules import Rules
 
 
 class Program(NamedTuple):
@@ -15,6 +18,8 @@ class Program(NamedTuple):
     ``text`` is all that the files said when they were looked over. ``open`` says that the program means the
     same when facts are left open (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether
     its grounding comes to an end. ``encodings`` is the folder whose encodings are used in place of ours.
+    ``understood`` are the rules that are added, looked into: ``None`` where there are none, where encodings
+    are replaced, and where some of the rules may be broken or dropped.
     """
 
     files: tuple[Path, ...]
@@ -30,3 +35,4 @@ class Program(NamedTuple):
     endless: bool = False
     constants: tuple[str, ...] = ()
     encodings: Path | None = None
+    understood: "Rules | None" = None

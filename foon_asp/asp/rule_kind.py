@@ -1,0 +1,257 @@
+"""What rules do to the trees of one question, and how far they see: read from clingo's syntax tree.
+
+All rules of a question are looked at together, since a rule in another file may change what one does. Where
+anything is in doubt, a rule is ``OTHER``; docs/writing-constraints.md says what that means for the user.
+"""
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Sequence
+from enum import StrEnum
+from typing import NamedTuple
+
+from clingo import Number
+from clingo.ast import AST, AggregateFunction, ASTType
+from clingo.symbol import SymbolType
+
+from foon_asp.asp.clause import (
+    Aggregate,
+    Clause,
+    Conditional,
+    Constants,
+    Literal,
+    Part,
+    Signature,
+    Test,
+    clauses,
+    compared,
+    constant_values,
+    place,
+    value,
+    written,
+)
+from foon_asp.asp.dependence import AVAILABLE, USE, Dependence, Depends, Doubt
+from foon_asp.asp.locality import Locality
+from foon_asp.network import Source
+
+
+class Kind(StrEnum):
+    """What a rule does.
+
+    ``FACT``: there is no decision in it: it holds for every tree, or for none. ``DELETING``: a tree keeps to
+    it as long as it has none of some units. ``SHRINKING``: if a tree keeps to it, so does every tree whose
+    units are a subset. ``REQUIRING``: if a tree keeps to it, so does every tree whose units are a superset.
+    ``OTHER``: none of these is known. ``HELPER``: it derives what other rules look at, and rules nothing out
+    by itself.
+    """
+
+    FACT = "fact"
+    DELETING = "deleting"
+    SHRINKING = "shrinking"
+    REQUIRING = "requiring"
+    OTHER = "other"
+    HELPER = "helper"
+
+
+# Statements that are no rules, and change nothing in which trees there are.
+_WITHOUT_EFFECT = {
+    ASTType.Comment,
+    ASTType.Defined,
+    ASTType.Definition,
+    ASTType.Program,
+    ASTType.ShowSignature,
+}
+
+
+class Rule(NamedTuple):
+    """A rule of one question, and what it does.
+
+    ``reason`` says why nothing more is known where its kind is ``OTHER``, and why it has no effect where it
+    has none; ``reason_source`` where that stands. ``further`` says what it sees beyond the tree, at
+    ``further_source``: if that is empty, the rule is local, and what it says of a tree stays the same when
+    facts of units outside the tree, and of object nodes that only those have, are left out. A ``HELPER`` is
+    always local: what it sees counts for the rules that use it. ``one_of`` says that a requiring rule asks
+    for one unit of a set, or of each of several sets.
+    """
+
+    text: str
+    source: Source
+    kind: Kind
+    reason: str = ""
+    reason_source: Source | None = None
+    further: str = ""
+    further_source: Source | None = None
+    one_of: bool = False
+
+    @property
+    def local(self) -> bool:
+        """Whether it sees no further than the tree."""
+        return not self.further
+
+
+class Analysis:
+    """The rules of one question, taken apart, with what each does.
+
+    ``rules`` are in the order of the files, ``live`` the clauses that can have an effect: those with a
+    condition that never holds are not among them. ``of_rule`` has the live clauses of each rule, by its place
+    in ``rules``. ``lifted`` are the predicates of which one unit of the tree, or none, decides each atom.
+    """
+
+    def __init__(
+        self, statements: Iterable[AST], settings: Sequence[str], varied: Collection[Signature] = ()
+    ) -> None:
+        """Look at parsed statements.
+
+        ``settings`` are the constants that are set, as ``name=value`` for clingo.
+        """
+        statements = tuple(statements)
+        self.definitions = [each for each in statements if each.ast_type == ASTType.Definition]
+        self.constants: Constants = constant_values(self.definitions, settings)
+        self.statements = [each for each in statements if each.ast_type not in _WITHOUT_EFFECT]
+        taken = [
+            list(clauses(each, number, self.constants)) if each.ast_type == ASTType.Rule else []
+            for number, each in enumerate(self.statements)
+        ]
+        self.of_rule = [[clause for clause in each if not _never(clause.body)] for each in taken]
+        self.live = [clause for each in self.of_rule for clause in each]
+        self.dependence = Dependence(self.live, self.constants, varied)
+        self.lifted = self._find_lifted()
+        self._locality = Locality(self.live, self.dependence)
+        self.rules = tuple(
+            self._rule(statement, live) for statement, live in zip(self.statements, self.of_rule, strict=True)
+        )
+
+    def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
+        """Say what a clause does, and why nothing more is known."""
+        dependence = self.dependence
+        doubt: Doubt | None
+        if not clause.plain:
+            doubt = Doubt("its head leaves a choice, or is negated", clause.source)
+        elif clause.head is not None:
+            name = clause.head.signature
+            doubt = dependence.doubts[name] if name in dependence.loops else None
+        else:
+            doubt = dependence.doubt(clause.body)
+        if doubt:
+            return Kind.OTHER, doubt
+        if clause.head is not None:
+            return Kind.HELPER, None
+        kinds = {
+            Depends.NOT: Kind.FACT,
+            Depends.GROWS: Kind.DELETING if self.lifts(clause) else Kind.SHRINKING,
+            Depends.SHRINKS: Kind.REQUIRING,
+            Depends.BOTH: Kind.OTHER,
+        }
+        kind = kinds[dependence.of_parts(clause.body)]
+        return kind, self._why_both(clause) if kind is Kind.OTHER else None
+
+    def deciding(self, body: Iterable[Part]) -> list[Part]:
+        """Give the parts of a body that depend on the tree."""
+        return [part for part in body if self.dependence.of_part(part) is not Depends.NOT]
+
+    def lifts(self, clause: Clause) -> bool:
+        """Whether all that a body says of the tree is one atom that a single unit of it decides."""
+        deciding = self.deciding(clause.body)
+        return len(deciding) <= 1 and all(map(self._is_lifted, deciding))
+
+    def _counts_none(self, aggregate: Aggregate) -> bool:
+        """Whether an aggregate says no more than that nothing is counted."""
+        if aggregate.function is not AggregateFunction.Count or len(aggregate.guards) != 1:
+            return False
+        bound = value(aggregate.guards[0].term, self.constants)
+        if bound is None or bound.type is not SymbolType.Number:
+            return False
+        compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, 2**31 - 1)]
+        says = [not each for each in compares] if aggregate.negations == 1 else compares
+        return says == [True, False, False]
+
+    def asks_for_one(self, part: Part) -> bool:
+        """Whether a part of a body holds as long as the tree has no unit of a set."""
+        if isinstance(part, Literal):
+            return part.negations == 1 and part.signature in self.lifted
+        if isinstance(part, Conditional):
+            literal = part.literal
+            return (
+                isinstance(literal, Literal)
+                and literal.negations == 1
+                and literal.signature in self.lifted
+                and not self.deciding(part.condition)
+            )
+        return (
+            isinstance(part, Aggregate)
+            and self._counts_none(part)
+            and all(
+                len(found := self.deciding(element.condition)) == 1 and self._is_lifted(found[0])
+                for element in part.elements
+            )
+        )
+
+    def _is_lifted(self, part: Part) -> bool:
+        return isinstance(part, Literal) and part.positive and part.signature in self.lifted
+
+    def _find_lifted(self) -> frozenset[Signature]:
+        """Find the predicates of which each atom is derived with the help of at most one unit of the tree."""
+        rules: defaultdict[Signature, list[Clause]] = defaultdict(list)
+        for clause in self.live:
+            for head in clause.heads:
+                rules[head.signature].append(clause)
+        self.lifted = frozenset({USE, AVAILABLE}).union(
+            signature
+            for signature in rules
+            if self.dependence.of(signature) is Depends.GROWS and signature not in self.dependence.doubts
+        )
+        while True:
+            wrong = {s for s in self.lifted if not all(map(self.lifts, rules[s]))}
+            if not wrong:
+                return self.lifted
+            self.lifted -= wrong
+
+    def _why_both(self, clause: Clause) -> Doubt:
+        """Say why units may break a rule and mend it."""
+        for part in clause.body:
+            if self.dependence.of_part(part) is Depends.BOTH:
+                return Doubt(f"more units may make `{part.text}` true or false", clause.source)
+        return Doubt("more units may break it, and others may mend it", clause.source)
+
+    def _rule(self, statement: AST, live: Sequence[Clause]) -> Rule:
+        source, text = place(statement), written(statement)
+        if statement.ast_type != ASTType.Rule:
+            reason = f"{text.split(maxsplit=1)[0]} is nothing that is looked into"
+            return Rule(text, source, Kind.OTHER, reason, source, reason, source)
+        if not live:
+            off = "a condition in it never holds, so it has no effect"
+            helper = any(clause.constraint for clause in clauses(statement, 0, self.constants))
+            return Rule(text, source, Kind.FACT if helper else Kind.HELPER, off, source)
+        found = [self.kind(clause) for clause in live]
+        kind = _together(kind for kind, _ in found)
+        doubt = next((doubt for _, doubt in found if doubt), None)
+        if kind is Kind.OTHER and doubt is None:
+            doubt = Doubt("read in one way it rules units out, in another it requires some", source)
+        further = None
+        for clause in live if kind is not Kind.HELPER else ():
+            further = further or self._locality.further(clause)
+        return Rule(
+            text,
+            source,
+            kind,
+            doubt.reason if doubt else "",
+            (doubt.source or source) if doubt else None,
+            further.reason if further else "",
+            further.source if further else None,
+            kind is Kind.REQUIRING
+            and all(self.asks_for_one(part) for clause in live for part in self.deciding(clause.body)),
+        )
+
+
+def _together(kinds: Iterable[Kind]) -> Kind:
+    """Give what rules of several kinds do together."""
+    found = set(kinds)
+    if len(found) > 1:
+        found.discard(Kind.FACT)
+    if found == {Kind.DELETING, Kind.SHRINKING}:
+        return Kind.SHRINKING
+    return found.pop() if len(found) == 1 else Kind.OTHER
+
+
+def _never(body: Iterable[Part]) -> bool:
+    """Whether a body cannot hold, whatever the facts are."""
+    return any(isinstance(part, Test | Aggregate) and part.holds is False for part in body)

@@ -1,0 +1,136 @@
+"""The rules of the user and of the library that hold for one question, understood as far as possible."""
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import NamedTuple
+
+from clingo.ast import AST
+
+from foon_asp.asp.clause import Signature
+from foon_asp.asp.facts import write_facts_read
+from foon_asp.asp.lifted_program import NOBODY, LiftedProgram, stands_alone
+from foon_asp.asp.rule_kind import Analysis, Kind, Rule
+from foon_asp.asp.search import run
+from foon_asp.deadline import Deadline
+from foon_asp.errors import UserError
+from foon_asp.problem import Problem, Restriction, reach
+
+_DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}
+_SHRINKING = _DELETING | {Kind.SHRINKING}
+
+
+class Contradiction(NamedTuple):
+    """That no tree keeps to the rules, found before any search."""
+
+
+class Rules:
+    """All rules that are added to one question, taken together.
+
+    ``rules`` has each of them with its kind, in the order of the files. The kinds hold for questions whose
+    facts are what the network, the kitchen and the goals say; where a question derives or varies a predicate
+    of facts, :meth:`varying` gives the kinds for that.
+    """
+
+    def __init__(
+        self,
+        statements: Sequence[AST],
+        constants: Sequence[str],
+        endless: bool = True,
+        varied: Collection[Signature] = (),
+    ) -> None:
+        """Look at parsed statements, under constants that are set as ``name=value`` for clingo.
+
+        ``endless`` says that nobody knows whether grounding them comes to an end.
+        """
+        self._statements, self._constants, self._endless = tuple(statements), tuple(constants), endless
+        self._analysis = Analysis(self._statements, self._constants, varied)
+        self.rules: tuple[Rule, ...] = self._analysis.rules
+
+    def varying(self, varied: Collection[Signature]) -> "Rules":
+        """Give the same rules for a question that derives or varies some predicates of facts."""
+        return Rules(self._statements, self._constants, self._endless, varied)
+
+    @property
+    def all_deleting(self) -> bool:
+        """Whether every rule is a fact or deletes: then what they remove is all that they do."""
+        return all(rule.kind in _DELETING for rule in self.rules)
+
+    @property
+    def shrinking(self) -> bool:
+        """Whether a tree that keeps to the rules still does when units are left out of it."""
+        return all(rule.kind in _SHRINKING for rule in self.rules)
+
+    @property
+    def local(self) -> bool:
+        """Whether no rule sees beyond the tree.
+
+        Only then may rules be asked about a part of the units. What :meth:`applied` gives holds of rules that
+        see further, too, since it looks at all units that can be made.
+        """
+        return all(rule.local for rule in self.rules)
+
+    @cached_property
+    def rest(self) -> tuple[Rule, ...]:
+        """The rules that :meth:`applied` does not settle: shrinking ones, some that require, and others."""
+        settled = set(self._settled)
+        return tuple(
+            rule
+            for number, rule in enumerate(self.rules)
+            if number not in settled and rule.kind is not Kind.HELPER
+        )
+
+    @cached_property
+    def _settled(self) -> list[int]:
+        """The places of the rules that :meth:`applied` settles."""
+        analysis = self._analysis
+        return [
+            number
+            for number, rule in enumerate(self.rules)
+            if rule.kind in {Kind.FACT, Kind.DELETING}
+            or (rule.one_of and all(map(stands_alone, analysis.of_rule[number])))
+        ]
+
+    def applied(
+        self, problem: Problem, deadline: Deadline | None = None
+    ) -> Restriction | Contradiction | None:
+        """Say what is left of a problem under the rules that are settled without a search.
+
+        A tree keeps to these if and only if it has no removed unit, and a unit of each required set. What
+        rules see are all units that can be made without any rule. ``None`` says that the rules could not be
+        settled so: the program as a whole then shows what is wrong with them. Raises ``KeyboardInterrupt`` at
+        a limit and at ctrl-C.
+        """
+        if problem.restriction is not None:
+            problem = replace(problem, restriction=None)
+        return self._by_clingo(problem, deadline or Deadline())
+
+    def _by_clingo(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction | None:
+        """Let clingo derive what rules remove and require, from the facts that they look at."""
+        program = LiftedProgram(self._analysis, self._settled)
+        with deadline.watched("writing facts"):
+            text = program.text + write_facts_read(problem, sorted(reach(problem).units), program.reads)
+        constants = [word for constant in self._constants for word in ("-c", constant)]
+        try:
+            found = run(
+                (), text, constants, deadline, "ignore", predicates=program.predicates, endless=self._endless
+            )
+        except UserError:
+            return None
+        if found.units is None:
+            if not found.exhausted:
+                deadline.check()
+                raise KeyboardInterrupt
+            return None
+        removed = found.atoms["_removed"]
+        helps = [found.atoms[f"_helps_{number}"] for number in found.atoms["_asks"]]
+        if NOBODY in removed or not all(helps):
+            return Contradiction()
+        required = [_ids(problem, each) for each in helps if NOBODY not in each]
+        return Restriction(_ids(problem, removed).__contains__, tuple(required))
+
+
+def _ids(problem: Problem, numbers: Iterable[int]) -> frozenset[int]:
+    """Give units by id that are known by their numbers in the whole network."""
+    found = map(problem.network.unit_of_number, numbers)
+    return frozenset(unit for unit in found if unit is not None)
