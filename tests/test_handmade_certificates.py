@@ -4,6 +4,7 @@ tests/test_forged_certificates.py has a certificate for every check; here is wha
 """
 
 import hashlib
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -462,6 +463,11 @@ NO_ID = "expected ids of the network"
 )
 def test_what_is_refused(values: Content, said: str) -> None:
     assert refusal(PLAIN, **{**BOUND, **values}) == said
+
+
+def test_from_version_2_on_implied_containers_are_spoken_of() -> None:
+    implied = replace(PLAIN, containers=ContainerRule.IMPLIED)
+    assert accepted(implied, **BOUND, version=2, digests=older(implied)).containers == "implied"
 
 
 def test_a_branch_on_an_item_where_items_cost_nothing() -> None:

@@ -32,11 +32,8 @@ def beside_forced(graph: Graph, allowed: Container[int]) -> set[int]:
             continue
         forced.add(action)
         goals.extend(needs[action])
-        needed = tuple(n for n in needs[action] if n not in start)
-        _, upstream = replace(graph, start=frozenset(start), goals=needed).cone(allowed)
+        _, upstream = replace(graph, start=frozenset(start), goals=tuple(needs[action])).cone(allowed)
         if upstream.isdisjoint(gives[action]):
             start.update(gives[action])
-    missing = tuple(o for o in open_ if o not in start)
-    rest = replace(graph, start=frozenset(start), goals=missing)
-    left, _ = rest.cone(allowed)
+    left, _ = replace(graph, start=frozenset(start), goals=tuple(open_)).cone(allowed)
     return forced.union(left)
