@@ -5,9 +5,10 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.certificate import Coverage
-from foon_asp.certificate.arrays import Arrays
+from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.proof.verify import LimitError
 
 UNITS, INPUTS, INGREDIENTS, SUCCESS, KITCHEN, *_ = Objective
 START, SALT, MIDDLE, END = range(4)
@@ -139,3 +140,9 @@ def test_needs_and_gives_are_those_of_the_container_rule() -> None:
         graph = Arrays(asked, (INPUTS,), Coverage()).graph
         assert (graph.needs, graph.gives) == ([needs], [gives])
         assert costs(asked, INPUTS) == [(2,)]  # all inputs count
+
+
+def test_numbers_have_4_300_digits() -> None:
+    assert written(Fraction(10**4299, 7)) == f"{10**4299}/7"
+    with pytest.raises(LimitError, match=r"^a fraction has more digits than are written$"):
+        written(Fraction(10**4300, 7))
