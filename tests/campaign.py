@@ -21,6 +21,7 @@ from clingo import Control, Function, Number
 from clingo.symbol import Symbol
 
 from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.session import Session
 from foon_asp.asp.soft import solve_soft
 from foon_asp.engines import Asked, DisagreementError, cross_check
@@ -416,7 +417,9 @@ def ask(asked: Question, tally: Tally) -> str | None:
     """Answer a question, and hold the answer against brute force and other engines; give what is wrong."""
     try:
         if asked.soft:
-            soft = {asked.rules[place].file: weight for place, weight in asked.soft.items()}
+            soft: dict[Constraint, int] = {
+                asked.rules[place].file: weight for place, weight in asked.soft.items()
+            }
             found = solve_soft(asked.problem, asked.objectives, asked.settings, soft)
             return _judged(asked, Asked(found.outcome, asked.settings, soft, found.penalty), tally)
         outcome = solve(asked.problem, asked.objectives, asked.settings)

@@ -43,12 +43,13 @@ BESIDE = {
 # what a plain `solve` may import of ours, room by room: what it reads, cuts and shows needs no more, and each
 # module costs every start
 MAY_BE_LOADED = """
-asp: assembly outcome own_encodings postconditions prepared program settings solver
+asp: assembly constraint outcome own_encodings postconditions prepared program settings solver
 bounds: coprime_base hypergraph landmark_cuts lexicographic
 cli: asking click_option exit_code held main named_path options output output_file progress
     question_command verbs weighted_files
 dataset: dataset names paths reading
 document: json_document
+grounding: stated
 network: functional_unit level network node_pattern object_node source spelling task_tree
     unit_prices
 problem: containers costs number objective order problem relevance restriction root

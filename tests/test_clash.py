@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings, Status
+from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.integrity import relax
 from foon_asp.asp.soft import solve_soft
 from foon_asp.dataset.paths import File
@@ -109,7 +110,7 @@ def test_soft_constraints_against_brute_force(rule: ContainerRule, seeds: range,
     for seed in seeds:
         problem = random_problem(seed, rule, units=7)
         paths, ways, rng = files(tmp_path, seed, problem)
-        weights = {path: rng.randint(1, 4) for path in paths}
+        weights: dict[Constraint, int] = {path: rng.randint(1, 4) for path in paths}
         objectives = [str(rng.choice(sorted(Objective)))]
         found = solve_soft(problem, parse_objectives(objectives), Settings(), weights)
         trees = list(oracle.trees(problem))

@@ -138,8 +138,8 @@ def functions(node: AST) -> Iterator[str]:
 def test_files_of_the_users_are_held_against_what_the_headers_say() -> None:
     """The predicates that they may not define, nor take a name of, are the public ones of all headers."""
     public = {each for each in in_headers("Facts", "Input", "Output") if not each[0].startswith("_")}
-    assert public == encoding._PUBLIC | encoding._EXTENDED
-    assert not encoding._PUBLIC & encoding._EXTENDED
+    assert public == encoding.PUBLIC | encoding.EXTENDED
+    assert not encoding.PUBLIC & encoding.EXTENDED
     assert {name for name, _ in public} | {each.row.term for each in Objective} == encoding._PUBLIC_NAMES
 
 
@@ -152,7 +152,7 @@ def test_every_other_name_of_ours_has_the_prefix(name: str) -> None:
     for statement in statements:
         if statement.ast_type == ASTType.Program and statement.name != "base":
             named |= {statement.name, *(parameter.name for parameter in statement.parameters)}
-    names = {predicate for predicate, _ in encoding._PUBLIC | encoding._EXTENDED}
+    names = {predicate for predicate, _ in encoding.PUBLIC | encoding.EXTENDED}
     public = TERMS | names | parsed(name).constants.keys()
     assert not {found for found in named - public if not found.startswith("_")}
 

@@ -32,7 +32,9 @@ def answer(problem: Problem, objectives: list[str], hostile: HostileFile, settin
     try:
         outcome = solve(problem, parse_objectives(objectives), settings)
     except InputError as error:
-        return refused(error, settings.constraints[0])
+        (file,) = settings.constraints
+        assert isinstance(file, Path)
+        return refused(error, file)
     expected = oracle.best(list(oracle.trees(problem, hostile.keeps)), problem, objectives)
     if expected is None:
         assert outcome.status is Status.INFEASIBLE, hostile

@@ -19,7 +19,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of our folder, which the program takes for its own."""
     copy = tmp_path / "encodings"
     shutil.copytree(encodings_folder(), copy)
-    for module in ("asp.assembly", "asp.settings", "asp.own_encodings", "asp.encoding"):
+    for module in ("asp.assembly", "asp.constraint", "asp.settings", "asp.own_encodings", "asp.encoding"):
         monkeypatch.setattr(f"foon_asp.{module}.encodings_folder", lambda: copy)
     own_encodings._digests.cache_clear()
     monkeypatch.setattr(own_encodings, "_digests", own_encodings._digests.__wrapped__)

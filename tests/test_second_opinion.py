@@ -17,6 +17,7 @@ import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
+from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.exact_success import rate_scale
 from foon_asp.asp.soft import solve_soft
 from foon_asp.deadline import Deadline
@@ -166,9 +167,12 @@ def test_answers_under_soft_rules_agree(part: int, tmp_path: Path) -> None:
     for seed in range(0, 30, part):
         rng = random.Random(seed)
         problem = makeable(seed, RULES[seed % 2])
-        files = {tmp_path / f"{name}{seed}.lp": rng.randint(1, 9) for name in ("anna", "ben")}
+        files: dict[Constraint, int] = {
+            tmp_path / f"{name}{seed}.lp": rng.randint(1, 9) for name in ("anna", "ben")
+        }
         for file in files:
             # one file may not define a constant of the other
+            assert isinstance(file, Path)
             file.write_text(some_rules(rng, tmp_path).replace("few", f"few_{file.stem}"))
         objectives = random_objectives(rng, 2)
         found = solve_soft(problem, objectives, Settings(), files)
@@ -279,7 +283,7 @@ def test_wrong_answers_under_soft_rules_are_found(tmp_path: Path) -> None:
     mine = tmp_path / "mine.lp"
     mine.write_text(':- use(U), motion(U,"draw").\n:- use(U), motion(U,"clear").\n')
     problem = gap_problem(2, 4)
-    weights = {mine: 3}
+    weights: dict[Constraint, int] = {mine: 3}
     found = solve_soft(problem, (Objective.UNITS,), Settings(), weights)
     check_with_bare_clingo(Asked(found.outcome, Settings(), weights, found.penalty), PATIENCE)
     assert found.penalty

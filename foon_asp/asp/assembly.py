@@ -4,10 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from foon_asp.asp.constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.asp.own_encodings import ENCODING_FILES, exact_success, is_own
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
+from foon_asp.grounding.stated import Loaded
 from foon_asp.resources import encodings_folder
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
@@ -49,14 +51,14 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     ours = encodings_folder()
     folder = _find_encodings(settings.encodings, ours)
     base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
-    added = tuple(dict.fromkeys(find_constraint(path) for path in settings.constraints))
+    added = tuple(dict.fromkeys(map(find_constraint, settings.constraints)))
     relaxed, bounded = settings.relaxed, settings.bounded
-    loaded = added
+    kept = added
     questions: tuple[Path, ...] = ()
     rules = ""
     if relaxed is not None:
-        loaded = tuple(file for file in added if file not in relaxed.files)
-        added = tuple(dict.fromkeys((*added, *relaxed.files)))
+        kept = tuple(each for each in added if each not in relaxed.constraints)
+        added = tuple(dict.fromkeys((*added, *relaxed.constraints)))
         questions = (relaxed.encoding,)
         rules = relaxed.rules
     if bounded is not None:
@@ -67,11 +69,12 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
     text, is_open = "", False
     understood: Rules | None = None
     replaced = not all(map(is_own, base))
-    endless = replaced or not all(map(is_own, added))
+    endless = replaced or not all(map(_is_own, added))
+    files: dict[Constraint, Loaded] = {}
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
-        from foon_asp.asp import encoding  # noqa: PLC0415
+        from foon_asp.asp import encoding, stating  # noqa: PLC0415
 
         if endless:
             from foon_asp.grounding.worker_process import prepare  # noqa: PLC0415
@@ -80,7 +83,8 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
 
         parsed = [encoding.read_encoding(file) for file in base]
         asked = [encoding.read_encoding(file) for file in questions]
-        extra = [encoding.read_encoding(file) for file in added]
+        files = stating.loaded(added)
+        extra = [encoding.read_encoding(files[each]) for each in added]
         for diagnostic in encoding.check_encodings(extra, parsed, asked):
             warn(str(diagnostic))
         for message in encoding.unset_constants(extra, settings.constants):
@@ -106,7 +110,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
 
         check(arguments)
     return Program(
-        (*base, *loaded, *questions),
+        (*base, *(files[each] for each in kept), *questions),
         exact_success(),
         arguments,
         replaced=replaced,
@@ -134,17 +138,10 @@ def _find_encodings(path: Path | None, ours: Path) -> Path:
     raise UserError(f"{path}: expected a folder with encodings to use instead of the built-in ones: {names}")
 
 
-def find_constraint(path: Path) -> Path:
-    """Give a constraint file: the path itself, or a ready-made one by name (``forbid_motion``)."""
-    if path.is_file():
-        return path
-    library = encodings_folder() / "constraints"
-    if path.name == str(path):
-        bundled = library / path.with_suffix(".lp").name
-        if bundled.is_file():
-            return bundled
-    names = ", ".join(sorted(file.stem for file in library.glob("*.lp")))
-    raise UserError(f"{path}: no such file; expected an encoding (.lp) or a ready-made one: {names}")
+def _is_own(constraint: Constraint) -> bool:
+    """Whether a constraint says what a ready-made one does, under whichever constants."""
+    file = constraint.file if isinstance(constraint, LibraryUse) else constraint
+    return isinstance(file, Path) and is_own(file)
 
 
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:

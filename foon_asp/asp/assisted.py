@@ -1,9 +1,8 @@
 """Units done by a person: a bound on their number, and constraints that look at them."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
-from foon_asp.asp.assembly import find_constraint
+from foon_asp.asp.constraint import Constraint, find_constraint
 from foon_asp.asp.facts import write_assisted
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.settings import Bounded
@@ -20,13 +19,15 @@ def assisted(twins: Mapping[int, int], most: int) -> Bounded:
     return Bounded(write_assisted(twins, most), (question_encoding("assist.lp"),))
 
 
-def sees_who_does_it(constraints: Sequence[Path]) -> bool:
+def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
     """Whether constraints look at who does a unit: at success rates, or at units done by a person.
 
-    ``constraints`` are paths or names of ours. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
+    Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
     """
     if not constraints:
         return False
     from foon_asp.asp.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
+    from foon_asp.asp.stating import loaded  # noqa: PLC0415
 
-    return any(_OF_DOERS & read_encoding(find_constraint(file)).used.keys() for file in constraints)
+    files = loaded([*map(find_constraint, constraints)]).values()
+    return any(_OF_DOERS & read_encoding(rules).used.keys() for rules in files)

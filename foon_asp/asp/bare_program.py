@@ -6,30 +6,39 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
+from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.facts import write_least_penalty, write_objectives
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.settings import Settings
+from foon_asp.grounding.stated import Stated
 from foon_asp.problem import Objective, Problem, levels, reach, relevant
 
 
 class BareProgram(NamedTuple):
     """What a command line of clingo needs.
 
-    ``files`` are encodings and constraints, ``constants`` the arguments that set constants, and ``facts`` the
-    text of one more file, as ``foon-asp facts`` prints it. No reduction, bound or second step is in it.
+    ``files`` are encodings and constraints, ``constants`` the arguments that set constants. ``facts``, and
+    ``rules`` that are in no file, are the text of one more, as ``foon-asp facts`` prints it. No reduction,
+    bound or second step is in it.
     """
 
     files: tuple[Path, ...]
     constants: tuple[str, ...]
     facts: str
+    rules: str
+
+    @property
+    def text(self) -> str:
+        """The facts, and the rules that are in no file."""
+        return self.facts + self.rules
 
 
 def bare_program(
-    problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Path, int]
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
     """Write a question for bare clingo, which finds the same optimum from it.
 
-    ``soft`` are the weights of constraint files that may be broken; the least sum of weights then comes
+    ``soft`` are the weights of constraints that may be broken; the least sum of weights then comes
     first. Under ``success`` clingo goes by rounded weights alone. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
     """
@@ -48,5 +57,7 @@ def bare_program(
         everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
         units = relevant(problem, everything) if program.own else everything.units
         first = replace(first, units=units)
-    facts = first.facts + program.rules + write_objectives(first.levels) + penalty
-    return BareProgram(program.files, program.constants, facts)
+    facts = first.facts + write_objectives(first.levels) + penalty
+    files = tuple(file for file in program.files if isinstance(file, Path))
+    stated = (rules.text.strip() for rules in program.files if isinstance(rules, Stated))
+    return BareProgram(files, program.constants, facts, program.rules + "".join(map("{}\n".format, stated)))

@@ -8,6 +8,7 @@ from clingo import Infimum, Supremum, parse_term
 from clingo.ast import AST, AggregateFunction, ASTSequence, ASTType, ComparisonOperator, Sign, UnaryOperator
 from clingo.symbol import Number, Symbol, SymbolType
 
+from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.network import Source
 
 Signature = tuple[str, int]
@@ -141,13 +142,16 @@ def place(statement: AST) -> Source:
     return Source(begin.filename, begin.line, begin.column)
 
 
-def written(statement: AST) -> str:
-    """Give a statement on one line: as written, where it is in a file."""
+def written(statement: AST, rules: Loaded | None = None) -> str:
+    """Give a statement on one line: as written, where it is in a file or in these rules."""
     begin, end = statement.location.begin, statement.location.end
-    file = Path(begin.filename)
-    if not file.is_file():
+    if isinstance(rules, Stated) and begin.filename == rules.place:
+        content = rules.text.encode("utf-8")
+    elif begin.filename.endswith(".lp") and Path(begin.filename).is_file():
+        content = Path(begin.filename).read_bytes()
+    else:
         return str(statement)
-    lines = file.read_bytes().split(b"\n")[begin.line - 1 : end.line]
+    lines = content.split(b"\n")[begin.line - 1 : end.line]
     lines[-1] = lines[-1][: end.column - 1]  # columns of clingo count bytes
     lines[0] = lines[0][begin.column - 1 :]
     return " ".join(b" ".join(lines).decode("utf-8", "replace").split())

@@ -7,13 +7,15 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from clingo.ast import AST, ASTType, ComparisonOperator, Location, Transformer, parse_files
+from clingo.ast import AST, ASTType, ComparisonOperator, Location, Transformer
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.encoding_file import LARGEST, excerpt, included_files
+from foon_asp.asp.encoding_file import LARGEST, check_text, excerpt, included_files
 from foon_asp.asp.facts import FACT_PREDICATES, quote
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import listener
+from foon_asp.grounding.parsing import parse
+from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.network import Source
 from foon_asp.problem import Objective
 from foon_asp.resources import encodings_folder
@@ -23,11 +25,11 @@ Signature = tuple[str, int]
 
 # Every name that begins so is ours, but for the public ones below: see encodings/README.md.
 _PREFIX = "_"
-_PUBLIC = frozenset((*FACT_PREDICATES.items(), ("use", 1), ("available", 1)))
-_EXTENDED = frozenset((("allergen", 1), ("allowed", 1)))  # to which files of the user's add facts
+PUBLIC = frozenset((*FACT_PREDICATES.items(), ("use", 1), ("available", 1)))
+EXTENDED = frozenset((("allergen", 1), ("allowed", 1)))  # to which files of the user's add facts
 _LOOKED_AT = frozenset((("_by_person", 1),))  # by constraints, under a question that has it
 _TERMS = frozenset(objective.row.term for objective in Objective)
-_PUBLIC_NAMES = frozenset(name for name, _ in (*_PUBLIC, *_EXTENDED)) | _TERMS
+_PUBLIC_NAMES = frozenset(name for name, _ in (*PUBLIC, *EXTENDED)) | _TERMS
 
 _THEORY = "no theory is part of the program, so it would have no meaning; #sum and #count add up and count"
 _REFUSED = {
@@ -53,14 +55,13 @@ _CODES = {ASTType.Minimize: "minimize", ASTType.Program: "program-part"}
 _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)")
 _STRING = re.compile(r'"([^"\\]|\\["\\n])*"')  # as clingo reads one
 _ESCAPED = re.compile(r"\\(.)")
-
-
+_EXAMPLE = ':- use(U), motion(U,"fry").'
 _WORD = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 
 @dataclass
 class Encoding:
-    """One ``.lp`` file, parsed: the predicates it defines and uses, and its constants.
+    """A file, or rules that are in none, parsed: the predicates they define and use, and their constants.
 
     ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies and ``declared`` those under
     ``#defined``, with the place where each is met first; the name of a negated atom (``-p``) begins with a
@@ -68,10 +69,11 @@ class Encoding:
     statements to their values as written, ``constant_sources`` to their places. ``special`` are statements
     and atoms that are no plain rules, by what they are. ``assigns`` says that a variable may get its value
     from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo understands it, and
-    ``statements`` are these, in order.
+    ``statements`` are these, in order. Places in ``rules`` that are in no file have their name in that of the
+    file.
     """
 
-    path: Path
+    rules: Loaded
     defined: dict[Signature, Source] = field(default_factory=dict)
     declared: dict[Signature, Source] = field(default_factory=dict)
     used: dict[Signature, Source] = field(default_factory=dict)
@@ -83,31 +85,45 @@ class Encoding:
     text: str = ""
     statements: list[AST] = field(default_factory=list)
 
+    def remark(self, severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
+        """Make a diagnostic about a place in these rules, with its line."""
+        return located(severity, code, message, source, [self.rules])
 
-def read_encoding(path: Path) -> Encoding:
+
+def read_encoding(rules: Loaded) -> Encoding:
     """Parse an encoding, the files it includes with it; raises :class:`InputError` for a syntax error.
 
-    Raises what :func:`foon_asp.asp.encoding_file.included_files` does, too.
+    Raises what :func:`foon_asp.asp.encoding_file.included_files` and ``check_text`` there do, too.
     """
-    if not path.is_file():
-        raise UserError(f"{path}: no such file; expected an encoding (.lp)")
-    files = {file.resolve() for file in included_files(path)}
-    encoding = Encoding(path)
+    encoding = Encoding(rules)
     collector = _Collector(encoding)
     met: set[str] = set()
+    said: set[ASTType] = set()
 
     def statement(statement: AST) -> None:
         met.add(statement.location.begin.filename)
+        said.add(statement.ast_type)
         collector.statement(statement)
 
+    if isinstance(rules, Stated):
+        check_text(rules.text, rules.place)
+        known: set[Path] = set()
+    elif rules.is_file():
+        known = {file.resolve() for file in included_files(rules)}
+    else:
+        raise UserError(f"{rules}: no such file; expected an encoding (.lp)")
     messages: list[str] = []
     try:
-        parse_files([str(path)], statement, logger=listener(messages))
+        parse(rules, statement, listener(messages))
     except RuntimeError as error:
-        raise fault(messages, str(error)) from None
-    others = sorted(file for file in met if Path(file).resolve() not in files)
+        raise fault(messages, str(error), [rules]) from None
+    if isinstance(rules, Stated):
+        if not said - {ASTType.Program, ASTType.Comment}:
+            raise UserError(f"{rules.place}: found {rules.text!r}, expected a rule such as {_EXAMPLE}")
+        return encoding
+    others = sorted(file for file in met if Path(file).resolve() not in known)
     if others:
-        raise UserError(f"{path} includes {others[0]}, which was not checked: leave that out")
+        raise UserError(f"{rules} includes {others[0]}, which was not checked: leave that out")
     return encoding
 
 
@@ -224,19 +240,19 @@ def check_encodings(
     ours, names that are, and statements other than rules.
     """
     errors: list[Diagnostic] = []
-    known = set(_PUBLIC)
+    known = set(PUBLIC)
     for encoding in (*added, *base, *others):
         known |= encoding.defined.keys() | encoding.declared.keys()
-    mine = [encoding for encoding in added if not _is_ours(encoding.path)]
-    replaced = [encoding for encoding in base if not _is_ours(encoding.path)]
+    mine = [encoding for encoding in added if not _is_ours(encoding.rules)]
+    replaced = [encoding for encoding in base if not _is_ours(encoding.rules)]
     for encoding in mine:
         errors += _statements(encoding, tuple(_REFUSED))
-        errors += _definitions(encoding, _PUBLIC.union(*(each.defined for each in base)))
+        errors += _definitions(encoding, PUBLIC.union(*(each.defined for each in base)))
         errors += _reserved_names(encoding)
     for encoding in replaced:
         errors += _statements(encoding, _LOST)
         errors += _replaced_definitions(encoding)
-    settable = {name for encoding in added if _is_ours(encoding.path) for name in encoding.constants}
+    settable = {name for encoding in added if _is_ours(encoding.rules) for name in encoding.constants}
     for encoding in (*mine, *replaced):
         names = set(settable)
         if encoding in mine:
@@ -246,7 +262,7 @@ def check_encodings(
     if errors:
         raise InputError(errors)
     return [
-        located(Severity.WARNING, "undefined-atom", _undefined(signature, known), source)
+        encoding.remark(Severity.WARNING, "undefined-atom", _undefined(signature, known), source)
         for encoding in added
         for signature, source in encoding.used.items()
         if signature not in known
@@ -254,13 +270,14 @@ def check_encodings(
 
 
 @cache
-def _is_ours(path: Path) -> bool:
-    return path.resolve().is_relative_to(encodings_folder().resolve())
+def _is_ours(rules: Loaded) -> bool:
+    path = rules.file if isinstance(rules, Stated) else rules
+    return path is not None and path.resolve().is_relative_to(encodings_folder().resolve())
 
 
 def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnostic]:
     return [
-        located(Severity.ERROR, _CODES.get(kind, "statement"), f"found {_REFUSED[kind]}", source)
+        encoding.remark(Severity.ERROR, _CODES.get(kind, "statement"), f"found {_REFUSED[kind]}", source)
         for kind, source in encoding.special
         if kind in refused
     ]
@@ -269,7 +286,7 @@ def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnost
 def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
     """Find rules for predicates that a constraint may not define."""
     return [
-        located(
+        encoding.remark(
             Severity.ERROR,
             "owned-predicate",
             f"found a rule for {name}/{arity}, which a constraint may not define: give it "
@@ -291,7 +308,7 @@ def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
     ]
     terms = [(name, source) for name, source in encoding.names.items() if _is_reserved(name)]
     return [
-        located(
+        encoding.remark(
             Severity.ERROR,
             "reserved-name",
             f"found {name}, but names that begin with {_PREFIX!r} are reserved: give it another name",
@@ -303,13 +320,13 @@ def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
 
 def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
     """Find rules for reserved predicates in a replaced file whose original does not define them."""
-    name = encoding.path.name
+    name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
     ours = [
         file for file in (encodings_folder() / name, encodings_folder() / "by_need" / name) if file.is_file()
     ]
     theirs = {signature for file in ours for signature in read_encoding(file).defined}
     return [
-        located(
+        encoding.remark(
             Severity.ERROR,
             "owned-predicate",
             f"found a rule for {predicate}/{arity}, but names that begin with {_PREFIX!r} are reserved, and "
@@ -324,7 +341,7 @@ def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
 def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
     """Find constants that would replace a name in the facts or in another file."""
     return [
-        located(
+        encoding.remark(
             Severity.ERROR,
             "taken-constant",
             f"found #const {name}, but that is a name in the facts or in other encodings, where its value "
@@ -359,23 +376,36 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
     Where the encoding's own value is a string the setting is one too, quotes or not; where it is a number
     the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for an unknown name.
     """
-    defaults = {name: value for encoding in encodings for name, value in encoding.constants.items()}
+    defaults = {
+        name: value
+        for encoding in encodings
+        for name, value in encoding.constants.items()
+        if not _is_reserved(name)  # that of a ready-made constraint with constants of its own
+    }
     arguments: list[str] = []
     for setting in constants:
         name, equals, value = setting.partition("=")
         if not equals:
             raise UserError(f"found the constant {setting!r}, expected NAME=VALUE")
         if name not in defaults:
-            listed = ", ".join(sorted(defaults)) or "none: add a constraint file with #const"
+            listed = ", ".join(sorted(defaults)) or "none: add a constraint with #const"
             raise UserError(f"no encoding in use has the constant {name!r}; known are {listed}")
-        if defaults[name].startswith('"'):
-            value = quote(string_constant(value))
-        elif _is_number(defaults[name]) and not _fits(value):
-            raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
-        elif not _is_number(defaults[name]) and not (_fits(value) or _WORD.fullmatch(value)):
-            raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number or a word")
-        arguments += ["-c", f"{name}={value}"]
+        arguments += ["-c", f"{name}={constant_value(name, defaults[name], value)}"]
     return arguments
+
+
+def constant_value(name: str, default: str, value: str) -> str:
+    """Give a value of a constant as a term, of the type of its default.
+
+    Raises :class:`UserError` for one of another type.
+    """
+    if default.startswith('"'):
+        return quote(string_constant(value))
+    if _is_number(default) and not _fits(value):
+        raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
+    if not _is_number(default) and not (_fits(value) or _WORD.fullmatch(value)):
+        raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number or a word")
+    return value
 
 
 def string_constant(value: str) -> str:
@@ -395,13 +425,23 @@ def string_constant(value: str) -> str:
 def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
     """Warn about constants that have no effect until they are set: their default is "", #sup or #inf."""
     given = {setting.partition("=")[0] for setting in constants}
-    return [
-        f"{encoding.path}: warning: the constant {name} is not set and the constraint has no effect; "
-        f"set it with -c {name}=VALUE"
-        for encoding in added
-        for name, value in encoding.constants.items()
-        if value in {'""', "#sup", "#inf"} and name not in given
-    ]
+    found = []
+    for encoding in added:
+        rules = encoding.rules
+        for name, value in encoding.constants.items():
+            if value not in {'""', "#sup", "#inf"} or name in given:
+                continue
+            if isinstance(rules, Stated) and rules.file is not None:
+                called = dict(rules.renamed)[name]
+                where, how = f"{rules.file} ({rules.written})", f"{rules.written},{called}=VALUE"
+            else:
+                where = rules.place if isinstance(rules, Stated) else f"{rules}"
+                called, how = name, f"-c {name}=VALUE"
+            found.append(
+                f"{where}: warning: the constant {called} is not set and the constraint has no effect; "
+                f"set it with {how}"
+            )
+    return found
 
 
 def _is_number(value: str) -> bool:
@@ -412,8 +452,11 @@ def _fits(value: str) -> bool:
     return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and abs(int(value)) <= LARGEST
 
 
-def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
-    """Turn clingo's messages about a program into one error with places and source lines."""
+def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()) -> InputError | UserError:
+    """Turn clingo's messages about a program into one error with places and source lines.
+
+    ``files`` are those of the program, of which those matter that are no files.
+    """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:
         first, *notes = (_MESSAGE.match(line) for line in message.strip().split("\n"))
@@ -431,7 +474,7 @@ def fault(messages: Sequence[str], otherwise: str) -> InputError | UserError:
             else:
                 text = _left_out(first["text"].rstrip(":"), " ".join(more))
             source = Source(match["file"], int(match["line"]), int(match["column"]))
-            errors.setdefault(source, located(Severity.ERROR, "clingo", text, source))
+            errors.setdefault(source, located(Severity.ERROR, "clingo", text, source, files))
     if errors:
         return InputError(list(errors.values()))
     if "Integer overflow" in otherwise:
@@ -456,6 +499,18 @@ def _left_out(what: str, part: str) -> str:
     )
 
 
-def located(severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
-    """Make a diagnostic with its line of the encoding."""
+def located(
+    severity: Severity, code: str, message: str, source: Source, files: Sequence[Loaded] = ()
+) -> Diagnostic:
+    """Make a diagnostic with its line of the encoding, which is one of the files or in one that they name."""
+    for rules in files:
+        if isinstance(rules, Stated) and rules.place == source.file:
+            lines = rules.text.split("\n")
+            if source.line > len(lines):  # clingo means the end
+                source = source._replace(line=len(lines), column=len(lines[-1]) + 1)
+                message += "" if rules.text.rstrip().endswith(".") else "; a rule ends in a full stop"
+            if rules.file is not None:
+                source = source._replace(file=str(rules.file))
+                message = f"{message} (in {rules.written})"
+            return Diagnostic(severity, code, message, source, lines[source.line - 1].rstrip("\r"))
     return Diagnostic(severity, code, message, source, excerpt(source))

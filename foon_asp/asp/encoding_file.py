@@ -69,6 +69,16 @@ class _Token(NamedTuple):
     start: int
 
 
+def check_text(text: str, place: str) -> None:
+    """Check rules that are in no file, as :func:`included_files` does; they include nothing."""
+    errors: list[Diagnostic] = []
+    if any("\ud800" <= letter <= "\udfff" for letter in text):
+        raise UserError(f"{place}: expected a rule in UTF-8")
+    _look_over_text(text, place, None, errors)
+    if errors:
+        raise InputError(errors)
+
+
 def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
     """Note what is wrong with a file, and give the files that it includes."""
     if file.suffix != _SUFFIX:
@@ -76,24 +86,32 @@ def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
     if any("\ud800" <= letter <= "\udfff" for letter in str(file)):  # what clingo cannot be given
         raise UserError(f"{file}: expected an encoding with a name in UTF-8")
     content = file.read_bytes()
-    lines = content.split(b"\n")
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as fault:
         line = content.count(b"\n", 0, fault.start) + 1
         column = fault.start - content.rfind(b"\n", 0, fault.start)
         message = f"found the byte {content[fault.start]:#04x}, expected text in UTF-8"
-        shown = lines[line - 1].decode("utf-8", "replace").rstrip("\r")
+        shown = content.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r")
         source = Source(str(file), line, column)
         errors.append(Diagnostic(Severity.ERROR, "not-utf-8", message, source, shown))
         return []
+    return _look_over_text(text, str(file), file, errors)
+
+
+def _look_over_text(text: str, place: str, file: Path | None, errors: list[Diagnostic]) -> list[Path]:
+    """Note what is wrong with a text, that of a file if it is in one, and give the files that it includes."""
+    lines = text.split("\n")
 
     def error(code: str, message: str, start: int) -> None:
         line = text.count("\n", 0, start) + 1
         column = start - text.rfind("\n", 0, start)
-        shown = lines[line - 1].decode("utf-8").rstrip("\r")
-        errors.append(Diagnostic(Severity.ERROR, code, message, Source(str(file), line, column), shown))
+        shown = lines[line - 1].rstrip("\r")
+        errors.append(Diagnostic(Severity.ERROR, code, message, Source(place, line, column), shown))
 
+    if "\0" in text:  # where a text ends for clingo, be it in a comment
+        error("letter", "found U+0000, which no rule can have", text.index("\0"))
+        return []
     included: list[Path] = []
     tokens = _tokens(text)
     for token in tokens:
@@ -109,7 +127,9 @@ def _look_over(file: Path, errors: list[Diagnostic]) -> list[Path]:
             break
         elif token.text == "#include":
             named = next(tokens, None)
-            if named is not None and named.kind == "string":
+            if file is None:
+                error("include", "found #include, expected rules: only a file includes others", token.start)
+            elif named is not None and named.kind == "string":
                 target = _ESCAPED.sub(lambda match: "\n" if match[1] == "n" else match[1], named.text[1:-1])
                 problem = _refused(file, target)
                 if problem:

@@ -1,20 +1,22 @@
-"""Integrity constraints of the user's files, one by one, and the same relaxed."""
+"""Integrity constraints of the user's, one by one, and the same relaxed."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import NamedTuple
 
-from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
+from clingo.ast import AST, ASTSequence, ASTType, parse_string
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.assembly import find_constraint
 from foon_asp.asp.clause import place, written
+from foon_asp.asp.constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.asp.encoding import located, read_encoding
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.search import ground
 from foon_asp.asp.settings import Relaxed
+from foon_asp.asp.stating import loaded
 from foon_asp.deadline import Deadline
+from foon_asp.grounding.parsing import parse
+from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError
 
@@ -23,49 +25,63 @@ _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 
 
 class IntegrityConstraint(NamedTuple):
-    """One rule without a head: its number, the file it was asked for in, where it stands, and its text there.
+    """One rule without a head: its number, the constraint it belongs to, where it stands, and its text there.
 
     ``constants`` are the constants in it that were set, as ``NAME=VALUE``.
     """
 
     number: int
-    file: Path
+    constraint: Constraint
     source: Source
     text: str
     constants: tuple[str, ...]
 
 
 def relax(
-    files: Sequence[Path], constants: Sequence[str], soft: bool, deadline: Deadline | None = None
+    constraints: Iterable[Constraint],
+    constants: Sequence[str],
+    soft: bool,
+    deadline: Deadline | None = None,
+    before: Iterable[Constraint] = (),
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
-    """Number the integrity constraints of some files, from 1, and rewrite the files accordingly.
+    """Number the integrity constraints of some constraints, from 1, and rewrite these accordingly.
 
-    Without ``soft``, constraint number C holds unless ``_dropped(C)`` does (``questions/clash.lp``). With it,
-    it is a rule for ``_broken(C,Way)``, where ``Way`` has the values of its variables
-    (``questions/soft.lp``).
-    Other rules stay as they are. Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
+    Without ``soft``, integrity constraint number C holds unless ``_dropped(C)`` does
+    (``questions/clash.lp``). With it, it is a rule for ``_broken(C,Way)``, where ``Way`` has the values of
+    its variables (``questions/soft.lp``).
+    Other rules stay as they are. ``before`` are constraints that messages count first. Raises what
+    :func:`foon_asp.asp.encoding.read_encoding` does.
     """
     found: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
-    paths = tuple(dict.fromkeys(find_constraint(file) for file in files))
-    for path in paths:
-        _look_over(path, deadline or Deadline())
-        statements: list[AST] = []
-        parse_files([str(path)], statements.append)
-        for statement in statements:
-            if statement.ast_type in _PASSED_OVER:
-                continue
+    asked = tuple(dict.fromkeys(map(find_constraint, constraints)))
+    files = loaded((*map(find_constraint, before), *asked))
+    for each in asked:
+        _look_over(files[each], deadline or Deadline())
+        given, asked_for = constants, files[each]
+        if isinstance(each, LibraryUse):
+            given, asked_for = [f"{name}={value}" for name, value in each.constants.items()], each.file
+        for statement, original in zip(_statements(files[each]), _statements(asked_for), strict=True):
             if not _is_constraint(statement):
                 rules.setdefault(str(statement), place(statement))
                 continue
             number = len(found) + 1
-            names = set(_names(statement))
-            given = tuple(setting for setting in constants if setting.partition("=")[0] in names)
-            found.append(IntegrityConstraint(number, path, place(statement), written(statement), given))
+            names = set(_names(original))
+            set_here = tuple(setting for setting in given if setting.partition("=")[0] in names)
+            text = written(original, asked_for)
+            found.append(IntegrityConstraint(number, each, place(original), text, set_here))
             rule = _broken(statement, number) if soft else _unless_dropped(statement, number)
             rules[rule] = place(statement)
     encoding = question_encoding("soft.lp" if soft else "clash.lp")
-    return tuple(found), Relaxed(paths, "".join(f"{rule}\n" for rule in rules), encoding, rules)
+    text = "".join(f"{rule}\n" for rule in rules)
+    return tuple(found), Relaxed(asked, text, encoding, rules, tuple(files.values()))
+
+
+def _statements(rules: Loaded) -> list[AST]:
+    """Give the statements that say something."""
+    statements: list[AST] = []
+    parse(rules, statements.append, lambda *_: None)
+    return [statement for statement in statements if statement.ast_type not in _PASSED_OVER]
 
 
 @contextmanager
@@ -82,16 +98,16 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
             found.append(
                 diagnostic
                 if stands is None
-                else located(diagnostic.severity, diagnostic.code, diagnostic.message, stands)
+                else located(diagnostic.severity, diagnostic.code, diagnostic.message, stands, relaxed.files)
             )
         raise InputError(found) from None
 
 
-def _look_over(path: Path, deadline: Deadline) -> None:
-    """Raise the errors of a file while places are known: once rewritten it is only text."""
-    read_encoding(path)
+def _look_over(rules: Loaded, deadline: Deadline) -> None:
+    """Raise the errors of a constraint while places are known: once rewritten it is only text."""
+    read_encoding(rules)
     try:  # without facts, for unsafe variables alone
-        ground((path,), "", (), deadline, endless=True).close()
+        ground((rules,), "", (), deadline, endless=True).close()
     except KeyboardInterrupt:  # a limit: then nobody comes to look at what was not seen
         deadline.interrupt()
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.asp.rules import Rules
 
+from foon_asp.grounding.stated import Loaded
+
 
 class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
@@ -22,7 +24,7 @@ class Program(NamedTuple):
     are replaced, and where some of the rules may be broken or dropped.
     """
 
-    files: tuple[Path, ...]
+    files: tuple[Loaded, ...]
     exact_success: Path
     arguments: tuple[str, ...]
     replaced: bool

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 from clingo import Control
 
@@ -11,6 +10,7 @@ from foon_asp.errors import UserError
 from foon_asp.grounding.grounded import Grounded
 from foon_asp.grounding.messages import listener, refusing
 from foon_asp.grounding.run import ProgramError, Run
+from foon_asp.grounding.stated import Loaded
 
 
 def check(arguments: Sequence[str]) -> None:
@@ -24,7 +24,7 @@ def check(arguments: Sequence[str]) -> None:
 
 
 def run(
-    files: Sequence[Path],
+    files: Sequence[Loaded],
     facts: str,
     arguments: Sequence[str],
     deadline: Deadline,
@@ -59,7 +59,7 @@ def run(
 
 
 def ground(
-    files: Sequence[Path],
+    files: Sequence[Loaded],
     facts: str,
     arguments: Sequence[str],
     deadline: Deadline,
@@ -70,11 +70,11 @@ def ground(
     try:
         return Grounded(files, facts, arguments, products, deadline, endless)
     except ProgramError as error:
-        raise refused(error) from None
+        raise refused(error, files) from None
 
 
-def refused(error: ProgramError) -> UserError:
+def refused(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
     """Turn clingo's messages into one error with places and source lines."""
     from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
-    return fault(error.messages, error.otherwise)
+    return fault(error.messages, error.otherwise, files)

@@ -5,8 +5,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.own_encodings import ENCODING_FILES, is_own
 from foon_asp.deadline import Deadline
+from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.problem import Objective
 from foon_asp.reduce import ALL, Reduction
@@ -17,16 +19,17 @@ if TYPE_CHECKING:  # clingo, which often is not needed
 
 
 class Relaxed(NamedTuple):
-    """Constraint files that are loaded rewritten.
+    """Constraints that are loaded rewritten.
 
-    ``files`` are looked over like other constraints, but ``rules`` stand in for what they say, together with
-    ``encoding``, one of ours (``encodings/questions``). ``places`` says where each rule comes from.
+    They are looked over like others, but ``rules`` stand in for what they say, together with ``encoding``,
+    one of ours (``encodings/questions``). ``places`` says where each rule comes from, in ``files``.
     """
 
-    files: tuple[Path, ...]
+    constraints: tuple[Constraint, ...]
     rules: str
     encoding: Path
     places: Mapping[str, Source]
+    files: tuple[Loaded, ...]
 
 
 class Bounded(NamedTuple):
@@ -46,7 +49,7 @@ class Bounded(NamedTuple):
 class Settings(NamedTuple):
     """How to solve, and under which constraints.
 
-    ``constraints`` are files added to the encodings; ``encodings`` is a folder whose files replace ours;
+    ``constraints`` are added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
     ``reductions`` come before the search, unless there are constraints, bounds or other encodings.
     ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``session`` keeps ground
@@ -54,7 +57,7 @@ class Settings(NamedTuple):
     begun.
     """
 
-    constraints: tuple[Path, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
     encodings: Path | None = None
     constants: tuple[str, ...] = ()
     clingo_options: tuple[str, ...] = ()

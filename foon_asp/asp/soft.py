@@ -1,10 +1,10 @@
 """Soft constraints: the least penalty first, then the best tree among those that have it."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.asp.assembly import assemble, find_constraint
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.constraint import Constraint, find_constraint
 from foon_asp.asp.facts import write_greatest_penalty, write_least_penalty, write_soft, write_tree
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.outcome import Outcome, Status
@@ -38,18 +38,21 @@ class SoftOutcome(NamedTuple):
 
 
 def soft_rules(
-    settings: Settings, weights: Mapping[Path, int]
+    settings: Settings, weights: Mapping[Constraint, int]
 ) -> tuple[tuple[IntegrityConstraint, ...], dict[int, int], Relaxed]:
-    """Number the integrity constraints of soft files, with their weights, and rewrite them.
+    """Number the integrity constraints of soft constraints, with their weights, and rewrite them.
 
-    Raises :class:`UserError` for a file that is among the constraints of the settings, too.
+    Raises :class:`UserError` for one that is among the constraints of the settings, too.
     """
-    both = set(map(find_constraint, settings.constraints)) & set(map(find_constraint, weights))
+    weight_of = {find_constraint(constraint): weight for constraint, weight in weights.items()}
+    both = weight_of.keys() & set(map(find_constraint, settings.constraints))
     if both:
-        raise UserError(f"{min(both)} is named as a constraint and as a soft one; leave one of them out")
-    constraints, relaxed = relax(tuple(weights), settings.constants, soft=True, deadline=settings.begun)
-    of_file = {find_constraint(path): weight for path, weight in weights.items()}
-    by_number = {c.number: of_file[c.file] for c in constraints}
+        named = min(map(str, both))
+        raise UserError(f"{named} is named as a constraint and as a soft one; leave one of them out")
+    constraints, relaxed = relax(
+        weights, settings.constants, soft=True, deadline=settings.begun, before=settings.constraints
+    )
+    by_number = {c.number: weight_of[c.constraint] for c in constraints}
     return constraints, by_number, relaxed._replace(rules=relaxed.rules + write_soft(by_number))
 
 
@@ -57,14 +60,14 @@ def solve_soft(
     problem: Problem,
     objectives: Sequence[Objective],
     settings: Settings,
-    weights: Mapping[Path, int],
+    weights: Mapping[Constraint, int],
     reporter: Reporter | None = None,
 ) -> SoftOutcome:
     """Find the tree with the least penalty, and among those the best by a lexicographic list of objectives.
 
-    ``weights`` are those of the files whose integrity constraints are soft; the constraints of ``settings``
-    are hard. Each way in which a constraint is broken, by other values of the variables that it has as a
-    whole, costs its weight. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    ``weights`` are those of the constraints that are soft; the constraints of ``settings`` are hard. Each way
+    in which a rule is broken, by other values of the variables that it has as a whole, costs its weight.
+    Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.begun)
     constraints, by_number, relaxed = soft_rules(settings, weights)

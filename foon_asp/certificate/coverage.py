@@ -1,10 +1,11 @@
 """Which of a user's constraints a certificate can speak about."""
 
 import hashlib
+from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp import Settings
-from foon_asp.asp.assembly import find_constraint
+from foon_asp.asp.constraint import RuleText, find_constraint
 from foon_asp.asp.own_encodings import is_own
 from foon_asp.network import Network
 
@@ -16,7 +17,7 @@ class Coverage(NamedTuple):
     """What is forbidden and certified, and what else narrows the trees and is not.
 
     ``motions`` and ``labels`` (of objects) rule out every unit that has one of them. ``not_covered`` names
-    files of rules, by name and digest, and the constants that were set.
+    rules, by their text or by file, with a digest, and the constants that were set.
     """
 
     motions: tuple[str, ...] = ()
@@ -45,20 +46,30 @@ def coverage(settings: Settings) -> Coverage:
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     forbidden: dict[str, set[str]] = {constant: set() for constant in _FORBIDDING.values()}
     others: list[str] = []
-    for file in dict.fromkeys(map(find_constraint, settings.constraints)):
+    plain: set[str] = set()
+    for each in dict.fromkeys(map(find_constraint, settings.constraints)):
+        if isinstance(each, RuleText):
+            others.append(f"{each.name} {_digest(each.text.encode('utf-8', 'surrogatepass'))} {each.text}")
+            continue
+        file, given = (each, constants) if isinstance(each, Path) else (each.file, each.constants)
         constant = _FORBIDDING.get(file.name)
         if constant is not None and is_own(file):
-            if constant in constants:
+            if constant in given:
                 from foon_asp.asp.encoding import string_constant  # noqa: PLC0415 - it loads clingo
 
-                forbidden[constant] |= {string_constant(constants.pop(constant))} - {""}
+                forbidden[constant] |= {string_constant(given[constant])} - {""}
+                plain |= {constant} if given is constants else set()
         else:
-            others.append(f"{file.name} {hashlib.sha256(file.read_bytes()).hexdigest()}")
+            others.append(f"{each.name} {_digest(file.read_bytes())}")
     if settings.replaced is not None:
         others.append(f"encodings {settings.replaced.name}")
-    others += [f"{name}={value}" for name, value in constants.items()]
+    others += [f"{name}={value}" for name, value in constants.items() if name not in plain]
     motions, labels = (tuple(sorted(forbidden[constant])) for constant in _FORBIDDING.values())
     return Coverage(motions, labels, tuple(sorted(set(map(_printable, others)))))
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
 
 
 def _printable(name: str) -> str:

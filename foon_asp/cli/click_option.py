@@ -2,31 +2,36 @@
 
 import functools
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from foon_asp.asp.constraint import Constraint, named_constraint
 from foon_asp.cli import held
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.deadline import memory_size, seconds
 from foon_asp.errors import UserError
-from foon_asp.questions.contract import Kind, Option
+from foon_asp.questions.contract import Kind, Option, Part
 
 Command = TypeVar("Command", bound=Callable[..., object])
 
 _STANDING = {
+    "rules": held.rules_given,
     "constraints": held.with_rules_that_stand,
     "constants": held.with_constants_that_stand,
     "encodings": held.encodings_that_stand,
 }
 
 
-def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Path, int]:
+def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Constraint, int]:
     """Read files with their weights."""
     from foon_asp.cli.weighted_files import weighted_files
 
     return weighted_files(value, parameter.opts[0])
+
+
+def _constraint(text: str) -> Constraint:
+    return named_constraint(text, NamedPath)
 
 
 def _options_alone(
@@ -57,6 +62,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         Kind.SECONDS: seconds,
         Kind.SIZE: memory_size,
         Kind.WEIGHTS: None,
+        Kind.CONSTRAINT: _constraint,
         Kind.OPTIONS: click.UNPROCESSED,
     }
     if option.positional:
@@ -78,6 +84,8 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         default=option.default,
         show_default=option.default is not None,
         metavar=option.metavar,
+        expose_value=option.part is not Part.MORE,
+        is_eager=option.part is Part.MORE,  # to be there when the other is read
         callback=_weights if option.kind is Kind.WEIGHTS else _STANDING.get(option.name),
         help=f"{option.help[:-1]}; repeatable." if option.many else option.help,
     )

@@ -6,35 +6,38 @@ import click
 
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
+from foon_asp.asp.constraint import Constraint
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.document.json_document import document
 from foon_asp.problem import parse_objectives
-from foon_asp.questions.options import CONSTRAINTS, CONTAINERS, ENCODINGS, GOALS, OBJECTIVES, SOFT
+from foon_asp.questions.options import CONSTRAINTS, CONTAINERS, ENCODINGS, GOALS, OBJECTIVES, RULE, SOFT
 from foon_asp.text.json_value import json_text
 
 
 @click.command("facts")
-@click_options(GOALS, OBJECTIVES, CONTAINERS, CONSTRAINTS, ENCODINGS, SOFT)
+@click_options(GOALS, OBJECTIVES, CONTAINERS, CONSTRAINTS, RULE, ENCODINGS, SOFT)
 @options.format_option("text", "json")
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
     objectives: tuple[str, ...],
     containers: str,
-    constraints: tuple[Path, ...],
+    constraints: tuple[Constraint, ...],
     encodings: Path | None,
-    soft: dict[Path, int],
+    soft: dict[Constraint, int],
     format_: str,
     **data: object,
 ) -> ExitCode:
     """Print the facts that clingo is given for a goal; encodings/README.md says what they mean.
 
     Units that no goal can need are left out, which is right for constraints that only forbid. If a constraint
-    demands something, name it with --constraint; then all units that can be made are printed. The rules of a
-    --soft file are printed with the facts, as rules for what is broken.
+    demands something, name it with --constraint; then all units that can be made are printed. What is in no
+    file is printed with the facts: a --rule, and a ready-made constraint with constants of its own, in which
+    these and its helper predicates have names of their own. So are the rules of a --soft file, as rules for
+    what is broken.
 
     \b
     foon-asp facts --goal ice > facts.lp
@@ -49,7 +52,7 @@ def command(
     problem = dataset.problem(
         dataset.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
     )
-    facts = bare_program(problem, chosen, Settings(constraints, encodings), soft).facts
+    facts = bare_program(problem, chosen, Settings(constraints, encodings), soft).text
     if format_ == "json":
         lines = facts.rstrip("\n").split("\n")  # a name may hold what other letters end a line
         click.echo(json_text(document("facts", problem, chosen, facts=lines)), nl=False)

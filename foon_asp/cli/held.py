@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from foon_asp.asp.constraint import Constraint, RuleText
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 
@@ -24,18 +25,26 @@ class Held(NamedTuple):
     level: int
     session: "Session"
     files: tuple[Path, ...]
-    constraints: tuple[Path, ...]
+    constraints: tuple[Constraint, ...]
     constants: tuple[str, ...]
     encodings: Path | None
 
 
+_RULES = "foon_asp.rules"
+
+
+def rules_given(context: click.Context, _: click.Parameter, value: tuple[str, ...]) -> None:
+    """Keep the rules of a command until its constraints are read."""
+    context.meta[_RULES] = tuple(map(RuleText, value))
+
+
 def with_rules_that_stand(
-    context: click.Context, _: click.Parameter, value: tuple[Path, ...]
-) -> tuple[Path, ...]:
-    """Add constraints to those of the session, if there is one."""
+    context: click.Context, _: click.Parameter, value: tuple[Constraint, ...]
+) -> tuple[Constraint, ...]:
+    """Add constraints and rules to those of the session, if there is one."""
     here = context.find_object(Held)
     standing = () if here is None else here.constraints
-    return tuple(dict.fromkeys((*standing, *value)))
+    return tuple(dict.fromkeys((*standing, *value, *context.meta.get(_RULES, ()))))
 
 
 def with_constants_that_stand(

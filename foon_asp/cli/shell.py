@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from foon_asp.asp.constraint import Constraint
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
@@ -26,7 +27,7 @@ def command(
     goals_named: tuple[str, ...],
     objectives: tuple[str, ...],
     containers: str,
-    constraints: tuple[Path, ...],
+    constraints: tuple[Constraint, ...],
     encodings: Path | None,
     constants: tuple[str, ...],
     time_limit: float | None,

@@ -9,10 +9,12 @@ from typing import NamedTuple
 import click
 
 from foon_asp.asp import Settings
-from foon_asp.asp.assembly import assemble, find_constraint
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.constraint import Constraint, RuleText, find_constraint, named_constraint
 from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.asp.encoding import read_encoding
 from foon_asp.asp.session import Session
+from foon_asp.asp.stating import loaded
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.held import Held
 from foon_asp.cli.named_path import NamedPath
@@ -52,7 +54,8 @@ WORDS = {
     "constraint": Usage(
         "constraint NAME|FILE.lp [CONSTANT=VALUE...]", "add a constraint, or set its constants"
     ),
-    "drop": Usage("drop NAME|FILE.lp...", "take constraints away"),
+    "rule": Usage("rule 'RULE'", "add a rule, such as ':- use(U), motion(U,\"fry\").'"),
+    "drop": Usage("drop NAME|FILE.lp|'RULE'...", "take constraints and rules away"),
     "time-limit": Usage("time-limit SECONDS|none", "stop each question after this many seconds"),
     "memory-limit": Usage("memory-limit SIZE|none", "stop each question at this much memory: 500M, 2G"),
     "show": Usage("show", "show what is set"),
@@ -78,7 +81,7 @@ class ShellSession:
         self.goals: tuple[str, ...] = ()
         self.containers = ContainerRule.STRICT
         self.objectives: tuple[str, ...] = ()
-        self.constraints: dict[Path, frozenset[str]] = {}  # with the names of their constants
+        self.constraints: dict[Constraint, frozenset[str]] = {}  # with the names of their constants
         self.constants: dict[str, str] = {}
         self.time_limit: float | None = None
         self.memory_limit: int | None = None
@@ -95,6 +98,7 @@ class ShellSession:
             "containers": self._containers,
             "objective": self._objective,
             "constraint": self._constraint,
+            "rule": self._rule,
             "drop": self._drop,
             "time-limit": self._time_limit,
             "memory-limit": self._memory_limit,
@@ -145,7 +149,7 @@ class ShellSession:
                 self._lenient,
                 self._level,
                 self._session,
-                (*self.files, *self.constraints),
+                (*self.files, *(each for each in self.constraints if isinstance(each, Path))),
                 tuple(self.constraints),
                 _settings(self.constants),
                 self._encodings,
@@ -215,25 +219,34 @@ class ShellSession:
             raise UserError(f"name a constraint: {WORDS['constraint'].usage}; ours are {', '.join(_ours())}")
         name, *constants = words
         before = dict(self.constants)
-        self.constrain((NamedPath(name),), constants)
+        self.constrain((named_constraint(name, NamedPath),), constants)
         for constant, value in before.items():
             if self.constants[constant] != value:
                 _say(f"replaced: {constant}={value}")
         _say(f"constraint: {' '.join(words)}")
 
-    def constrain(self, constraints: Sequence[Path], constants: Sequence[str]) -> None:
+    def _rule(self, rules: list[str]) -> None:
+        if len(rules) != 1:
+            raise UserError(f"expected {WORDS['rule'].usage}, with the rule in quotes")
+        self.constrain((RuleText(rules[0]),), ())
+        _say(f"rule: {rules[0]}")
+
+    def constrain(self, constraints: Sequence[Constraint], constants: Sequence[str]) -> None:
         """Add constraints and set constants, if these are valid."""
-        named = {find_constraint(path): path for path in (*constraints, *self.constraints)}
+        named = {find_constraint(each): each for each in (*constraints, *self.constraints)}
         known = dict(self.constants)
         for constant in constants:
             name, equals, value = constant.partition("=")
             if not equals:
                 raise UserError(f"found the constant {constant!r}, expected NAME=VALUE")
             known[name] = value
-        files = {path: file for file, path in named.items()}
-        files = {path: files[path] for path in (*self.constraints, *constraints) if path in files}
-        assemble(Settings(tuple(files), self._encodings, _settings(known)), _say)
-        self.constraints = {path: frozenset(read_encoding(file).constants) for path, file in files.items()}
+        found = {each: constraint for constraint, each in named.items()}
+        found = {each: found[each] for each in (*self.constraints, *constraints) if each in found}
+        assemble(Settings(tuple(found), self._encodings, _settings(known)), _say)
+        rules = loaded(tuple(found.values()))
+        self.constraints = {
+            each: frozenset(read_encoding(rules[constraint]).constants) for each, constraint in found.items()
+        }
         self.constants = known
 
     def _drop(self, names: list[str]) -> None:
@@ -272,7 +285,8 @@ class ShellSession:
         click.echo(f"containers: {self.containers}")
         for path, has in self.constraints.items():
             constants = [f"{n}={v}" for n, v in self.constants.items() if n in has]
-            click.echo(" ".join(["constraint:", str(path), *map(quoted, constants)]))
+            kind = "rule" if isinstance(path, RuleText) else "constraint"
+            click.echo(" ".join([f"{kind}:", str(path), *map(quoted, constants)]))
         if self._encodings:
             click.echo(f"encodings: {self._encodings}")
         click.echo(f"time-limit: {'none' if self.time_limit is None else f'{self.time_limit:g}'}")

@@ -1,18 +1,19 @@
-"""``FILE.lp=WEIGHT``: constraint files with a weight."""
+"""``FILE.lp=WEIGHT``: constraints with a weight."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
-from foon_asp.asp.assembly import GREATEST_WEIGHT, find_constraint
+from foon_asp.asp.assembly import GREATEST_WEIGHT
+from foon_asp.asp.constraint import Constraint, find_constraint, given_constraint
 from foon_asp.errors import UserError
 
 
-def weighted_files(settings: Sequence[str], option: str) -> dict[Path, int]:
+def weighted_files(settings: Sequence[str], option: str) -> dict[Constraint, int]:
     """Read ``FILE.lp=WEIGHT`` settings of an option; a weight is a whole number from 1 to a million.
 
-    Raises :class:`UserError` for one of another form, and for a file with two weights.
+    In place of the file there may be a rule, or a ready-made constraint. Raises :class:`UserError` for a
+    setting of another form, and for a constraint with two weights.
     """
-    found: dict[Path, int] = {}
+    found: dict[Constraint, int] = {}
     for setting in settings:
         file, equals, weight = setting.rpartition("=")
         if not equals or not file:
@@ -22,7 +23,7 @@ def weighted_files(settings: Sequence[str], option: str) -> dict[Path, int]:
                 f"found the weight {weight!r} in {option} {setting!r}, "
                 f"expected a whole number from 1 to {GREATEST_WEIGHT}"
             )
-        path = find_constraint(Path(file))
-        if found.setdefault(path, int(weight)) != int(weight):
+        constraint = find_constraint(given_constraint(file))
+        if found.setdefault(constraint, int(weight)) != int(weight):
             raise UserError(f"{option}: {file} has two weights")
     return found

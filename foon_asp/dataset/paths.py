@@ -5,7 +5,7 @@ from os import PathLike
 from pathlib import Path
 
 File = str | PathLike[str]
-"""A path; for a constraint also the name of one of ours, such as ``forbid_motion``."""
+"""A path; for a constraint also a rule, or the name of one of ours, such as ``forbid_motion``."""
 
 Files = File | Iterable[File]
 

@@ -64,7 +64,7 @@ def printed_command(asked: Asked) -> tuple[list[str], str]:
     outcome = asked.outcome
     program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
     files = [*map(str, program.files), "facts.lp"]
-    return ["python", "-m", "clingo", *files, *program.constants, *OPTIONS], program.facts
+    return ["python", "-m", "clingo", *files, *program.constants, *OPTIONS], program.text
 
 
 class Found(NamedTuple):
@@ -111,7 +111,7 @@ class _Clingo:
         added = (question_encoding(_SECOND_OPINION),) if more else ()
         files = [str(file.absolute()) for file in (*program.files, *added)]
         command = [sys.executable, "-P", "-m", "clingo", *files, "-", *program.constants, "--outf=2"]
-        text = (program.facts + more).encode("utf-8", "surrogatepass")
+        text = (program.text + more).encode("utf-8", "surrogatepass")
         left = self.end - time.monotonic()
         if left <= 0:
             raise self._late()

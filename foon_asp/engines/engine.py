@@ -3,10 +3,10 @@
 import math
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from foon_asp.asp import Outcome, Settings
+from foon_asp.asp.constraint import Constraint
 from foon_asp.problem import Objective, Problem, backwards, executable_order, multiplies
 from foon_asp.proof import Verdict, simulate_for
 
@@ -16,13 +16,13 @@ _GREATEST = 10**9  # of what a unit costs: beside more, floats lose costs that c
 class Asked(NamedTuple):
     """An answer to be checked, and all that it was asked under.
 
-    ``soft`` are the weights of constraint files that may be broken, and ``penalty`` is what the tree of the
+    ``soft`` are the weights of constraints that may be broken, and ``penalty`` is what the tree of the
     outcome is said to pay for those it breaks.
     """
 
     outcome: Outcome
     settings: Settings = Settings()
-    soft: Mapping[Path, int] = {}
+    soft: Mapping[Constraint, int] = {}
     penalty: int | None = None
 
 

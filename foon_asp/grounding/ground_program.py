@@ -13,6 +13,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
 from foon_asp.grounding.run import Heard
+from foon_asp.grounding.stated import Stated
 
 
 class GroundProgram:
@@ -24,12 +25,20 @@ class GroundProgram:
 
     deadline: Deadline | None = None
 
-    def __init__(self, files: Sequence[str], text: str, arguments: Sequence[str], products: int = 0) -> None:
+    def __init__(
+        self, files: Sequence[str | Stated], text: str, arguments: Sequence[str], products: int = 0
+    ) -> None:
         self._messages: list[str] = []
         with refusing(self._messages):
-            self._control = Control(list(arguments), logger=listener(self._messages), message_limit=NO_LIMIT)
+            hear = listener(self._messages)
+            self._control = Control(list(arguments), logger=hear, message_limit=NO_LIMIT)
             for file in files:
-                self._control.load(file)
+                if isinstance(file, Stated):
+                    from foon_asp.grounding.parsing import load  # noqa: PLC0415 (slow to import)
+
+                    load(self._control, file, hear)
+                else:
+                    self._control.load(file)
             self._control.add("base", [], text)
             parts = [("_product", [Number(number)]) for number in range(products)]
             self._control.ground([("base", []), *parts])

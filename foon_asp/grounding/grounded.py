@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.grounding.ground_program import GroundProgram
 from foon_asp.grounding.run import Heard, Run
+from foon_asp.grounding.stated import Loaded
 
 if TYPE_CHECKING:
     from foon_asp.grounding.worker_process import WorkerProgram
@@ -25,7 +26,7 @@ class Grounded:
 
     def __init__(
         self,
-        files: Sequence[Path],
+        files: Sequence[Loaded],
         text: str,
         arguments: Sequence[str],
         products: int,
@@ -34,7 +35,7 @@ class Grounded:
     ) -> None:
         deadline.doing = "grounding"
         deadline.check()
-        names = [str(file) for file in files]
+        names = [str(file) if isinstance(file, Path) else file for file in files]
         self._program: GroundProgram | WorkerProgram
         if endless or len(text) > _SMALL or deadline.memory is not None:
             from foon_asp.grounding import worker_process  # noqa: PLC0415 (often not needed)

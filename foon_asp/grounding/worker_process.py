@@ -20,6 +20,7 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.pipe import OUT_OF_MEMORY, receive, send
 from foon_asp.grounding.run import Heard, ProgramError
+from foon_asp.grounding.stated import Stated
 from foon_asp.python_process import start_python
 
 
@@ -32,7 +33,7 @@ class WorkerProgram:
 
     def __init__(
         self,
-        files: Sequence[str],
+        files: Sequence[str | Stated],
         text: str,
         arguments: Sequence[str],
         products: int,

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
+from os import PathLike
 from pathlib import Path
 
 from foon_asp.asp import Settings
-from foon_asp.asp.assembly import GREATEST_WEIGHT, find_constraint
-from foon_asp.dataset.paths import File, Files, files
+from foon_asp.asp.assembly import GREATEST_WEIGHT
+from foon_asp.asp.constraint import Constraint, find_constraint, given_constraint
+from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, parse_objectives
@@ -38,12 +40,18 @@ def settings(
     if isinstance(given, Mapping):
         given = [f"{name}={value}" for name, value in given.items()]
     return Settings(
-        files(constraints),
+        given_constraints(constraints),
         None if encodings is None else Path(encodings),
         tuple(given),
         session=caller().session,
         deadline=begin(time_limit, memory_limit),
     )
+
+
+def given_constraints(given: Files) -> tuple[Constraint, ...]:
+    """Read one constraint or several: paths, rules, and names of ready-made ones."""
+    one = isinstance(given, str | PathLike)
+    return tuple(map(given_constraint, [given] if one else given))  # type: ignore[arg-type]
 
 
 def limits(time_limit: float | None, memory_limit: int | str | None) -> tuple[float | None, int | None]:
@@ -79,18 +87,18 @@ def reading() -> AbstractContextManager[object]:
     return nullcontext() if deadline is None else deadline.watched("reading", late=True)
 
 
-def file_weights(given: Mapping[File, int]) -> dict[Path, int]:
-    """Read the weights of constraint files, whole numbers from 1."""
-    weights: dict[Path, int] = {}
+def constraint_weights(given: Mapping[File, int]) -> dict[Constraint, int]:
+    """Read the weights of constraints, whole numbers from 1."""
+    weights: dict[Constraint, int] = {}
     for name, weight in given.items():
         if not isinstance(weight, int) or not 1 <= weight <= GREATEST_WEIGHT:
             raise UserError(
                 f"found the weight {weight!r} of {name}, expected a whole number from 1 to {GREATEST_WEIGHT}"
             )
-        file = find_constraint(Path(name))
-        if file in weights:
+        constraint = find_constraint(given_constraint(name))
+        if constraint in weights:
             raise UserError(f"{name} has two weights")
-        weights[file] = weight
+        weights[constraint] = weight
     return weights
 
 

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from foon_asp.asp import Settings, Status
-from foon_asp.asp.assembly import CLINGO_OPTIONS, assemble, find_constraint
+from foon_asp.asp.assembly import CLINGO_OPTIONS, assemble
+from foon_asp.asp.constraint import Constraint, find_constraint
 from foon_asp.asp.facts import write_constraints, write_corrections
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.own_encodings import question_encoding
@@ -21,7 +21,7 @@ from foon_asp.questions.arguments import (
     Constants,
     Objectives,
     chosen_objectives,
-    file_weights,
+    constraint_weights,
     settings,
     whole,
 )
@@ -216,18 +216,18 @@ def clash(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     if not how.constraints:
         raise UserError("name constraints, files or names of ours; why-not explains other reasons")
-    return find_clash(whole(problem), chosen, how, file_weights(weights or {}))
+    return find_clash(whole(problem), chosen, how, constraint_weights(weights or {}))
 
 
 def find_clash(
     problem: Problem,
     objectives: Sequence[Objective],
     how: Settings,
-    file_weights: Mapping[Path, int] | None = None,
+    own_weights: Mapping[Constraint, int] | None = None,
 ) -> Clash:
     """Find a smallest clash and the cheapest constraints to drop, of those in some settings.
 
-    ``file_weights`` says what it costs to drop a constraint of a file, 1 where it says nothing. The smallest
+    ``own_weights`` says what it costs to drop a rule of a constraint, 1 where it says nothing. The smallest
     clash is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS
     Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one of every correction
     known so far, until it is a clash itself.
@@ -236,8 +236,8 @@ def find_clash(
     how = how._replace(deadline=deadline)
     constraints, relaxed = relax(how.constraints, how.constants, soft=False, deadline=deadline)
     by_number = {constraint.number: constraint for constraint in constraints}
-    of_file = {find_constraint(path): weight for path, weight in (file_weights or {}).items()}
-    weights = {number: of_file.get(c.file, 1) for number, c in by_number.items()}
+    weight_of = {find_constraint(c): weight for c, weight in (own_weights or {}).items()}
+    weights = {number: weight_of.get(c.constraint, 1) for number, c in by_number.items()}
     how = how._replace(relaxed=relaxed)
     program = assemble(how, caller().reporter.warning)
     blame = (question_encoding("blame.lp"),)

@@ -23,7 +23,8 @@ class Kind(StrEnum):
     FILE = "file"
     SECONDS = "seconds"
     SIZE = "size"
-    WEIGHTS = "weights of files"
+    CONSTRAINT = "constraint"
+    WEIGHTS = "weights of constraints"
     FLAG = "flag"
     OPTIONS = "options of another program"
 
@@ -37,6 +38,8 @@ class Part(Flag):
     """The question: it is a parameter of the function."""
     COMMAND = auto()
     """A parameter that holds for a whole command: limits, and rules, to which a session may add."""
+    MORE = auto()
+    """What else can be said for another parameter, and is among its values there: rules, for constraints."""
     TEXT = auto()
     """How what was found is said: a parameter of its text."""
     CHART = auto()

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 from foon_asp.asp import Settings, Status
+from foon_asp.asp.constraint import Constraint
 from foon_asp.dataset.paths import File, Files
 from foon_asp.engines import Asked, Check, DisagreementError, Engine, find_engines
 from foon_asp.engines import cross_check as ask_engines
@@ -16,7 +16,7 @@ from foon_asp.questions.arguments import (
     Constants,
     Objectives,
     chosen_objectives,
-    file_weights,
+    constraint_weights,
     limits,
     settings,
     whole,
@@ -115,7 +115,7 @@ def cross_check(
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    weights = file_weights(soft or {})
+    weights = constraint_weights(soft or {})
     problem = whole(problem)
     engines = find_engines()
     answer = softly_answered(problem, chosen, how, weights) if weights else answered(problem, chosen, how)
@@ -129,7 +129,7 @@ def cross_check(
 def checked_or_reported(
     answer: Answer | SoftAnswer | Certified,
     how: Settings,
-    weights: Mapping[Path, int],
+    weights: Mapping[Constraint, int],
     engines: tuple[Engine, ...],
 ) -> CrossChecked:
     """Ask other engines about an answer, as the command does.
@@ -144,7 +144,9 @@ def checked_or_reported(
         raise BugError(write_disagreement(asked, found)) from None
 
 
-def _asked(answer: Answer | SoftAnswer | Certified, how: Settings, weights: Mapping[Path, int]) -> Asked:
+def _asked(
+    answer: Answer | SoftAnswer | Certified, how: Settings, weights: Mapping[Constraint, int]
+) -> Asked:
     penalty = answer.penalty if isinstance(answer, SoftAnswer) else None
     return Asked(_outcome(answer), how, weights, penalty)
 

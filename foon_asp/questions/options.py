@@ -31,13 +31,22 @@ OBJECTIVES = Option(
 )
 CONSTRAINTS = Option(
     "constraints",
-    "A file with rules of yours, or the name of a ready-made constraint.",
-    Kind.FILE,
+    "A file with rules of yours, or a ready-made constraint, which may have constants of its own.",
+    Kind.CONSTRAINT,
     Part.COMMAND,
     flags=("--constraint",),
     many=True,
-    metavar="FILE.lp",
-    python="One or several of them.",
+    metavar="FILE.lp|NAME[:CONSTANT=VALUE,...]",
+    python="One or several of them. A text that has :- or ends in a full stop is a rule, unless it is an "
+    "existing path or a name; a pathlib.Path is always a path.",
+)
+RULE = Option(
+    "rules",
+    "A rule of yours, such as ':- use(U), motion(U,\"fry\").'.",
+    part=Part.MORE,
+    flags=("--rule",),
+    many=True,
+    metavar="RULE",
 )
 ENCODINGS = Option(
     "encodings",
@@ -55,14 +64,14 @@ CONSTANTS = Option(
     metavar="NAME=VALUE",
     python="Values by name, or texts NAME=VALUE.",
 )
-RULES = (CONSTRAINTS, ENCODINGS, CONSTANTS)
+RULES = (CONSTRAINTS, RULE, ENCODINGS, CONSTANTS)
 SOFT = Option(
     "soft",
     "Constraints that may be broken, each way at this price; the lowest sum comes before all objectives.",
     Kind.WEIGHTS,
     many=True,
     metavar="FILE.lp=WEIGHT",
-    python="Weights, whole numbers from 1, by file or by the name of a ready-made constraint.",
+    python="Weights, whole numbers from 1, of constraints as above.",
 )
 LIMITS = (
     Option(

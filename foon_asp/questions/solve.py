@@ -13,7 +13,7 @@ from foon_asp.questions.arguments import (
     Objectives,
     asked_with,
     chosen_objectives,
-    file_weights,
+    constraint_weights,
     settings,
     whole,
 )
@@ -62,7 +62,7 @@ def solve_and_more(
     if soft:
         from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
 
-        found = softly_answered(problem, chosen, how, file_weights(soft))
+        found = softly_answered(problem, chosen, how, constraint_weights(soft))
     elif certificate_file is not None:
         from foon_asp.questions.certify import certified  # noqa: PLC0415
 
@@ -73,7 +73,7 @@ def solve_and_more(
         return found
     from foon_asp.questions.cross_check import checked_or_reported  # noqa: PLC0415
 
-    return checked_or_reported(found, how, file_weights(soft or {}), engines)
+    return checked_or_reported(found, how, constraint_weights(soft or {}), engines)
 
 
 @question(

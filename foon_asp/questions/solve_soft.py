@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from foon_asp.asp import Settings, Status
+from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.soft import Broken
 from foon_asp.asp.soft import solve_soft as find
 from foon_asp.dataset.paths import File, Files
@@ -14,7 +14,7 @@ from foon_asp.questions.arguments import (
     Constants,
     Objectives,
     chosen_objectives,
-    file_weights,
+    constraint_weights,
     settings,
     whole,
 )
@@ -97,9 +97,9 @@ class SoftAnswer(Result):
 
 
 def softly_answered(
-    problem: Problem, objectives: Sequence[Objective], how: Settings, weights: Mapping[Path, int]
+    problem: Problem, objectives: Sequence[Objective], how: Settings, weights: Mapping[Constraint, int]
 ) -> SoftAnswer:
-    """Solve a problem under soft files with their weights."""
+    """Solve a problem under soft constraints with their weights."""
     who = caller()
     outcome, penalty, constraints = find(whole(problem), objectives, how, weights, who.reporter)
     if who.read_seconds is not None:
@@ -137,4 +137,4 @@ def solve_soft(
     """
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    return softly_answered(problem, chosen, how, file_weights(soft))
+    return softly_answered(problem, chosen, how, constraint_weights(soft))

@@ -6,7 +6,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from foon_asp.asp import Outcome
-from foon_asp.asp.assembly import find_constraint
+from foon_asp.asp.constraint import Constraint, RuleText, find_constraint
 from foon_asp.asp.encoding import read_encoding
 from foon_asp.asp.own_encodings import ENCODING_FILES
 from foon_asp.certificate import coverage
@@ -72,10 +72,10 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
     words = ["foon-asp", "solve", "--data", ".", "--containers", str(problem.containers)]
     words += ["--level", str(network.level), "--objective", ",".join(outcome.objectives), "--cross-check"]
     rules = _Rules()
-    for file in dict.fromkeys(map(find_constraint, settings.constraints)):
-        words += ["--constraint", rules.copy(file)]
-    for file, weight in asked.soft.items():
-        words += ["--soft", f"{rules.copy(file)}={weight}"]
+    for each in dict.fromkeys(map(find_constraint, settings.constraints)):
+        words += ["--rule" if isinstance(each, RuleText) else "--constraint", rules.copy(each)]
+    for each, weight in asked.soft.items():
+        words += ["--soft", f"{rules.copy(each)}={weight}"]
     if settings.replaced is not None:
         words += ["--encodings", rules.copy_encodings(settings.replaced)]
     words += [word for setting in settings.constants for word in ("-c", setting)]
@@ -121,8 +121,10 @@ class _Rules:
         self.files: dict[str, str] = {}
         self.names: dict[str, str] = {}
 
-    def copy(self, file: Path) -> str:
-        """Give what a constraint is called in the folder; ours is called by its name."""
+    def copy(self, file: Constraint) -> str:
+        """Give what a constraint is called in the folder; ours is called by its name, a rule by its text."""
+        if not isinstance(file, Path):
+            return str(file)
         if file.parent.resolve() == (encodings_folder() / "constraints").resolve():
             return file.stem
         return self._add(file, f"rules-{len(self.files) + 1}-{file.name}")
