@@ -46,11 +46,9 @@ def solved(cli: Cli, *words: str | Path) -> dict[str, Any]:
     [
         CRUSH,
         f"% said\n{CRUSH[:11]}\n  {CRUSH[11:]}  % why\n",
-        f"{CRUSH}\r\n% end",
         f"%* over\n lines *% {CRUSH}",
         'used(M) :- use(U), motion(U,M). bad("crush"). :- used(M), bad(M).',
         '#const which = "crush". :- use(U), motion(U,which).',
-        f"#program base. {CRUSH}",
     ],
 )
 def test_a_rule_is_what_a_file_with_it_is(text: str, cli: Cli, tmp_path: Path) -> None:
@@ -312,10 +310,7 @@ def test_texts_that_look_like_names_are_left_alone(cli: Cli) -> None:
     assert '#const _forbidden_motion_1 = "forbidden_motion".' in rules.text
 
 
-SEEDS = range(12)
-
-
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", range(5))
 def test_uses_against_brute_force(seed: int) -> None:
     rng = random.Random(seed)
     problem = random_problem(seed, rng.choice(list(ContainerRule)), units=7)
@@ -369,6 +364,7 @@ def test_bare_clingo_finds_the_same_from_the_printed_facts(cli: Cli, tmp_path: P
         assert found["Models"]["Costs"] == [answer["costs"]["units"]]
 
 
+@pytest.mark.slow
 def test_the_second_opinion_is_asked_under_rules(cli: Cli) -> None:
     ran = cli(
         *("solve", "--goal", "ice", "--objective", "success", "--cross-check"),
@@ -398,6 +394,7 @@ def test_a_certificate_covers_uses(cli: Cli, tmp_path: Path) -> None:
     assert cli("verify", file).code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "verb",
     ["why-not", "shopping-list", "alternatives", "pareto", "regret", "menu", "assist", "sensitivity"],
