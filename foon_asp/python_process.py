@@ -1,9 +1,16 @@
 """Another process of the Python that runs this one, for work that cannot be interrupted in this one."""
 
+import atexit
+import contextlib
+import os
 import subprocess
 import sys
+import threading
+import weakref
+from collections.abc import Callable
+from io import RawIOBase
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from foon_asp.errors import UserError
 
@@ -14,27 +21,78 @@ _APART: dict[str, Any] = {"start_new_session": True}
 if sys.platform == "win32":
     _APART = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
 
+_all: "weakref.WeakSet[PythonProcess]" = weakref.WeakSet()
 
-def start_python(
-    module: str, what: str, *options: str, stderr: int | None = None
-) -> "subprocess.Popen[bytes]":
-    """Start ``serve`` of a module, which reads from standard input and writes to standard output.
 
-    It finds the modules that this process finds. Raises :class:`UserError` where it is not known where Python
-    is; ``what`` is done there.
+class PythonProcess:
+    """A process in which ``serve`` of a module reads from standard input and writes to standard output.
+
+    It finds the modules that this process finds, and ends with it at the latest. Raises :class:`UserError`
+    where it is not known where Python is; ``what`` is done there.
     """
-    if not sys.executable:
-        raise UserError(
-            f"{what} by a Python of their own, and this program does not know where Python is: "
-            "sys.executable is not set"
+
+    def __init__(self, module: str, what: str, *options: str, stderr: int | None = None) -> None:
+        if not sys.executable:
+            raise UserError(
+                f"{what} by a Python of their own, and this program does not know where Python is: "
+                "sys.executable is not set"
+            )
+        paths = [_PACKAGES, *(str(Path(path).resolve()) for path in sys.path)]
+        serve = f"import sys; sys.path[:] = {paths!r}; from {module} import serve; serve()"
+        self._process = subprocess.Popen(
+            [sys.executable, *options, "-P", "-c", serve],
+            bufsize=0,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=stderr,
+            **_APART,
         )
-    paths = [_PACKAGES, *(str(Path(path).resolve()) for path in sys.path)]
-    serve = f"import sys; sys.path[:] = {paths!r}; from {module} import serve; serve()"
-    return subprocess.Popen(
-        [sys.executable, *options, "-P", "-c", serve],
-        bufsize=0,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=stderr,
-        **_APART,
-    )
+        self._out = cast("RawIOBase", self._process.stdin)
+        self._in = cast("RawIOBase", self._process.stdout)
+        self._thread: threading.Thread | None = None
+        _all.add(self)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it runs."""
+        return self._process.poll() is None
+
+    def beside(self, target: Callable[..., None], *arguments: object) -> None:
+        """Let a thread speak with the process, or listen to it, until it ends."""
+        self._thread = threading.Thread(target=target, args=arguments, daemon=True)
+        self._thread.start()
+
+    def end(self) -> int:
+        """End it, whatever it is at; give what it ended with."""
+        self._process.kill()
+        code = self._process.wait()
+        if self._thread is not None:
+            self._thread.join(5)  # before another file gets the number that it reads from
+        self._close()
+        return code
+
+    def abandon(self) -> None:
+        """Let go of a process that belongs to another: this one is a copy of that one."""
+        self._process.returncode = 0
+        self._close()
+
+    def _close(self) -> None:
+        for pipe in (self._out, self._in):
+            with contextlib.suppress(OSError):
+                pipe.close()
+
+
+def _end_all() -> None:
+    for process in list(_all):
+        process.end()
+
+
+def _forget_all() -> None:
+    """Know of no process after a fork: those there are belong to the other."""
+    for process in list(_all):
+        process.abandon()
+
+
+atexit.register(_end_all)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_all)

@@ -32,6 +32,7 @@ from tests.random_problems import random_problem
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
 
 RULES = list(ContainerRule)
+PLAIN = SearchSettings()
 
 
 def problem_of(units: list[tuple[str, str, str]], kitchen: str, goal: str) -> Problem:
@@ -60,12 +61,13 @@ LAYERS = [
 
 def test_the_published_procedure_step_by_step() -> None:
     problem = problem_of(LAYERS, "kde", "g")
-    assert breadth_first(problem).units == (3, 2, 0)  # g takes 0, then a takes 2, then b takes 3; reversed
-    assert depth_first(problem).units == (2, 3, 0)  # from the stack b comes before a
-    assert breadth_first(problem, Ties.LAST).units == (4, 1)
-    assert greedy_success(problem).units == (4, 1)
-    assert greedy_inputs(problem).units == (3, 2, 0)
-    assert greedy_inputs(problem, Ties.LAST).units == (5, 2, 0)  # b by unit 5, not by 3
+    # g takes 0, then a takes 2, then b takes 3; reversed
+    assert breadth_first(problem, PLAIN).units == (3, 2, 0)
+    assert depth_first(problem, PLAIN).units == (2, 3, 0)  # from the stack b comes before a
+    assert breadth_first(problem, SearchSettings(ties=Ties.LAST)).units == (4, 1)
+    assert greedy_success(problem, PLAIN).units == (4, 1)
+    assert greedy_inputs(problem, PLAIN).units == (3, 2, 0)
+    assert greedy_inputs(problem, SearchSettings(ties=Ties.LAST)).units == (5, 2, 0)  # b by unit 5, not by 3
 
 
 def test_heuristic_two_counts_ingredients_or_nodes() -> None:
@@ -77,32 +79,32 @@ def test_heuristic_two_counts_ingredients_or_nodes() -> None:
     network = builder.build()
     kitchen = frozenset({0, 2, 3})
     problem = Problem(network, kitchen, (1,), None, frozenset())
-    assert greedy_inputs(problem).units == (1,)
-    assert greedy_inputs(problem, count=Count.NODES).units == (0,)
+    assert greedy_inputs(problem, PLAIN).units == (1,)
+    assert greedy_inputs(problem, SearchSettings(count=Count.NODES)).units == (0,)
     with pytest.raises(UserError, match="needs a rates file"):
-        greedy_success(problem)
+        greedy_success(problem, PLAIN)
 
 
 def test_a_unit_that_makes_two_objects_is_listed_once() -> None:
     problem = problem_of([("safe", "ab", "g"), ("safe", "k", "ab")], "k", "g")
     for search in (breadth_first, depth_first, greedy_success, greedy_inputs):
-        assert search(problem).units == (1, 0)
+        assert search(problem, PLAIN).units == (1, 0)
 
 
 def test_an_object_that_no_unit_makes_ends_the_search_there() -> None:
     problem = problem_of([("safe", "az", "g"), ("safe", "k", "a")], "k", "g")
-    stuck = breadth_first(problem)
+    stuck = breadth_first(problem, PLAIN)
     assert stuck.ending is Ending.STUCK
     assert stuck.stuck_at is not None
     assert problem.network.objects[stuck.stuck_at].label == "z"
-    assert iterative_deepening(problem).ending is Ending.NONE
+    assert iterative_deepening(problem, PLAIN).ending is Ending.NONE
 
 
 def test_deepening_backtracks_where_the_first_unit_is_a_dead_end() -> None:
     cycle = [("safe", "x", "g"), ("safe", "g", "x"), ("safe", "y", "g"), ("safe", "k", "y")]
     problem = problem_of(cycle, "k", "g")
-    assert breadth_first(problem).units == (1, 0)  # a cycle that supports itself
-    assert iterative_deepening(problem).units == (3, 2)
+    assert breadth_first(problem, PLAIN).units == (1, 0)  # a cycle that supports itself
+    assert iterative_deepening(problem, PLAIN).units == (3, 2)
     assert SEARCHES["ids"].run(problem, SearchSettings(published=True)).units == (1, 0)
 
 
@@ -110,7 +112,7 @@ def test_deepening_keeps_limits_apart() -> None:
     # an object that is found within 2 while it is being looked for within 4 keeps the smaller limit
     units = [("safe", "bc", "g"), ("safe", "a", "b"), ("safe", "c", "a"), ("safe", "a", "c")]
     problem = problem_of([*units, ("safe", "k", "d"), ("safe", "d", "c")], "k", "g")
-    found = iterative_deepening(problem)
+    found = iterative_deepening(problem, PLAIN)
     assert oracle.makes(problem, tuple(map(problem.network.unit, found.units)))
 
 
@@ -140,7 +142,7 @@ def test_deepening_returns_a_tree_of_least_depth_or_says_that_none_exists(
 ) -> None:
     for seed in range(1500):
         problem = random_problem(seed, rule, units)
-        found = iterative_deepening(problem)
+        found = iterative_deepening(problem, PLAIN)
         depth = depths(problem)
         if not all(goal in depth for goal in problem.goals):
             assert found.ending is Ending.NONE
@@ -150,9 +152,9 @@ def test_deepening_returns_a_tree_of_least_depth_or_says_that_none_exists(
         tree = tuple(map(problem.network.unit, found.units))
         assert oracle.makes(problem, tree)
         assert all(depths(sub_problem(problem, found.units))[goal] <= least for goal in problem.goals)
-        limited = iterative_deepening(problem, depth_limit=least - 1) if least else None
+        limited = iterative_deepening(problem, SearchSettings(depth_limit=least - 1)) if least else None
         assert limited is None or limited.ending is Ending.UNKNOWN
-        assert iterative_deepening(problem, depth_limit=least) == found
+        assert iterative_deepening(problem, SearchSettings(depth_limit=least)) == found
 
 
 def sub_problem(problem: Problem, units: tuple[int, ...]) -> Problem:
@@ -169,9 +171,9 @@ def sub_problem(problem: Problem, units: tuple[int, ...]) -> Problem:
 
 def test_limits_end_in_unknown() -> None:
     problem = hard_problem()
-    assert iterative_deepening(problem, depth_limit=5).ending is Ending.UNKNOWN
-    assert iterative_deepening(problem, time_limit=0).ending is Ending.UNKNOWN
-    assert iterative_deepening(problem).ending is Ending.TREE
+    assert iterative_deepening(problem, SearchSettings(depth_limit=5)).ending is Ending.UNKNOWN
+    assert iterative_deepening(problem, SearchSettings(time_limit=0)).ending is Ending.UNKNOWN
+    assert iterative_deepening(problem, PLAIN).ending is Ending.TREE
 
 
 @pytest.mark.parametrize("rule", RULES)
@@ -228,7 +230,7 @@ def test_deepening_executes_for_every_makeable_object(data: Data, rule: Containe
     depth = depths(one)
     for goal in sorted(depth)[::3]:
         problem = Problem(data.network, data.kitchen, (goal,), data.rates, data.utensils, rule)
-        found = iterative_deepening(problem)
+        found = iterative_deepening(problem, PLAIN)
         assert oracle.makes(problem, tuple(map(data.network.unit, found.units)))
 
 

@@ -8,10 +8,10 @@ import click
 from foon_asp.cli.shell_line import quoted
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
-from foon_asp.network import ObjectNode, pattern_at_level
+from foon_asp.network import Network, ObjectNode, pattern_at_level
 from foon_asp.text.data_folder import kitchen_item_warning
 from foon_asp.text.diagnostics import Diagnostic, summarize
-from foon_asp.text.goal_name import NodeNames, SomeNames, Wording, find_goal
+from foon_asp.text.goal_name import NodeNames, Wording, find_goal
 from foon_asp.text.object_list import ListedObject, read_object_list
 
 _HAVE = Wording("kitchen item", "", "have")
@@ -34,9 +34,9 @@ class ShellKitchen:
 
     @property
     def names_at_hand(self) -> NodeNames:
-        """Where names of things at hand are looked up."""
-        nodes = {o: self.names.node(o) for o in sorted(self.dataset.kitchen)}
-        return SomeNames(nodes, self.names.level)
+        """Where names of things at hand are looked up: they are numbered anew, in order of their ids."""
+        nodes = tuple(map(self.names.node, sorted(self.dataset.kitchen)))
+        return Network(nodes, (), (), (), (), {node: o for o, node in enumerate(nodes)}, {}, self.names.level)
 
     def have(self, words: Sequence[str]) -> None:
         """Put object nodes into the kitchen, by name."""
@@ -48,7 +48,8 @@ class ShellKitchen:
 
     def lack(self, words: Sequence[str]) -> None:
         """Take object nodes out of the kitchen, by name."""
-        found = find_nodes(words, self.names_at_hand, _LACK)
+        at_hand = sorted(self.dataset.kitchen)
+        found = [at_hand[place] for place in find_nodes(words, self.names_at_hand, _LACK)]
         self._change(self._added.difference(found), self._removed.union(found))
         for o in found:
             _say(f"no longer at hand: {self.names.node(o)}")

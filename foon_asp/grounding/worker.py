@@ -15,8 +15,8 @@ from typing import Any
 
 from foon_asp.errors import UserError
 from foon_asp.grounding.ground_program import GroundProgram
-from foon_asp.grounding.pipe import OUT_OF_MEMORY, receive, send
-from foon_asp.grounding.run import ProgramError
+from foon_asp.grounding.run import OUT_OF_MEMORY, ProgramError
+from foon_asp.pipe import receive, send
 
 
 def serve() -> None:

@@ -3,7 +3,6 @@
 A process that did its work waits for the next program, so that starting one is paid for once.
 """
 
-import atexit
 import contextlib
 import os
 import queue
@@ -14,14 +13,14 @@ import threading
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from io import RawIOBase
-from typing import Any, cast
+from typing import Any
 
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
-from foon_asp.grounding.pipe import OUT_OF_MEMORY, receive, send
-from foon_asp.grounding.run import Heard, ProgramError
+from foon_asp.grounding.run import OUT_OF_MEMORY, Heard, ProgramError
 from foon_asp.grounding.stated import Stated
-from foon_asp.python_process import start_python
+from foon_asp.pipe import receive, send
+from foon_asp.python_process import PythonProcess
 
 
 class WorkerProgram:
@@ -81,24 +80,20 @@ def _folder() -> str | None:
         return None
 
 
-class _Worker:
+class _Worker(PythonProcess):
     def __init__(self) -> None:
-        self._process = start_python(
+        super().__init__(
             "foon_asp.grounding.worker", "rules of yours are grounded", "-S", stderr=subprocess.DEVNULL
         )
         self.lost = False  # ended, or in the middle of something
         self._answers: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
-        self._out = cast("RawIOBase", self._process.stdin)
         self._unheard = 0  # answers that nobody waits for
         self._answered = False
-        self._reader = threading.Thread(
-            target=_hear, args=(cast("RawIOBase", self._process.stdout), self._answers), daemon=True
-        )
-        self._reader.start()
+        self.beside(_hear, self._in, self._answers)
 
     @property
     def ready(self) -> bool:
-        return not self.lost and self._process.poll() is None
+        return not self.lost and self.alive
 
     def ask(
         self, deadline: Deadline, *command: object, hear: Mapping[str, Callable[[Any], None]] | None = None
@@ -166,13 +161,15 @@ class _Worker:
             "were added: terms nested too deeply, for example, are more than it can take"
         )
 
-    def end(self) -> None:
-        """End the process, whatever it is at."""
+    def end(self) -> int:
+        """End the process, whatever it is at; give what it ended with."""
         self.lost = True
-        self._process.kill()
-        self._process.wait()
-        self._reader.join(5)  # before another file gets the number that it reads from
-        self._close()
+        return super().end()
+
+    def abandon(self) -> None:
+        """Let go of a process that belongs to another: this one is a copy of that one."""
+        self.lost = True
+        super().abandon()
 
     def forget(self) -> None:
         """Let the process drop its program, and do not wait for that."""
@@ -181,18 +178,6 @@ class _Worker:
             self._unheard += 1
         except OSError:
             self.lost = True
-
-    def abandon(self) -> None:
-        """Let go of a process that belongs to another: this one is a copy of that one."""
-        self.lost = True
-        self._process.returncode = 0
-        self._close()
-
-    def _close(self) -> None:
-        for pipe in (self._process.stdin, self._process.stdout):
-            with contextlib.suppress(OSError):
-                if pipe:
-                    pipe.close()
 
 
 def _hear(pipe: RawIOBase, answers: "queue.SimpleQueue[tuple[str, Any]]") -> None:
@@ -205,7 +190,6 @@ def _hear(pipe: RawIOBase, answers: "queue.SimpleQueue[tuple[str, Any]]") -> Non
 _OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
 _MOST_IDLE = 1
 _idle: list[_Worker] = []
-_all: "weakref.WeakSet[_Worker]" = weakref.WeakSet()
 _lock = threading.RLock()  # a program that is dropped gives its process back in the middle of anything
 
 
@@ -213,7 +197,7 @@ def prepare() -> None:
     """Start a process, if none waits: it gets ready while other things are done."""
     with _lock:
         if not any(worker.ready for worker in _idle):
-            _idle.append(_started())
+            _idle.append(_Worker())
 
 
 def _take() -> _Worker:
@@ -223,13 +207,7 @@ def _take() -> _Worker:
             if worker.ready:
                 return worker
             worker.end()
-        return _started()
-
-
-def _started() -> _Worker:
-    worker = _Worker()
-    _all.add(worker)
-    return worker
+        return _Worker()
 
 
 def _give_back(worker: _Worker) -> None:
@@ -243,20 +221,12 @@ def _give_back(worker: _Worker) -> None:
         worker.end()
 
 
-def _end_all() -> None:
-    for worker in list(_all):
-        worker.end()
-
-
-def _forget_all() -> None:
+def _forget_idle() -> None:
     """Know of no process after a fork: those there are belong to the other."""
     global _lock  # noqa: PLW0603 (another thread may have held it)
     _lock = threading.RLock()
-    for worker in list(_all):
-        worker.abandon()
     _idle.clear()
 
 
-atexit.register(_end_all)
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget_all)
+    os.register_at_fork(after_in_child=_forget_idle)

@@ -18,6 +18,7 @@ from io import FileIO
 from typing import Any
 
 from foon_asp.offered.offer import Offer
+from foon_asp.pipe import receive_packed, write
 
 _LONGEST = 1000  # letters of a message
 
@@ -34,10 +35,7 @@ def serve() -> None:
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
         offer, arguments = pickle.loads(asked.get())
-        line = _answer(offer, arguments, functions)
-        left = memoryview(line)
-        while left:
-            left = left[answers.write(left) :]
+        write(answers, _answer(offer, arguments, functions))
 
 
 def _answer(
@@ -95,15 +93,7 @@ def _shown(value: object) -> str:
 
 def _read(requests: FileIO, asked: "queue.SimpleQueue[bytes]") -> None:
     while True:
-        length = int.from_bytes(_exactly(requests, 8), "big")
-        asked.put(_exactly(requests, length))
-
-
-def _exactly(pipe: FileIO, size: int) -> bytes:
-    content = bytearray()
-    while len(content) < size:
-        part = pipe.read(min(size - len(content), 1 << 20))
-        if not part:  # nobody asks any more
+        try:
+            asked.put(receive_packed(requests))
+        except EOFError:  # nobody asks any more
             os._exit(0)
-        content += part
-    return bytes(content)

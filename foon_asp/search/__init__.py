@@ -5,10 +5,10 @@ from foon_asp.search.catalog import SEARCHES as SEARCHES
 from foon_asp.search.catalog import find_searches as find_searches
 from foon_asp.search.catalog import search_names as search_names
 from foon_asp.search.depth_first import depth_first as depth_first
-from foon_asp.search.greedy_inputs import Count as Count
 from foon_asp.search.greedy_inputs import greedy_inputs as greedy_inputs
 from foon_asp.search.greedy_success import greedy_success as greedy_success
 from foon_asp.search.iterative_deepening import iterative_deepening as iterative_deepening
+from foon_asp.search.retrieval import Count as Count
 from foon_asp.search.retrieval import Ending as Ending
 from foon_asp.search.retrieval import Retrieval as Retrieval
 from foon_asp.search.retrieval import Ties as Ties

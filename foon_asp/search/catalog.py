@@ -4,52 +4,27 @@ from collections.abc import Mapping
 from typing import Final
 
 from foon_asp.offered.offer import find_offers, offers_by_name
-from foon_asp.problem import Problem
 from foon_asp.search.breadth_first import breadth_first
 from foon_asp.search.depth_first import depth_first
 from foon_asp.search.greedy_inputs import greedy_inputs
 from foon_asp.search.greedy_success import greedy_success
 from foon_asp.search.iterative_deepening import iterative_deepening
 from foon_asp.search.offered_search import offered_search
-from foon_asp.search.retrieval import Retrieval
-from foon_asp.search.search import Search, SearchSettings
+from foon_asp.search.search import Search
 
 ENTRY_POINTS: Final = "foon_asp.searches"
 _OPTIMUM = "optimum"  # what tables have in the place of a search
-
-
-def _breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
-    return breadth_first(problem, settings.ties)
-
-
-def _depth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
-    return depth_first(problem, settings.ties)
-
-
-def _deepen(problem: Problem, settings: SearchSettings) -> Retrieval:
-    if settings.published:
-        return breadth_first(problem, settings.ties)
-    return iterative_deepening(problem, settings.depth_limit, settings.time_limit, settings.memory_limit)
-
-
-def _greedy_success(problem: Problem, settings: SearchSettings) -> Retrieval:
-    return greedy_success(problem, settings.ties)
-
-
-def _greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
-    return greedy_inputs(problem, settings.ties, settings.count)
-
-
+_LEAST_DEPTH = "a tree that executes, of least depth, or the proof that none does"
 _NOTHING = "only that each input it needs is in the kitchen or an output of a unit of the tree"
 
 SEARCHES: Final[Mapping[str, Search]] = {
     search.name: search
     for search in (
-        Search("bfs", _NOTHING, _breadth_first),
-        Search("dfs", _NOTHING, _depth_first),
-        Search("ids", "a tree that executes, of least depth, or the proof that none does", _deepen),
-        Search("greedy-success", _NOTHING, _greedy_success),
-        Search("greedy-inputs", _NOTHING, _greedy_inputs),
+        Search("bfs", _NOTHING, breadth_first),
+        Search("dfs", _NOTHING, depth_first),
+        Search("ids", _LEAST_DEPTH, iterative_deepening),
+        Search("greedy-success", _NOTHING, greedy_success),
+        Search("greedy-inputs", _NOTHING, greedy_inputs),
     )
 }
 """The searches of the literature."""

@@ -2,10 +2,11 @@
 
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.search.retrieval import Retrieval, Ties, backward, least
+from foon_asp.search.retrieval import Retrieval, backward, least
+from foon_asp.search.search import SearchSettings
 
 
-def greedy_success(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
+def greedy_success(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Take for each object the unit whose motion has the highest success rate.
 
     Locally best, and no more: the product over the tree may be far from the greatest, and the tree may
@@ -13,5 +14,4 @@ def greedy_success(problem: Problem, ties: Ties = Ties.FIRST) -> Retrieval:
     """
     if problem.rates is None:
         raise UserError("the search by success rate needs a rates file (--rates)")
-
-    return backward(problem, least(ties, lambda unit: -problem.rate(unit)))
+    return backward(problem, least(settings.ties, lambda unit: -problem.rate(unit)))

@@ -2,15 +2,12 @@
 
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Problem, backwards
+from foon_asp.search.breadth_first import breadth_first
 from foon_asp.search.retrieval import Ending, Retrieval
+from foon_asp.search.search import SearchSettings
 
 
-def iterative_deepening(
-    problem: Problem,
-    depth_limit: int | None = None,
-    time_limit: float | None = None,
-    memory_limit: int | None = None,
-) -> Retrieval:
+def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Find a tree that executes, of least depth, or show that there is none.
 
     A kitchen item has depth 0, a unit one more than the deepest input it needs, an object the depth of
@@ -19,10 +16,12 @@ def iterative_deepening(
     one. What failed at which limit, and what was found, is remembered, so a limit costs at most one pass
     over the units that can matter. When no object gets within reach by one more level, none ever will.
 
-    Reaching ``depth_limit`` (levels), ``time_limit`` (seconds) or ``memory_limit`` (bytes) ends in
-    ``unknown``.
+    Reaching a limit of the ``settings`` ends in ``unknown``. With ``published`` it is what the published
+    programs do instead.
     """
-    search = _DepthLimited(problem, Deadline(time_limit, memory_limit))
+    if settings.published:
+        return breadth_first(problem, settings)
+    search = _DepthLimited(problem, Deadline(settings.time_limit, settings.memory_limit))
     limit = 0
     while True:
         try:
@@ -32,7 +31,7 @@ def iterative_deepening(
                 return Retrieval(Ending.NONE)
         except TimeoutError:
             return Retrieval(Ending.UNKNOWN)
-        if limit == depth_limit:
+        if limit == settings.depth_limit:
             return Retrieval(Ending.UNKNOWN)
         limit += 1
 

@@ -33,6 +33,13 @@ class Retrieval(NamedTuple):
     stuck_at: int | None = None
 
 
+class Count(StrEnum):
+    """What counts as inputs: input object nodes and their ingredients, or the nodes alone."""
+
+    INGREDIENTS = "ingredients"
+    NODES = "nodes"
+
+
 class Ties(StrEnum):
     """Which of several equally good units is taken: the first or the last in file order."""
 

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from foon_asp.problem import Problem
-from foon_asp.search.greedy_inputs import Count
-from foon_asp.search.retrieval import Retrieval, Ties
+from foon_asp.search.retrieval import Count, Retrieval, Ties
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,11 @@
 """Finding the object node that a name means: of a goal, or of a thing in the kitchen."""
 
 import shlex
-from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple, Protocol
 
 from foon_asp.errors import UserError
 from foon_asp.network import NodePattern, ObjectNode, node_at_level
-from foon_asp.network.spelling import near_labels
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.object_list import ListedObject
 
@@ -44,7 +42,7 @@ class GoalError(UserError):
 
 
 class NodeNames(Protocol):
-    """What names are looked up in: a :class:`~foon_asp.network.Network`, a store, the things at hand."""
+    """What names are looked up in: a :class:`~foon_asp.network.Network`, or a store."""
 
     @property
     def level(self) -> int:
@@ -157,42 +155,6 @@ def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
             raise _unclear(f"{said}; with that label there are", names, count, labelled, _GOAL)
         raise _unknown(f"{said} of the network", entry.pattern.label, names, _GOAL)
     return found
-
-
-class SomeNames:
-    """The names of some nodes, by id: those of a kitchen."""
-
-    def __init__(self, nodes: Mapping[int, ObjectNode], level: int) -> None:
-        self.level = level
-        self._nodes = nodes
-        self._labels: defaultdict[str, list[int]] = defaultdict(list)
-        for o, node in nodes.items():
-            self._labels[node.label].append(o)
-
-    def object_id(self, node: ObjectNode) -> int | None:
-        """Give the id of a node, or ``None`` when it is not there."""
-        return next((o for o in self._labels.get(node.label, ()) if self._nodes[o] == node), None)
-
-    def node(self, object_id: int) -> ObjectNode:
-        """Give the node with that id."""
-        return self._nodes[object_id]
-
-    def find(self, pattern: NodePattern) -> Sequence[int]:
-        """Give the ids of the nodes that an entry stands for."""
-        return [o for o in self._labels.get(pattern.label, ()) if pattern.matches(self._nodes[o])]
-
-    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Give how many nodes have a label, and which."""
-        found = self._labels.get(label, [])
-        return len(found), found
-
-    def beginning(self, start: str, most: int) -> Sequence[str]:
-        """Give labels that begin with ``start``, in alphabetical order, at most ``most``."""
-        return sorted(label for label in self._labels if label.startswith(start))[:most]
-
-    def near(self, label: str, most: int) -> Sequence[str]:
-        """Give labels similar to ``label``, the most similar first, at most ``most``."""
-        return near_labels(label, self._labels, most)
 
 
 def _only(name: str, names: NodeNames, count: int, found: Sequence[int], wording: Wording) -> int:
