@@ -56,7 +56,7 @@ problem: containers costs number objective order problem relevance restriction r
 proof: simulation
 questions: answer arguments caller contract docstring index options posing result solve
 reduce: derivation dominance exact_costs forced graph narrow near reduction reductions
-    upper_bound
+    upper_bound wide
 report: answer
 text: data_folder diagnostics exact_price goal_name grammar json_fault json_list json_node
     json_object json_units json_value label_list line listed_unit motion_times object_list
