@@ -122,6 +122,7 @@ def test_totals_above_all_floats_are_ordered() -> None:
         assert order.compare((Fraction(large), Fraction(0)), (Fraction(large), Fraction(1))) == -1
     assert Lexicographic([None]).sign([Fraction(-(10**400), 3)]) == -1
     assert order.approximate([10**400, -(10**400)]) == order.approximate([10**12, -(10**12)])
+    assert order.approximate([10**400, -(10**400)]) != order.approximate([10**11, -(10**11)])
 
 
 def test_exponents_do_not_make_up_for_logarithms_that_floats_lose() -> None:
