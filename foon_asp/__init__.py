@@ -57,12 +57,16 @@ if TYPE_CHECKING:
     from foon_asp.questions.diff import diff as diff
     from foon_asp.questions.draw import Drawn as Drawn
     from foon_asp.questions.draw import draw as draw
+    from foon_asp.questions.export import Exported as Exported
+    from foon_asp.questions.export import export as export
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.optima import Optima as Optima
     from foon_asp.questions.optima import optima as optima
     from foon_asp.questions.pareto import Front as Front
     from foon_asp.questions.pareto import pareto as pareto
+    from foon_asp.questions.read_plan import PlanRead as PlanRead
+    from foon_asp.questions.read_plan import read_plan as read_plan
     from foon_asp.questions.regret import Regrets as Regrets
     from foon_asp.questions.regret import regret as regret
     from foon_asp.questions.search import Retrieved as Retrieved

@@ -23,7 +23,7 @@ FLOORS = (
     {"text", "problem", "bounds"},
     {"reduce", "grounding", "document", "offered"},
     {"asp", "search", "proof", "store"},
-    {"compare", "lint", "certificate", "engines", "dataset"},
+    {"compare", "lint", "certificate", "engines", "dataset", "planning"},
     {"report"},
     {"batch"},
     {"foon"},

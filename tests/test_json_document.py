@@ -56,6 +56,11 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
     "menu": [("--goal", "ice", "--goal", "tea"), ("--goal", "ice", "--goal", "apple pie")],
     "assist": [("--goal", "ice", "--reach", "0.9"), ("--goal", "ice"), ("--goal", "apple pie")],
     "diff": [("TREE", "TORN", "--goal", "ice"), ("TREE", "solve --goal ice --containers implied")],
+    "export": [
+        ("--goal", "ice"),
+        ("--goal", "ice", "--objective", "kitchen,success", "--containers", "implied"),
+    ],
+    "read-plan": [("PLAN", "--map", "MAP")],
     "batch": [("QUESTIONS", "--results", "ROWS")],
     "stats": [()],
     "facts": [("--goal", "ice"), ("--goal", "ice", *SOFT[:2])],
@@ -85,6 +90,8 @@ _CONTENTS = {
     "FORGED": "{}",
     "QUESTIONS": '{"goal": ["ice", "icecream"]}\n',
     "LINTED": _UNIT.replace("O\tm", "O m"),
+    "PLAN": "(u26-twist)\n(u27-crush)\n",
+    "MAP": ("export", "--goal", "ice"),
 }
 
 
@@ -96,6 +103,8 @@ def printed(cli: Cli, files: dict[str, str]) -> Any:
         for name in {*words} & _CONTENTS.keys():
             content = _CONTENTS[name]
             text = content if isinstance(content, str) else cli(*content).out
+            if name == "MAP":
+                text = json.dumps(cli(*content, "--format", "json").json["map"])
             Path(files[name]).write_text(text, encoding="utf-8")
         ran = cli(verb, *(files.get(word, word) for word in words), "--format", "json")
         assert ran.code in {0, 1, 3}, ran.err
@@ -118,7 +127,7 @@ def answers() -> dict[str, click.Command]:
 def test_every_verb_that_answers_has_a_schema() -> None:
     assert answers().keys() == ASKED.keys() == VERBS.keys() - OTHERS
     kinds = {"answer" if verb == "solve" else verb for verb in ASKED}
-    assert {*schema_kinds()} == kinds | {"batch-row", "compare-row"}
+    assert {*schema_kinds()} == kinds | {"batch-row", "compare-row", "pddl-map"}
 
 
 @pytest.mark.parametrize(("verb", "words"), CASES)

@@ -16,6 +16,7 @@ PAGES = (
     pytest.param("docs/questions.md", marks=pytest.mark.slow),
     "docs/writing-constraints.md",
     "docs/json.md",
+    "docs/pddl.md",
 )
 # A block with a file name is a file; one without is a session.
 FENCE = re.compile(r"^```(?:[\w-]* )?(\S+\.\w+)?\n((?:.*\n)*?)```$", re.MULTILINE)

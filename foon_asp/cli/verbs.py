@@ -23,7 +23,7 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "import": Entry("Files", "Merge networks into a store, for networks too large to read."),
 }
 VERBS: Final[Mapping[str, Entry]] = {**INDEX, **_OTHERS}
-GROUPS = ("Find", "Check", "Explain", "Show", "Files")
+GROUPS = ("Find", "Check", "Explain", "Plan", "Show", "Files")
 _MODULES = {"import": "import_files"}  # of verbs that cannot be the name of a module
 
 

@@ -14,6 +14,7 @@ from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.verdict import Listed, verdict_json, verdict_text
+from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,22 +52,27 @@ class Checked(Result):
     @property
     def ending(self) -> Ending:
         """Done when the tree executes and has no unit but those of the network."""
-        return Ending.DONE if self.executes and None not in self._ids() else Ending.NEGATIVE
+        return Ending.DONE if self.executes and not self.foreign else Ending.NEGATIVE
+
+    @property
+    def foreign(self) -> tuple[int, ...]:
+        """The positions, from 0, of units that are not in the network."""
+        return tuple(position for position, unit in enumerate(self._ids()) if unit is None)
 
     def text(self) -> str:
         """Say whether the tree executes, in which order, and what stops it."""
         return verdict_text(self.problem, self._listed(), self.simulation)
 
-    def json_dict(self) -> object:
+    def json_dict(self) -> Json:
         """Give the same; positions count from 1."""
-        problem, ids = self.problem, self._ids()
-        known = [unit for unit in ids if unit is not None]
+        problem, foreign = self.problem, self.foreign
+        known = [unit for unit in self._ids() if unit is not None]
         return document(
             "check",
             problem,
             **verdict_json(problem, self._listed(), self.simulation),
-            not_in_network=[position for position, unit in enumerate(ids, 1) if unit is None],
-            costs=costs_json(problem.costs(known)) if len(known) == len(ids) else None,
+            not_in_network=[position + 1 for position in foreign],
+            costs=None if foreign else costs_json(problem.costs(known)),
         )
 
     def drawing(self) -> Drawing | None:

@@ -92,6 +92,16 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find the best success if a person does at most 0, 1, 2, ... units, and which units.",
         ("assist", "Assistance"),
     ),
+    "export": Entry(
+        "Plan",
+        "Write goals as a planning task in PDDL.",
+        ("export", "Exported"),
+    ),
+    "read-plan": Entry(
+        "Plan",
+        "Read the plan of another planner back into a task tree, and execute it.",
+        ("read_plan", "PlanRead"),
+    ),
     "draw": Entry(
         "Show",
         "Draw an optimal task tree, a given one, some functional units, or a whole network.",

@@ -1,0 +1,77 @@
+"""A planning task as PDDL: STRIPS with action costs, and no deletes, since items last."""
+
+from collections.abc import Iterable, Iterator
+
+from foon_asp.planning.action_costs import Scale
+from foon_asp.planning.planning_task import PlanningTask
+from foon_asp.problem import multiplies
+
+DOMAIN = "foon"
+AT_HAND = "at-hand"
+
+
+def domain_text(task: PlanningTask) -> str:
+    """Give the domain: a constant for each object node, and an action for each unit."""
+    return "\n".join(_domain(task)) + "\n"
+
+
+def problem_text(task: PlanningTask) -> str:
+    """Give the problem: what is at hand, and the goals."""
+    return "\n".join(_problem(task)) + "\n"
+
+
+def scale_words(scale: Scale) -> str:
+    """Say how an objective became whole numbers."""
+    if multiplies(scale.objective):
+        return f"{scale.objective}: -ln of the rates, times {scale.factor}, rounded to whole numbers"
+    exact = "rounded to whole numbers" if scale.rounded else "exact"
+    return f"{scale.objective}: " + ("" if scale.factor == 1 else f"times {scale.factor}, ") + exact
+
+
+def _domain(task: PlanningTask) -> Iterator[str]:
+    network, costed = task.problem.network, not task.costs.unit_cost
+    yield f"; A FOON, {task.problem.conditions}: items last, so that no action deletes anything."
+    yield "; Costs of actions, the most important first:"
+    yield from (f";   {scale_words(scale)}" for scale in task.costs.scales)
+    yield f"(define (domain {DOMAIN})"
+    yield f"  (:requirements :strips :typing{' :action-costs' * costed})"
+    yield "  (:types item)"
+    yield "  (:constants"
+    yield from (f"    {name} - item ; {_comment(str(network.objects[o]))}" for o, name in task.names.items())
+    yield "  )"
+    yield f"  (:predicates ({AT_HAND} ?o - item))"
+    if costed:
+        yield "  (:functions (total-cost) - number)"
+    for action in task.actions:
+        yield f"  (:action {action.name}"
+        yield "    :parameters ()"
+        yield f"    :precondition {_at_hand(task, action.needs)}"
+        yield f"    :effect {_at_hand(task, action.gives, action.cost if costed else None)})"
+    yield ")"
+
+
+def _problem(task: PlanningTask) -> Iterator[str]:
+    yield f"(define (problem {DOMAIN}-goal)"
+    yield f"  (:domain {DOMAIN})"
+    yield "  (:init"
+    yield from (f"    ({AT_HAND} {task.names[o]})" for o in task.start)
+    if not task.costs.unit_cost:
+        yield "    (= (total-cost) 0)"
+    yield "  )"
+    yield f"  (:goal {_at_hand(task, task.goals)})"
+    if not task.costs.unit_cost:
+        yield "  (:metric minimize (total-cost))"
+    yield ")"
+
+
+def _at_hand(task: PlanningTask, nodes: Iterable[int], cost: int | None = None) -> str:
+    parts = [f"({AT_HAND} {task.names[o]})" for o in nodes]
+    if cost is not None:
+        parts.append(f"(increase (total-cost) {cost})")
+    return " ".join(["(and", *parts]) + ")"
+
+
+def _comment(text: str) -> str:
+    """Write a text in letters that every reader of PDDL takes, on one line."""
+    plain = text.encode("ascii", "backslashreplace").decode()
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in plain)

@@ -1,0 +1,185 @@
+"""A question for planners: PDDL, and what its names stand for."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from foon_asp.dataset.paths import File
+from foon_asp.document.json_document import document
+from foon_asp.errors import UserError
+from foon_asp.planning.name_map import map_json
+from foon_asp.planning.pddl_writer import domain_text, problem_text, scale_words
+from foon_asp.planning.planning_task import PlanningTask, planning_task
+from foon_asp.problem import Problem
+from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
+from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.options import CONTAINERS, GOALS, OBJECTIVES
+from foon_asp.questions.result import Result
+from foon_asp.report.answer import counted
+from foon_asp.report.whole_file import write_whole
+from foon_asp.text.json_value import Json, json_text
+
+_FORMATS = ("pddl",)
+
+
+@dataclass(frozen=True, repr=False)
+class Exported(Result):
+    """A planning task: ``domain`` and ``problem_file`` are PDDL, ``name_map`` is what the names stand for.
+
+    ``task`` has the same as values. ``written`` is the folder it was written into, or ``None``.
+
+    Example:
+        >>> exported = foon_asp.export(foon_asp.load().problem("ice"))
+        >>> print(exported.problem_file.splitlines()[0])
+        (define (problem foon-goal)
+    """
+
+    task: PlanningTask
+    written: Path | None = None
+
+    @property
+    def problem(self) -> Problem:
+        """What is asked."""
+        return self.task.problem
+
+    @cached_property
+    def domain(self) -> str:
+        """The domain: a constant for each object node, an action for each unit."""
+        return domain_text(self.task)
+
+    @cached_property
+    def problem_file(self) -> str:
+        """The problem: what is at hand, and the goals."""
+        return problem_text(self.task)
+
+    @cached_property
+    def name_map(self) -> Json:
+        """What the names stand for, as plain values; docs/json.md describes it."""
+        return map_json(self.task)
+
+    def text(self) -> str:
+        """Give the domain and the problem; or say what was written."""
+        if self.written is None:
+            return self.domain + self.problem_file
+        return "\n".join(_report(self.task, self.written)) + "\n"
+
+    def json_dict(self) -> object:
+        """Give the domain, the problem and the map in one document."""
+        fields = {"domain": self.domain, "problem": self.problem_file, "map": self.name_map}
+        return document("export", self.problem, self.task.objectives, **fields)
+
+    def write(self, file: File, format_: str | None = None) -> None:
+        """Write ``domain.pddl``, ``problem.pddl`` and ``map.json`` into a folder.
+
+        Parameters:
+            file: The path of the folder, which is made if it is not there.
+            format_: The format: ``pddl``, or ``None``.
+
+        Raises:
+            UserError: if a file cannot be written, or for another format.
+        """
+        if format_ not in {None, *_FORMATS}:
+            raise UserError(f"found the format {format_!r}, expected pddl")
+        folder = Path(file)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UserError(f"{folder}: cannot be created as a folder: {error.strerror or error}") from None
+        contents = {"domain.pddl": self.domain, "problem.pddl": self.problem_file}
+        for name, content in {**contents, "map.json": json_text(self.name_map)}.items():
+            write_whole(folder / name, content.encode(errors="backslashreplace"))
+
+    def __repr__(self) -> str:
+        return f"<Exported: {counted(len(self.task.actions), 'action')}>"
+
+
+def _report(task: PlanningTask, folder: Path) -> Iterator[str]:
+    yield f"{folder}: domain.pddl, problem.pddl, map.json ({task.problem.conditions})"
+    yield f"{counted(len(task.actions), 'action')}, {counted(len(task.names), 'object node')}"
+    yield from (f"costs of actions by {scale_words(scale)}" for scale in task.costs.scales)
+    if any(scale.rounded for scale in task.costs.scales):
+        yield "rounded costs may make a planner take a tree for the best that is not quite"
+
+
+def _export_and_write(
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    target: str = "pddl",
+    every_unit: bool = False,
+    folder_written: File | None = None,
+) -> Exported:
+    """Export as the command does, into a folder or to be shown."""
+    found = export(problem, objectives, target=target, every_unit=every_unit)
+    if folder_written is None:
+        return found
+    found.write(folder_written, target)
+    return Exported(found.task, Path(folder_written))
+
+
+@question(
+    GOALS,
+    Option(
+        "target",
+        "What to write: pddl, a domain and a problem.",
+        default="pddl",
+        flags=("--to",),
+        choices=_FORMATS,
+    ),
+    OBJECTIVES._replace(
+        help=OBJECTIVES.help.replace("What is best", "What actions cost"),
+        python="A name, names separated by commas, or several names.",
+    ),
+    CONTAINERS,
+    Option(
+        "every_unit",
+        "Write the whole network, instead of the units that the goals can need.",
+        Kind.FLAG,
+        flags=("--whole",),
+    ),
+    Option(
+        "folder_written",
+        "The folder to write domain.pddl, problem.pddl and map.json into; by default PDDL to stdout.",
+        Kind.FILE,
+        flags=("-o", "--output"),
+        metavar="DIR",
+    ),
+    command=_export_and_write,
+    help_="""
+    \b
+    foon-asp export --to pddl --goal 'greek salad' -o task
+    fast-downward.py --plan-file plan task/domain.pddl task/problem.pddl --search 'astar(lmcut())'
+    foon-asp read-plan plan --map task/map.json
+
+    Items last, so no action deletes anything: the plan of least cost is the best task tree. Costs are whole
+    numbers: exact where these fit into the 32 bits of planners, and otherwise rounded, as the logarithms of
+    success always are; the answer says so. Of several objectives, the first counts most.
+
+    Exits with 0 when the task is written, whether there is a plan for it or not.
+    """,
+)
+def export(
+    problem: Problem, objectives: Objectives = "units", *, target: str = "pddl", every_unit: bool = False
+) -> Exported:
+    """Write the goals of a problem as a planning task for other planners.
+
+    Returns:
+        The PDDL of the ``domain`` and of the problem (``problem_file``), and the ``name_map`` by which
+        :func:`foon_asp.read_plan` reads plans back; ``write`` makes the three files.
+
+    Raises:
+        UserError: for a wrong argument, or where planners cannot add up what actions cost.
+
+    Example:
+        >>> exported = foon_asp.export(foon_asp.load().problem("ice"))
+        >>> [action.name for action in exported.task.actions][:2]
+        ['u26-twist', 'u27-crush']
+    """
+    if target not in _FORMATS:
+        raise UserError(f"found target={target!r}, expected pddl")
+    chosen = chosen_objectives(problem, objectives)
+    if every_unit:
+        problem = whole(problem)
+    with reading():
+        return Exported(planning_task(problem, chosen, every_unit))

@@ -1,0 +1,138 @@
+"""A plan of another planner, read back into a task tree and executed."""
+
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from foon_asp.dataset.paths import File
+from foon_asp.document.json_document import document
+from foon_asp.errors import UserError
+from foon_asp.planning.name_map import map_of, read_name_map
+from foon_asp.planning.plan_file import read_plan_text
+from foon_asp.planning.planning_task import planning_task
+from foon_asp.problem import Problem
+from foon_asp.proof import Verdict, simulate_for
+from foon_asp.questions.arguments import reading, whole
+from foon_asp.questions.check import Checked
+from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.posing import Command
+from foon_asp.questions.result import Ending
+from foon_asp.questions.tree import Tree
+from foon_asp.text.json_value import Json
+from foon_asp.text.plain_file import read_plain_text
+
+
+@dataclass(frozen=True, repr=False)
+class PlanRead(Checked):
+    r"""A plan as a ``tree``, and the ``simulation`` of it with what stops it.
+
+    Example:
+        >>> import pathlib, tempfile
+        >>> plan = pathlib.Path(tempfile.mkdtemp(), "plan")
+        >>> written = plan.write_text("(u27-crush)\n(u26-twist)\n")
+        >>> foon_asp.read_plan(foon_asp.load().problem("ice"), plan).sound
+        False
+    """
+
+    @property
+    def sound(self) -> bool:
+        """Whether the plan executes as it is written, with units of the network alone."""
+        return self.simulation.verdict is Verdict.AS_LISTED and not self.foreign
+
+    @property
+    def ending(self) -> Ending:
+        """Done for a sound plan."""
+        return Ending.DONE if self.sound else Ending.NEGATIVE
+
+    def text(self) -> str:
+        """Say whether the plan executes, what stops it at which line, and what it costs."""
+        return ("" if self.sound else "refused: ") + super().text()
+
+    def json_dict(self) -> Json:
+        """Give the same; positions count from 1."""
+        return {**super().json_dict(), **document("read-plan"), "sound": self.sound}
+
+    def foon(self) -> str:
+        """Give the tree as FOON text; empty where the plan is refused."""
+        return str(self.tree) if self.sound else ""
+
+    def remark(self, format_: str) -> str:
+        """Say why a plan is refused."""
+        return "" if self.sound else self.text().rstrip()
+
+
+def _posed(command: Command, names: Path | None) -> tuple[Problem]:
+    """Pose the goals of the map, under its container rule, over the data that are named."""
+    if names is None:
+        raise UserError(
+            "name the map of names with --map: foon-asp export wrote it beside the PDDL (map.json)"
+        )
+    found, dataset = read_name_map(names), command.dataset
+    if dataset.names.level != found.level:
+        raise UserError(
+            f"{names}: is about level {found.level}, and the data are read at level {dataset.names.level}: "
+            f"add --level {found.level}"
+        )
+    with command.reading():
+        return (dataset.problem(dataset.named_goals(found.goals), found.containers),)
+
+
+@question(
+    Option("plan", "The plan that a planner wrote.", Kind.FILE, metavar="PLAN", positional=True),
+    Option(
+        "names",
+        "The map of names that `foon-asp export` wrote beside the PDDL.",
+        Kind.FILE,
+        Part.PROBLEM | Part.QUESTION,
+        flags=("--map",),
+        metavar="map.json",
+        python="Without it, the names are those that :func:`foon_asp.export` gives to the whole network.",
+    ),
+    pose=_posed,
+    formats=("text", "json", "foon"),
+    help_="""
+    \b
+    foon-asp export --to pddl --goal 'greek salad' -o task
+    foon-asp read-plan plan --map task/map.json
+    foon-asp read-plan plan --map task/map.json --format foon > tree.txt
+
+    Plans of Fast Downward, pyperplan, planners of the IPC (numbered, or with times) and unified-planning are
+    read. The goals and the container rule are those of the map; the plan is executed step by step.
+
+    Exits with 0 when the plan executes as it is written and makes the goals; with 1 when it does not, with
+    the line and the reason; with 2 for a line that is no step, or an action that the map does not have.
+    """,
+)
+def read_plan(problem: Problem, plan: str | PathLike[str], *, names: File | None = None) -> PlanRead:
+    r"""Read the plan of another planner back into a task tree, and execute it.
+
+    A unit that a plan executes twice is in the tree once.
+
+    Parameters:
+        plan: The path of the file that the planner wrote.
+
+    Returns:
+        The ``tree``, whether it is ``sound``, and the ``simulation`` with what stops it.
+
+    Raises:
+        UserError: for a file that cannot be read, a line that is no step of a plan, or an action that the
+            map does not have.
+
+    Example:
+        >>> import pathlib, tempfile
+        >>> plan = pathlib.Path(tempfile.mkdtemp(), "plan")
+        >>> written = plan.write_text("0: (u26-twist)\n1: (u27-crush)\n")
+        >>> foon_asp.read_plan(foon_asp.load().problem("ice"), plan).tree
+        <Tree for ice; crushed; in [drinking glass]: 2 units>
+    """
+    if names is None:
+        problem = whole(problem)
+        named = map_of(planning_task(problem, whole=True))
+    else:
+        named = read_name_map(Path(names))
+    with reading():
+        steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
+    places = dict(reversed(steps))  # of the first execution
+    units = tuple(dict.fromkeys(unit for unit, _ in steps))
+    tree = Tree.given(problem, units, [places[unit] for unit in units])
+    return PlanRead(tree, simulate_for(tree.problem, tree))

@@ -1,0 +1,400 @@
+"""Planning tasks in PDDL, read here by a reader of their own, and plans of planners read back."""
+
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import foon_asp
+from foon_asp import Foon, FunctionalUnit, Problem, Source, UserError
+from foon_asp.engines import fast_downward
+from foon_asp.planning.pddl_name import pddl_name
+from foon_asp.problem import Number
+from tests.conftest import Cli
+
+ADDING = ("units", "inputs", "inputs+ingredients", "attempts", "kitchen", "price")
+
+Fact = tuple[str, ...]
+
+
+def parsed(text: str) -> Any:
+    """Read PDDL as nested lists: not with the reader that is tested elsewhere."""
+    tokens = re.findall(r"[()]|[^\s()]+", re.sub(";.*", "", text))
+    stack: list[list[Any]] = [[]]
+    for token in tokens:
+        if token == "(":
+            stack.append([])
+        elif token == ")":
+            stack[-2].append(stack.pop())
+        else:
+            stack[-1].append(token)
+    assert len(stack) == 1
+    return stack[0][0]
+
+
+def part(form: Any, name: str) -> Any:
+    """Give the one part of a list that begins with a word."""
+    (found,) = [each for each in form if isinstance(each, list) and each[0] == name]
+    return found[1:]
+
+
+def actions(domain: Any) -> dict[str, tuple[set[str], set[str], int]]:
+    """Give what each action needs, gives and costs."""
+    found = {}
+    for each in domain:
+        if isinstance(each, list) and each[0] == ":action":
+            name, _, parameters, _, needs, _, effects = each[1:]
+            assert parameters == []
+            costs = [int(effect[2]) for effect in effects[1:] if effect[0] == "increase"]
+            gives = {effect[1] for effect in effects[1:] if effect[0] == "at-hand"}
+            assert len(gives) + len(costs) == len(effects) - 1
+            assert name not in found
+            found[name] = {need[1] for need in needs[1:]}, gives, (costs or [1])[0]
+    return found
+
+
+@pytest.fixture(scope="module")
+def foon() -> Foon:
+    kitchen = foon_asp.load()
+    motions = sorted(set(kitchen.network.motions))
+    prices: dict[str | FunctionalUnit, Number] = {
+        motion: Fraction(number % 7, 4) for number, motion in enumerate(motions)
+    }
+    rates = {motion: Fraction(number % 3 + 1, 4) for number, motion in enumerate(motions)}
+    return kitchen.vary(unit_prices=prices, rates=rates)
+
+
+@pytest.mark.parametrize("containers", ["strict", "implied"])
+@pytest.mark.parametrize("whole", [False, True])
+def test_the_task_is_the_network(foon: Foon, containers: str, whole: bool) -> None:
+    problem = foon.problem("greek salad", containers=containers)
+    exported = foon_asp.export(problem, every_unit=whole)
+    domain, task = parsed(exported.domain), parsed(exported.problem_file)
+    found = actions(domain)
+    names = {each["name"]: each["object"] for each in exported.name_map["objects"]}
+    units = {each["name"]: each["unit"]["id"] for each in exported.name_map["actions"]}
+    network = problem.network
+    assert len(found) == len(network) if whole else 0 < len(found) < len(network)
+    constants = {each for each in part(domain, ":constants") if each not in {"-", "item"}}
+    assert constants == {name for name in names if not name.startswith("unused")}
+    assert all(re.fullmatch(r"[a-z][a-z0-9-]*", name) for name in {*constants, *found})
+    for name, (needs, gives, _) in found.items():
+        unit = units[name]
+        assert name.startswith(f"u{unit}-")
+        assert {names[each]["id"] for each in needs} == {*problem.needs[unit]}
+        assert {names[each]["id"] for each in gives} == {*problem.gives[unit]}
+    start = {each[1] for each in part(task, ":init")}
+    assert start == {each for each in constants if names[each]["id"] in problem.kitchen}
+    ((_, *goals),) = part(task, ":goal")
+    assert [names[goal]["id"] for _, goal in goals] == list(problem.goals)
+
+
+@pytest.mark.parametrize("objective", ADDING)
+def test_costs_are_those_of_trees_times_the_factor(foon: Foon, objective: str) -> None:
+    problem = foon.problem("macaroni")
+    exported = foon_asp.export(problem, objective)
+    (scale,) = exported.name_map["scales"]
+    answer = foon_asp.solve(problem, objective)
+    assert answer.costs is not None
+    names = {action.unit: action.name for action in exported.task.actions if action.unit is not None}
+    taken = {o for unit in answer.units or () for o in problem.needs[unit] if o in problem.kitchen}
+    plan = [names[unit] for unit in answer.units or ()]
+    plan += [action.name for action in exported.task.actions if action.item in taken]
+    found = actions(parsed(exported.domain))
+    assert not scale["rounded"]
+    least = answer.costs.measure(foon_asp.Objective(objective)) * Fraction(scale["factor"])
+    assert sum(found[name][2] for name in plan) == least
+
+
+def test_of_several_objectives_the_first_counts_most(foon: Foon) -> None:
+    problem = foon.problem("macaroni")
+    exported = foon_asp.export(problem, "price,units")
+    price, units = (Fraction(scale["factor"]) for scale in exported.name_map["scales"])
+    assert units == 1
+    assert price > len(exported.task.actions)
+    for action in exported.task.actions:
+        assert action.unit is not None
+        assert action.cost == price * problem.price(action.unit) + 1
+
+
+def test_success_is_rounded_and_said_to_be(foon: Foon, cli: Cli, tmp_path: Path) -> None:
+    exported = foon_asp.export(foon_asp.load().problem("ice"), "success")
+    assert exported.name_map["scales"] == [{"objective": "success", "factor": "1000000", "rounded": True}]
+    assert "; " in exported.domain
+    assert "rounded" in exported.domain
+    assert {action.cost for action in exported.task.actions} >= {356675}  # -ln of 7/10
+    ran = cli("export", "--goal", "ice", "--objective", "success", "-o", tmp_path / "task")
+    assert "rounded" in ran.out
+
+
+def test_fractions_with_too_many_digits_are_rounded_and_said_to_be() -> None:
+    problem = foon_asp.load().problem("greek salad")
+    exported = foon_asp.export(problem, "attempts")
+    (scale,) = exported.task.costs.scales
+    assert scale.rounded
+    assert "rounded" in exported.domain
+    for action in exported.task.actions:
+        assert action.unit is not None
+        assert abs(action.cost - scale.factor / problem.rate(action.unit)) <= Fraction(1, 2)
+    assert sum(action.cost for action in exported.task.actions) < 2**31
+
+
+def test_what_cannot_be_added_up_is_refused(foon: Foon) -> None:
+    with pytest.raises(UserError, match="planners add up"):
+        foon_asp.export(foon.problem("macaroni"), "inputs,price,success")
+    problem = foon.problem("ice")
+    hopeless = replace(problem, rates={**(problem.rates or {}), "crush": Fraction(0)})
+    with pytest.raises(UserError, match="never succeeds"):
+        foon_asp.export(hopeless, "success")
+    with pytest.raises(UserError, match="expected pddl"):
+        foon_asp.export(foon.problem("ice"), target="anml")
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        ("pour", "u7-pour"),
+        ("Crème brûlée; in [pot]", "u7-creme-brulee-in-pot"),
+        ("日本茶", "u7"),
+        ("a) (b ; c\n", "u7-a-b-c"),
+        ("--", "u7"),
+        ("x" * 200, "u7-" + "x" * 60),
+    ],
+)
+def test_names_are_valid_whatever_things_are_called(words: str, name: str) -> None:
+    assert pddl_name("u", 7, words) == name
+
+
+def strange() -> Problem:
+    """Give a problem whose names are no names of PDDL, and differ in capitals or at the end alone."""
+    builder = foon_asp.NetworkBuilder()
+    water, Water, long_ = (  # noqa: N806
+        foon_asp.ObjectNode.of(name) for name in ("wa(t)er; ;\n)", "WA(T)ER; ;\n)", "x" * 300)
+    )
+    longer = foon_asp.ObjectNode.of("x" * 301)
+    builder.add("(and", [water], [Water], Source("f", 1))
+    builder.add("(AND", [Water], [long_], Source("f", 2))
+    builder.add("", [long_], [longer], Source("f", 3))
+    return foon_asp.build(builder.build(), kitchen=[water]).problem(longer)
+
+
+def test_strange_names_make_a_task_and_come_back(tmp_path: Path) -> None:
+    problem = strange()
+    exported = foon_asp.export(problem)
+    assert [*actions(parsed(exported.domain))] == ["u0-and", "u1-and", "u2"]
+    exported.write(tmp_path)
+    (tmp_path / "plan").write_text("(U0-AND )\n(u1-and)\n(u2)\n")
+    read = foon_asp.read_plan(problem, tmp_path / "plan", names=tmp_path / "map.json")
+    assert read.sound
+    assert [unit.motion for unit in read.tree] == ["(and", "(AND", ""]
+
+
+PLANS = {
+    "Fast Downward": "(a)\n(b)\n; cost = 2 (unit cost)\n",
+    "pyperplan": "(a )\n(b )\n",
+    "IPC": "; Time 0.02\n0: (A)\n1: (B)\n",
+    "with times": "0.000: (a) [1.000]\n1.00100: (b) [1.000]\n\n",
+    "FF": "step    0: A\n        1: B\n",
+    "unified-planning": "SequentialPlan:\n    a\n    b\n",
+    "unified-planning, older": "a()\r\nb()\r\n",
+}
+
+
+@pytest.fixture
+def folder(foon: Foon, tmp_path: Path) -> Path:
+    foon_asp.export(foon.problem("ice")).write(tmp_path)
+    return tmp_path
+
+
+STEPS = ("u26-twist", "u27-crush")
+
+
+@pytest.mark.parametrize("planner", PLANS)
+def test_plans_of_all_kinds_are_read(folder: Path, foon: Foon, planner: str) -> None:
+    text = PLANS[planner]
+    for letter, name in zip("ab", STEPS, strict=True):
+        text = re.sub(rf"(?<![\w]){letter}(?![\w])", name, text)
+        text = re.sub(rf"(?<![\w]){letter.upper()}(?![\w])", name.upper(), text)
+    (folder / "plan").write_bytes(text.encode())
+    problem = foon.problem("ice")
+    read = foon_asp.read_plan(problem, folder / "plan", names=folder / "map.json")
+    assert read.sound
+    assert [unit.motion for unit in read.tree] == ["twist", "crush"]
+    assert foon_asp.check(problem, read.tree).executes
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words"),
+    [
+        ("(u26-twist)\n(u27-crash)\n", "2:2", "expected an action of the map, such as u27-crush"),
+        ("(u26-twist)\n  nothing to do\n", "2:3", "expected a step of a plan"),
+        ("(u26-twist\n", "1:1", "expected a step of a plan"),
+        ("(u26-twist) (u27-crush)\n", "1:1", "expected a step of a plan"),
+    ],
+)
+def test_lines_that_are_no_steps_are_errors(
+    folder: Path, cli: Cli, text: str, place: str, words: str
+) -> None:
+    (folder / "plan").write_text(text)
+    ran = cli("read-plan", folder / "plan", "--map", folder / "map.json")
+    assert ran.code == 2
+    assert f"plan:{place}: error: " in ran.err
+    assert words in ran.err
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("(u27-crush)\n(u26-twist)\n", "plan:1]"),
+        ("; nothing\n(u27-crush)\n", "plan:2]"),
+        ("(u26-twist)\n", "the goal is not made"),
+        ("", "the goal is not made"),
+    ],
+)
+def test_a_broken_plan_is_refused_with_its_line(folder: Path, cli: Cli, text: str, words: str) -> None:
+    (folder / "plan").write_text(text)
+    ran = cli("read-plan", folder / "plan", "--map", folder / "map.json")
+    assert ran.code == 1
+    assert ran.out.startswith("refused: ")
+    assert words in ran.out
+    ran = cli("read-plan", folder / "plan", "--map", folder / "map.json", "--format", "foon")
+    assert (ran.code, ran.out) == (1, "")
+    assert "refused" in ran.err
+
+
+def test_a_plan_that_repeats_itself_is_a_tree(folder: Path, foon: Foon) -> None:
+    (folder / "plan").write_text("(u26-twist)\n(u26-twist)\n(u27-crush)\n")
+    read = foon_asp.read_plan(foon.problem("ice"), folder / "plan", names=folder / "map.json")
+    assert read.sound
+    assert len(read.tree) == 2
+
+
+def test_what_is_read_passes_check(folder: Path, cli: Cli) -> None:
+    (folder / "plan").write_text("(u26-twist)\n(u27-crush)\n")
+    ran = cli("read-plan", folder / "plan", "--map", folder / "map.json", "--format", "foon")
+    (folder / "tree.txt").write_text(ran.out)
+    assert cli("check", folder / "tree.txt", "--goal", "ice").code == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda m: m.update(schema="foon-asp/answer/1"), "its schema is not"),
+        (lambda m: m.pop("actions"), "'actions' is missing"),
+        (lambda m: m["objects"].clear(), "is missing"),
+        (lambda m: m.update(actions=[1]), "but"),
+        (lambda m: m.update(level=2), "about level 2"),
+    ],
+)
+def test_a_map_that_is_none_is_refused(
+    folder: Path, cli: Cli, change: Callable[[Any], Any], words: str
+) -> None:
+    file = folder / "map.json"
+    content = json.loads(file.read_text())
+    change(content)
+    file.write_text(json.dumps(content))
+    (folder / "plan").write_text("(u26-twist)\n")
+    ran = cli("read-plan", folder / "plan", "--map", file)
+    assert ran.code == 2
+    assert words in ran.err
+    assert "map.json" in ran.err
+
+
+def goals_of(data: Foon) -> list[str]:
+    return [str(goal) for goal in data.goals]
+
+
+def planned(problem: Problem, objective: str, folder: Path, run: Callable[[Path], str]) -> Fraction | int:
+    """Let a planner find a plan, read it back, and give what it costs; it has to execute."""
+    exported = foon_asp.export(problem, objective)
+    exported.write(folder)
+    (folder / "plan").write_text(run(folder))
+    read = foon_asp.read_plan(problem, folder / "plan", names=folder / "map.json")
+    assert read.sound, str(read)
+    assert foon_asp.check(problem, read.tree).executes
+    ids = [problem.network.unit_id(unit) for unit in read.tree]
+    return problem.costs(unit for unit in ids if unit is not None).measure(foon_asp.Objective(objective))
+
+
+def with_fast_downward(folder: Path) -> str:
+    program = fast_downward.driver()
+    assert program is not None
+    files = (str(folder / name) for name in ("domain.pddl", "problem.pddl"))
+    command = [sys.executable, str(program), "--plan-file", str(folder / "sas_plan"), *files]
+    ran = subprocess.run(
+        [*command, "--search", "astar(lmcut())"], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    return (folder / "sas_plan").read_text()
+
+
+def with_pyperplan(folder: Path) -> str:
+    module = importlib.import_module("pyperplan.planner")
+    steps = module.search_plan(
+        str(folder / "domain.pddl"),
+        str(folder / "problem.pddl"),
+        module.SEARCHES["astar"],
+        module.HEURISTICS["lmcut"],
+    )
+    return "\n".join(step.name for step in steps)
+
+
+needs_fast_downward = pytest.mark.skipif(
+    not fast_downward.installed(), reason="Fast Downward is not installed (foon-asp[cross-check])"
+)
+needs_pyperplan = pytest.mark.skipif(
+    importlib.util.find_spec("pyperplan") is None, reason="pyperplan is not installed (pip install pyperplan)"
+)
+
+
+@needs_fast_downward
+@pytest.mark.parametrize("objective", ADDING)
+def test_fast_downward_finds_our_costs(foon: Foon, tmp_path: Path, objective: str) -> None:
+    problem = foon.problem("macaroni", containers="implied")
+    ours = foon_asp.solve(problem, objective).costs
+    assert ours is not None
+    cost = planned(problem, objective, tmp_path, with_fast_downward)
+    assert cost == ours.measure(foon_asp.Objective(objective))
+
+
+@pytest.mark.slow
+@needs_fast_downward
+@pytest.mark.parametrize("containers", ["strict", "implied"])
+@pytest.mark.parametrize("objective", ["units", "inputs", "attempts"])
+def test_fast_downward_finds_our_costs_for_all_goals(tmp_path: Path, objective: str, containers: str) -> None:
+    data = foon_asp.load()
+    for goal in goals_of(data):
+        problem = data.problem(goal, containers=containers)
+        ours = foon_asp.solve(problem, objective).costs
+        if ours is not None:
+            cost = planned(problem, objective, tmp_path, with_fast_downward)
+            assert cost == ours.measure(foon_asp.Objective(objective)), goal
+
+
+@needs_pyperplan
+@pytest.mark.parametrize("goal", ["ice", pytest.param("tea", marks=pytest.mark.slow)])
+def test_pyperplan_finds_our_costs(foon: Foon, tmp_path: Path, goal: str) -> None:
+    problem = foon.problem(goal)
+    ours = foon_asp.solve(problem).costs
+    assert ours is not None
+    assert planned(problem, "units", tmp_path, with_pyperplan) == ours.units
+
+
+@pytest.mark.slow
+@needs_fast_downward
+def test_fast_downward_finds_our_costs_on_the_real_network(universal: Path, tmp_path: Path) -> None:
+    data = foon_asp.load(universal)
+    for goal in goals_of(data):
+        for containers in ("strict", "implied"):
+            problem = data.problem(goal, containers=containers)
+            ours = foon_asp.solve(problem).costs
+            if ours is not None:
+                assert planned(problem, "units", tmp_path, with_fast_downward) == ours.units, goal
