@@ -88,7 +88,7 @@ def write_facts_read(problem: Problem, units: Sequence[int], read: Collection[tu
         atoms = _unit_atoms(problem, unit, None, ("source", 2) in read)
         if problem.rates is not None:
             number = problem.network.unit_number(unit)
-            atoms.append(("rate", f"{number},{_millionths(seen.rate(unit))}"))
+            atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
         add(_unit_atom(problem, unit), atoms)
     for o in nodes:
         atoms = _object_atoms(problem, o)
@@ -163,13 +163,13 @@ def _unit_atoms(problem: Problem, unit: int, scales: Scales | None, with_sources
     if scales and scales.rates:
         weight = scales.rates.weights[problem.rate(unit)]
         seen = (problem.as_seen or problem).rate(unit)
-        atoms += [("rate", f"{u},{_millionths(seen)}"), ("risk", f"{u},{_check(weight)}")]
+        atoms += [("rate", f"{u},{millionths(seen)}"), ("risk", f"{u},{_check(weight)}")]
     if scales:
         weights = ((each.row.term, scales.weight(each, [unit])) for each in scales.facts)
         atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]
     if with_sources:
-        names = _source_names(network.sources[unit])
-        atoms += [("source", f"{u},{quote(encodable(source))}") for source in names]
+        names = source_names(network.sources[unit])
+        atoms += [("source", f"{u},{quote(source)}") for source in names]
     return atoms
 
 
@@ -353,13 +353,14 @@ def quote(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
-def _source_names(sources: Iterable[Source]) -> dict[str, None]:
+def source_names(sources: Iterable[Source]) -> dict[str, None]:
     """Give the names of a unit's places for constraints: files, with folders and without, and videos."""
     names = (name for s in sources for name in (s.file, PurePath(s.file).name, *s.videos))
-    return dict.fromkeys(names)
+    return dict.fromkeys(map(encodable, names))
 
 
-def _millionths(rate: Fraction) -> int:
+def millionths(rate: Fraction) -> int:
+    """Give a success rate as constraints see it."""
     return rate.numerator * 1_000_000 // rate.denominator
 
 

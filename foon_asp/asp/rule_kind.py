@@ -144,6 +144,11 @@ class Analysis:
         kind = kinds[dependence.of_parts(clause.body)]
         return kind, self._why_both(clause) if kind is Kind.OTHER else None
 
+    def is_closed(self, signature: Signature) -> bool:
+        """Whether a helper has the same atoms for every tree, and whatever is beyond it."""
+        free = self.dependence.of(signature) is Depends.NOT and signature not in self.dependence.doubts
+        return free and self._locality.closed(signature)
+
     def deciding(self, body: Iterable[Part]) -> list[Part]:
         """Give the parts of a body that depend on the tree."""
         return [part for part in body if self.dependence.of_part(part) is not Depends.NOT]

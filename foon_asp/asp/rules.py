@@ -1,14 +1,17 @@
 """The rules of the user and of the library that hold for one question, understood as far as possible."""
 
 from collections.abc import Collection, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
 from clingo.ast import AST
 
-from foon_asp.asp.clause import Signature
+from foon_asp.asp.clause import Clause, Signature
 from foon_asp.asp.facts import write_facts_read
+from foon_asp.asp.flat_answers import FlatAnswers
+from foon_asp.asp.flat_body import Asking, FlatBodies, NotFlatError, Way
 from foon_asp.asp.lifted_program import NOBODY, LiftedProgram, stands_alone
 from foon_asp.asp.rule_kind import Analysis, Kind, Rule
 from foon_asp.asp.search import run
@@ -22,6 +25,13 @@ _SHRINKING = _DELETING | {Kind.SHRINKING}
 
 class Contradiction(NamedTuple):
     """That no tree keeps to the rules, found before any search."""
+
+
+class _Flat(NamedTuple):
+    """A rule that is answered without clingo: the ways in which it is broken, or what it asks for."""
+
+    ways: tuple[Way, ...]
+    askings: tuple[Asking, ...]
 
 
 class Rules:
@@ -46,6 +56,8 @@ class Rules:
         self._statements, self._constants, self._endless = tuple(statements), tuple(constants), endless
         self._analysis = Analysis(self._statements, self._constants, varied)
         self.rules: tuple[Rule, ...] = self._analysis.rules
+        self._live = self._analysis.of_rule
+        self._bodies = FlatBodies(self._analysis)
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
         """Give the same rules for a question that derives or varies some predicates of facts."""
@@ -83,13 +95,28 @@ class Rules:
     @cached_property
     def _settled(self) -> list[int]:
         """The places of the rules that :meth:`applied` settles."""
-        analysis = self._analysis
         return [
             number
             for number, rule in enumerate(self.rules)
             if rule.kind in {Kind.FACT, Kind.DELETING}
-            or (rule.one_of and all(map(stands_alone, analysis.of_rule[number])))
+            or (rule.one_of and (number in self._flat or all(map(stands_alone, self._live[number]))))
         ]
+
+    @cached_property
+    def _flat(self) -> "dict[int, _Flat]":
+        """What is answered without clingo, by the place of the rule."""
+        found: dict[int, _Flat] = {}
+        for number, rule in enumerate(self.rules):
+            if rule.local and (rule.one_of or rule.kind in {Kind.FACT, Kind.DELETING}):
+                with suppress(NotFlatError):
+                    found[number] = self._flattened(rule, self._live[number])
+        return found
+
+    def _flattened(self, rule: Rule, clauses: Sequence[Clause]) -> _Flat:
+        bodies = self._bodies
+        if rule.one_of:
+            return _Flat((), tuple(asking for clause in clauses for asking in bodies.askings(clause)))
+        return _Flat(tuple(way for clause in clauses for way in bodies.ways(clause)), ())
 
     def applied(
         self, problem: Problem, deadline: Deadline | None = None
@@ -103,11 +130,33 @@ class Rules:
         """
         if problem.restriction is not None:
             problem = replace(problem, restriction=None)
-        return self._by_clingo(problem, deadline or Deadline())
+        found = self._by_hand(list(self._flat), problem)
+        others = [number for number in self._settled if number not in self._flat]
+        if not others or isinstance(found, Contradiction):
+            return found
+        more = self._by_clingo(others, problem, deadline or Deadline())
+        if not isinstance(more, Restriction):
+            return more
+        removed, gone = found.removed, more.removed
+        return Restriction(lambda unit: gone(unit) or removed(unit), (*found.required, *more.required))
 
-    def _by_clingo(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction | None:
+    def _by_hand(self, numbers: Sequence[int], problem: Problem) -> Restriction | Contradiction:
+        """Find what rules remove and require without clingo; what they remove is found when it is asked."""
+        answers = FlatAnswers(problem, self._bodies.tables, self._bodies.size)
+        ways = [way for number in numbers for way in self._flat[number].ways]
+        if answers.any_holds(way for way in ways if way.unit is None):
+            return Contradiction()
+        askings = (asking for number in numbers for asking in self._flat[number].askings)
+        required = [units for each in askings for units in answers.asked(each) if units is not None]
+        if not all(required):
+            return Contradiction()
+        return Restriction(answers.removed(ways), tuple(required))
+
+    def _by_clingo(
+        self, numbers: Sequence[int], problem: Problem, deadline: Deadline
+    ) -> Restriction | Contradiction | None:
         """Let clingo derive what rules remove and require, from the facts that they look at."""
-        program = LiftedProgram(self._analysis, self._settled)
+        program = LiftedProgram(self._analysis, numbers)
         with deadline.watched("writing facts"):
             text = program.text + write_facts_read(problem, sorted(reach(problem).units), program.reads)
         constants = [word for constant in self._constants for word in ("-c", constant)]
