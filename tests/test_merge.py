@@ -139,7 +139,7 @@ def test_what_is_not_understood(cli: Cli, recipes: Path) -> None:
     assert not Path("out.foon").exists()
     ran = cli("merge", ".", "-o", "out.foon", "--lenient")
     assert ran.code == 0
-    assert "1  lines that are in no unit" in ran.err
+    assert "1  line that is in no unit" in ran.err
 
 
 @pytest.mark.parametrize(

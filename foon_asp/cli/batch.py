@@ -21,8 +21,9 @@ from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
 from foon_asp.document.json_document import document
+from foon_asp.network import counted
 from foon_asp.questions.options import EACH_LIMITS, JOBS
-from foon_asp.text.json_value import json_text
+from foon_asp.text.json_value import Json, json_text
 
 
 @click.command("batch")
@@ -110,9 +111,11 @@ def _rows(
     return answer_all(Work(opening, memory_limit), asked, min(jobs, max(1, len(asked))))
 
 
-def _in_words(summary: dict[str, object], tally: Tally) -> Iterator[str]:
+def _in_words(summary: Json, tally: Tally) -> Iterator[str]:
     before = tally.before.total()
-    yield f"{summary['questions']:,} questions" + (f", {before:,} of them answered before" if before else "")
+    yield counted(summary["questions"], "question", ",") + (
+        f", {before:,} of them answered before" if before else ""
+    )
     counts = tally.statuses + tally.before
     yield "in total: " + (", ".join(f"{n:,} {status}" for status, n in sorted(counts.items())) or "none")
     if tally.statuses:

@@ -8,6 +8,7 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
 from foon_asp.errors import UserError
+from foon_asp.network import counted
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.folder_files import foon_files
@@ -83,8 +84,9 @@ def _summary(file: Path, changes: tuple[Change, ...]) -> str:
     if not changes:
         return f"{file}:1: would lose its byte order mark"
     line, before, after = changes[0]
-    lines = "1 line" if len(changes) == 1 else f"{len(changes)} lines"
-    text = f"{file}:{line}: {lines} would change" + (", first this one:" if len(changes) > 1 else ":")
+    text = f"{file}:{line}: {counted(len(changes), 'line')} would change" + (
+        ", first this one:" if len(changes) > 1 else ":"
+    )
     if before == after:
         return f"{text} its line end"
     return f"{text}\n  - {_shown(before)}" + "".join(f"\n  + {_shown(part)}" for part in after.split("\n"))

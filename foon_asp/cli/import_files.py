@@ -7,7 +7,9 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
+from foon_asp.dataset.dataset import left_out
 from foon_asp.errors import UserError
+from foon_asp.network import counted
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import find_data
 from foon_asp.text.diagnostics import summarize
@@ -53,9 +55,8 @@ def command(
     for text in summarize(imported.warnings):
         click.echo(text, err=True)
     if imported.left_out:
-        lines = "1 line" if imported.left_out == 1 else f"{imported.left_out} lines"
-        click.echo(f"warning: {lines} left out", err=True)
+        click.echo(left_out(imported.left_out), err=True)
     size = store.stat().st_size / 1e6
-    counts = f"{imported.units} units of {imported.copies} read, {imported.objects} object nodes"
-    click.echo(f"{store}: {counts}, {size:.1f} MB")
+    counts = f"{counted(imported.units, 'unit')} of {imported.copies} read"
+    click.echo(f"{store}: {counts}, {counted(imported.objects, 'object node')}, {size:.1f} MB")
     return ExitCode.DONE

@@ -11,7 +11,7 @@ from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import write_data
 from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
-from foon_asp.network import Network, NetworkBuilder
+from foon_asp.network import Network, NetworkBuilder, counted
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.data_folder import network_files
 from foon_asp.text.diagnostics import summarize
@@ -77,7 +77,8 @@ def command(
     network = builder.build()
     if not len(network):
         raise UserError("there is no functional unit in these files")
-    comment = f"Universal FOON: {_count(len(network), 'functional unit')} from {_count(len(files), 'file')}"
+    of = counted(len(files), "file", ",")
+    comment = f"Universal FOON: {counted(len(network), 'functional unit', ',')} from {of}"
     content = utf_8("".join(merged_text(network, comment)))
     if output is None or to_stdout:
         write_data(content)
@@ -90,16 +91,16 @@ def command(
 
 
 def _summary(files: int, copies: int, network: Network, prices: int, left_out: int) -> Iterator[str]:
-    yield f"{files:>8,}  {'file' if files == 1 else 'files'}"
-    yield f"{copies:>8,}  units read"
+    yield _row(files, "file")
+    yield _row(copies, "unit") + " read"
     yield f"{copies - len(network):>8,}  of them duplicates"
-    yield f"{len(network):>8,}  distinct units"
-    yield f"{len(network.objects):>8,}  object nodes"
+    yield _row(len(network), "distinct unit")
+    yield _row(len(network.objects), "object node")
     if prices:
-        yield f"{prices:>8,}  prices of units, which are not in the result"
+        yield _row(prices, "price") + " of units, which are not in the result"
     if left_out:
-        yield f"{left_out:>8,}  lines that are in no unit"
+        yield _row(left_out, "line") + f" that {'is' if left_out == 1 else 'are'} in no unit"
 
 
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+def _row(number: int, noun: str) -> str:
+    return counted(number, f" {noun}", ">8,")

@@ -8,7 +8,7 @@ import click
 from foon_asp.cli.shell_line import quoted
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
-from foon_asp.network import Network, ObjectNode, pattern_at_level
+from foon_asp.network import Network, ObjectNode, counted, pattern_at_level
 from foon_asp.text.data_folder import kitchen_item_warning
 from foon_asp.text.diagnostics import Diagnostic, summarize
 from foon_asp.text.goal_name import NodeNames, Wording, find_goal
@@ -71,8 +71,7 @@ class ShellKitchen:
     @property
     def size(self) -> str:
         """Say how many object nodes are at hand."""
-        count = len(self.dataset.kitchen)
-        return "1 object node" if count == 1 else f"{count} object nodes"
+        return counted(len(self.dataset.kitchen), "object node")
 
     def nodes(self) -> list[str]:
         """List what is at hand."""

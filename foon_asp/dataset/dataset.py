@@ -7,7 +7,7 @@ from pathlib import Path
 
 from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_ids
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, UnitPrices, pattern_at_level
+from foon_asp.network import FunctionalUnit, UnitPrices, counted, pattern_at_level
 from foon_asp.problem import (
     Changes,
     Names,
@@ -236,7 +236,7 @@ class Dataset:
 
 def left_out(count: int) -> str:
     """Say that lines were left out."""
-    return f"warning: {'1 line' if count == 1 else f'{count} lines'} left out"
+    return f"warning: {counted(count, 'line')} left out"
 
 
 def _whole_goals(problem: Problem) -> tuple[int, ...]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.network import counted
 from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
 from foon_asp.text.diagnostics import Diagnostic
 
@@ -34,8 +35,7 @@ def _finding(files: LintedFiles, cycle: DeadCycle) -> Diagnostic:
         where = files.sheets[place.sheet].where(place.at, sheet)
         ways.append(f"{network.motions[unit]!r} ({where}) makes {str(network.objects[node])!r}")
     if len(ways) > _SHOWN:
-        left_out = len(ways) - _SHOWN
-        ways[_SHOWN - 1 : -1] = [f"{left_out} more steps" if left_out > 1 else "1 more step"]
+        ways[_SHOWN - 1 : -1] = [counted(len(ways) - _SHOWN, "more step")]
     name = str(network.objects[start])
     others = (
         f"; {len(cycle.nodes)} objects wait for each other" if len(cycle.nodes) > len(cycle.steps) else ""

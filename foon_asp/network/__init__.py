@@ -1,5 +1,6 @@
 """What a FOON is: object nodes, functional units, the merged network, task trees."""
 
+from foon_asp.network.counted import counted as counted
 from foon_asp.network.functional_unit import FunctionalUnit as FunctionalUnit
 from foon_asp.network.level import LEVELS as LEVELS
 from foon_asp.network.level import network_at_level as network_at_level

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeVar
 
+from foon_asp.network.counted import counted
 from foon_asp.network.functional_unit import FunctionalUnit
 from foon_asp.network.node_pattern import NodePattern
 from foon_asp.network.object_node import ObjectNode
@@ -61,7 +62,8 @@ class Network:
         return len(self.motions)
 
     def __repr__(self) -> str:
-        return f"<Network: {len(self)} units, {len(self.objects)} object nodes, level {self.level}>"
+        size = f"{counted(len(self), 'unit')}, {counted(len(self.objects), 'object node')}"
+        return f"<Network: {size}, level {self.level}>"
 
     def unit(self, unit_id: int) -> FunctionalUnit:
         """Give a unit as a value.
@@ -257,7 +259,7 @@ class NetworkBuilder:
         >>> builder.add("brew", [water], [tea], foon_asp.Source("by hand", 1))
         0
         >>> builder.build()
-        <Network: 1 units, 2 object nodes, level 3>
+        <Network: 1 unit, 2 object nodes, level 3>
     """
 
     def __init__(self) -> None:

@@ -14,6 +14,7 @@ from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import costs_json, document, steps_json
 from foon_asp.errors import BugError, UserError
+from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.arguments import (
     Constants,
@@ -28,7 +29,7 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text, counted, goal_lines, unit_lines
+from foon_asp.report.answer import costs_text, goal_lines, unit_lines
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.notebook import page_bundle
 
@@ -353,7 +354,7 @@ def _trees(found: Alternatives) -> Iterator[str]:
         yield from unit_lines(network, (unit for unit in first.units if unit in gone), "-")
         yield from unit_lines(network, (unit for unit in tree.units if unit in new), "+")
     if len(found.trees) > _SHOWN:
-        yield f"... and {len(found.trees) - _SHOWN} more trees; --format json lists all"
+        yield f"... and {counted(len(found.trees) - _SHOWN, 'more tree')}; --format json lists all"
 
 
 def _no_tree(found: Alternatives) -> str:

@@ -15,6 +15,7 @@ from foon_asp.asp.solver import solve_prepared
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document
 from foon_asp.errors import BugError, UserError
+from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import (
@@ -29,7 +30,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, goal_lines, headline
+from foon_asp.report.answer import goal_lines, headline
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
 

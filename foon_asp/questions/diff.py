@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from foon_asp.dataset import Dataset
 from foon_asp.document.json_document import costs_json, document, head_json, listed_unit_json, named_json
-from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitPrices, unit_at_level
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitPrices, counted, unit_at_level
 from foon_asp.problem import (
     ContainerRule,
     Costs,
@@ -25,7 +25,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NoTreeError, Result
 from foon_asp.questions.tree import Tree, read_listed
-from foon_asp.report.answer import costs_text, counted, headline
+from foon_asp.report.answer import costs_text, headline
 from foon_asp.text.goal_name import find_goal
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]

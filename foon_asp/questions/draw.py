@@ -9,7 +9,7 @@ from foon_asp.asp import solve as find
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
-from foon_asp.network import FunctionalUnit, TaskTree, unit_at_level
+from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
 from foon_asp.problem import ContainerRule, Problem, container_rule
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
@@ -19,7 +19,6 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import read_listed
-from foon_asp.report.answer import counted
 from foon_asp.report.dot import dot_text
 from foon_asp.report.drawing import Drawing, draw_network
 from foon_asp.report.mermaid import mermaid_markdown, mermaid_text

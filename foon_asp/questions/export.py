@@ -8,6 +8,7 @@ from pathlib import Path
 from foon_asp.dataset.paths import File
 from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
+from foon_asp.network import counted
 from foon_asp.planning.name_map import map_json
 from foon_asp.planning.pddl_writer import domain_text, problem_text, scale_words
 from foon_asp.planning.planning_task import PlanningTask, planning_task
@@ -16,7 +17,6 @@ from foon_asp.questions.arguments import Objectives, chosen_objectives, reading,
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, OBJECTIVES
 from foon_asp.questions.result import Result
-from foon_asp.report.answer import counted
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text.json_value import Json, json_text
 

@@ -9,6 +9,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document, figure_json, nodes_json
 from foon_asp.errors import UserError
+from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
@@ -16,7 +17,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, headline, steps, success_text
+from foon_asp.report.answer import headline, steps, success_text
 from foon_asp.report.drawing import Drawing
 
 

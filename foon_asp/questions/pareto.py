@@ -14,6 +14,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import costs_json, document, figures_json, steps_json
 from foon_asp.errors import UserError
+from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
 from foon_asp.questions.caller import caller
@@ -24,7 +25,6 @@ from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import (
     changes_text,
     costs_text,
-    counted,
     figure_text,
     goal_lines,
     success_texts,

@@ -17,7 +17,7 @@ from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document, fraction_json, nodes_json
 from foon_asp.errors import BugError, UserError
-from foon_asp.network import ObjectNode, Source
+from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Number, Objective, Problem, exact
 from foon_asp.problem.dead_ends import Cause, dead_ends
 from foon_asp.problem.shop import Shop
@@ -27,7 +27,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import answer_json, counted, goal_lines, headline, steps
+from foon_asp.report.answer import answer_json, goal_lines, headline, steps
 from foon_asp.report.drawing import Drawing
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.price_list import Price, read_prices

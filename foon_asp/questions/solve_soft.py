@@ -8,6 +8,7 @@ from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.soft import Broken
 from foon_asp.asp.soft import solve_soft as find
 from foon_asp.dataset.paths import File, Files
+from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import (
@@ -22,7 +23,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import described
 from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, headline, outcome_text
+from foon_asp.report.answer import headline, outcome_text
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
 from foon_asp.text.json_value import Json

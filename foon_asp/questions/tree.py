@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Self
 
-from foon_asp.network import FunctionalUnit, ObjectNode, Source, TaskTree, unit_at_level
+from foon_asp.network import FunctionalUnit, ObjectNode, Source, TaskTree, counted, unit_at_level
 from foon_asp.problem import Problem, given_outputs
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import NoTreeError
@@ -81,7 +81,7 @@ class Tree(TaskTree):
         return write_units(self.units, filter(None, [f"Task tree for: {self._goals()}", self.claim]))
 
     def __repr__(self) -> str:
-        return f"<Tree for {self._goals()}: {len(self)} unit{'' if len(self) == 1 else 's'}>"
+        return f"<Tree for {self._goals()}: {counted(len(self), 'unit')}>"
 
     def drawing(self) -> Drawing:
         """Give what the picture shows; units of a tree without a claim are numbered as they execute."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document, mention_json, nodes_json, unit_json
 from foon_asp.foon import Foon
-from foon_asp.network import Network, ObjectNode, pattern_at_level
+from foon_asp.network import Network, ObjectNode, counted, pattern_at_level
 from foon_asp.network.near_nodes import nearest, slip_between
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Blocked, Cause, NearName, Root, dead_ends
@@ -15,7 +15,7 @@ from foon_asp.questions.arguments import Constants, settings, whole
 from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.answer import counted, goal_lines
+from foon_asp.report.answer import goal_lines
 from foon_asp.text.object_list import ListedObject
 
 if TYPE_CHECKING:  # clingo, which is needed where rules have a say

@@ -14,7 +14,7 @@ from foon_asp.document.json_document import (
     input_origins,
     steps_json,
 )
-from foon_asp.network import Network
+from foon_asp.network import Network, counted
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
 from foon_asp.text.json_value import Json
 from foon_asp.text.writer import write_units
@@ -163,11 +163,6 @@ def _rounded(value: Fraction, digits: int) -> Decimal:
     return Context(prec=digits).divide(Decimal(value.numerator), Decimal(value.denominator))
 
 
-def counted(number: int, noun: str) -> str:
-    """Give a number with its noun: ``1 unit``, ``2 units``."""
-    return f"{number} {noun}" + ("" if number == 1 else "s")
-
-
 def _bound_line(outcome: Outcome) -> str:
     bounds = [bound_text(objective, bound) for objective, bound in outcome.bounds.items()]
     return "proved so far: " + (", ".join(bounds) or "nothing")
@@ -259,5 +254,5 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
             yield f"  {network.motions[unit]}    [{network.sources[unit][0]}] lacks"
             yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
         if len(makers) > shown:
-            yield f"  ... and {len(makers) - shown} more units"
+            yield f"  ... and {counted(len(makers) - shown, 'more unit')}"
     yield "foon-asp why-not explains why, and foon-asp shopping-list finds what would help"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from foon_asp.document.json_document import document, figures_json, goals_json, head_json
 from foon_asp.escapes import escaped
-from foon_asp.network import Network
+from foon_asp.network import Network, counted
 from foon_asp.problem import Objective
 from foon_asp.proof.verify import Verified
 from foon_asp.text.json_value import Json
@@ -31,7 +31,7 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
     if certificate.claim == "optimal" and outcome.proof.value != "certificate":
         sure = ", ".join(certificate.certified)
         return [f"proof: {outcome.proof}; the certificate {file} proves the tree best by {sure} alone"]
-    lines = [f"proof: certificate ({file}, {_cuts(len(certificate.content['cuts']))})"]
+    lines = [f"proof: certificate ({file}, {counted(len(certificate.content['cuts']), 'cut')})"]
     if certificate.content["not_covered"] and certificate.claim == "optimal":
         lines.append("  it is best among all trees; only the solver says that it obeys the constraints")
     return lines
@@ -81,7 +81,7 @@ def verified_text(verified: Verified, network: Network, content: dict[str, Any])
         ruled_out += [f"the object {escaped(label)}" for label in verified.labels]
         lines.append(f"among the trees without {', '.join(ruled_out)}")
     lines += [f"not covered, so among all trees: {name}" for name in verified.not_covered]
-    lines.append(f"proof: {_cuts(verified.cuts)}, checked without a solver")
+    lines.append(f"proof: {counted(verified.cuts, 'cut')}, checked without a solver")
     return "\n".join(lines) + "\n"
 
 
@@ -104,7 +104,3 @@ def verified_json(verified: Verified, network: Network) -> Json:
 
 def _figure(objective: str, cost: int | Fraction) -> str:
     return f"success {cost} ≈ {float(cost):.4g}" if objective == "success" else f"{cost} {objective}"
-
-
-def _cuts(number: int) -> str:
-    return f"{number} cut" + ("" if number == 1 else "s")

@@ -16,6 +16,7 @@ from foon_asp.compare.comparison import MEASURED, Comparison, Judgement, Optimum
 from foon_asp.compare.summary import Summary
 from foon_asp.document.json_document import fraction_text
 from foon_asp.escapes import escaped
+from foon_asp.network import counted
 from foon_asp.problem import Objective, multiplies
 from foon_asp.proof import Verdict
 
@@ -99,18 +100,25 @@ def _cell_text(text: str) -> str:
 def summary_lines(summaries: Sequence[Summary], proved: bool) -> Iterator[str]:
     """Summarize many goals in the way a paper would."""
     goals = max((summary.goals for summary in summaries), default=0)
-    yield f"{goals} goals; " + ("every optimum is proved" if proved else "NOT every optimum is proved")
+    yield f"{counted(goals, 'goal')}; " + (
+        "every optimum is proved" if proved else "NOT every optimum is proved"
+    )
     for summary in summaries:
         trees = summary.as_listed + summary.reordered + summary.never
         yield ""
-        yield f"{summary.search}: {trees} trees" + (f", {summary.without} without" if summary.without else "")
+        yield f"{summary.search}: {counted(trees, 'tree')}" + (
+            f", {summary.without} without" if summary.without else ""
+        )
         yield (
             f"  execute as listed {_share(summary.as_listed, trees)}, when reordered "
             f"{_share(summary.reordered, trees)}, never {_share(summary.never, trees)}"
             + (f" (a cycle is to blame for {summary.cycles})" if summary.cycles else "")
         )
         if summary.smaller:
-            yield f"  {summary.smaller} are smaller than the optimum; none of these executes"
+            these = "is smaller than the optimum; it does not execute"
+            if summary.smaller > 1:
+                these = "are smaller than the optimum; none of these executes"
+            yield f"  {summary.smaller} {these}"
         for objective, distance in summary.distances.items():
             yield (
                 f"  {objective}, times worse than the optimum where it executes: median "

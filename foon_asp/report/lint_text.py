@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
+from foon_asp.network import counted
 from foon_asp.text.diagnostics import Diagnostic, Severity
 
 _IN_FULL = 3  # findings of a kind in a file; the lines of the others are named
@@ -35,8 +36,8 @@ def lint_text(findings: Sequence[Diagnostic], files: int, mended: int) -> str:
 def lint_summary(findings: Sequence[Diagnostic], files: int, mended: int) -> str:
     """Give the counts in one line."""
     counts = Counter(finding.severity for finding in findings)
-    parts = [_counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
-    text = f"{_counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"
+    parts = [counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
+    text = f"{counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"
     if mended:
         text += f"; {mended} mended"
     elif mendable := sum(1 for finding in findings if finding.fix is not None):
@@ -49,7 +50,3 @@ def _folded(others: Sequence[Diagnostic]) -> str:
     places = ", ".join(numbers[:_LINES]) + (", ..." if len(numbers) > _LINES else "")
     on = "line" if len(numbers) == 1 else "lines"
     return f"    ... and {len(others)} more of this kind in this file, on {on} {places} [{others[0].code}]"
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}" + ("" if number == 1 else "s")

@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 from foon_asp.document.json_document import document, nodes_json
 from foon_asp.escapes import escaped
-from foon_asp.network import Network
+from foon_asp.network import Network, counted
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.text.json_value import Json
 
@@ -53,10 +53,10 @@ def statistics_text(network: Network, levels: Sequence[Statistics], from_kitchen
     headings = {"reach": f"reach {hand}"}
     files, videos = _origins(network)
     copies = sum(files.values())
-    lines = [
-        f"{copies:,} units read from {_count(len(files), 'file')}, {_count(len(videos), 'source video')}"
-    ]
-    lines.append(f"{copies - len(network):,} of them are copies of others")
+    places = f"{counted(len(files), 'file', ',')}, {counted(len(videos), 'source video', ',')}"
+    lines = [f"{counted(copies, 'unit', ',')} read from {places}"]
+    again = copies - len(network)
+    lines.append(f"{again:,} of them {'is a copy of another' if again == 1 else 'are copies of others'}")
     lines += ["", _row("at level", [str(s.level) for s in levels])]
     heading = ""
     for group, name, figure in _ROWS:
@@ -77,7 +77,9 @@ def statistics_text(network: Network, levels: Sequence[Statistics], from_kitchen
         lines += ["", "most units: files"]
         lines += [f"  {number:>7,}  {escaped(file)}" for file, number in files.most_common(_SHOWN)]
         if len(files) > _SHOWN:
-            lines.append(f"  ... and {_count(len(files) - _SHOWN, 'file')} more; --format json lists all")
+            lines.append(
+                f"  ... and {counted(len(files) - _SHOWN, 'file', ',')} more; --format json lists all"
+            )
     return "\n".join(lines) + "\n"
 
 
@@ -112,7 +114,3 @@ def _origins(network: Network) -> tuple[Counter[str], tuple[str, ...]]:
 
 def _row(name: str, figures: Sequence[str]) -> str:
     return f"{name:<46}" + "".join(f"{figure:>10}" for figure in figures)
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}" + ("" if number == 1 else "s")

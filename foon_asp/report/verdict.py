@@ -26,7 +26,8 @@ def verdict_text(problem: Problem, listed: Listed, simulation: Simulation) -> st
         lines.append(costs_text(problem.costs(unit for unit in ids if unit is not None)))
     repeated = len(listed) - len({unit for unit, _ in listed})
     if repeated:
-        lines.append(f"{repeated} of the {len(listed)} listed units are repeated and count once")
+        count = "is repeated and counts" if repeated == 1 else "are repeated and count"
+        lines.append(f"{repeated} of the {len(listed)} listed units {count} once")
     if simulation.verdict is Verdict.REORDERED:
         lines.append("an order that executes:")
         lines += [f"  {position + 1:>3}  {_unit_text(listed, position)}" for position in simulation.order]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
-from foon_asp.network import Source
+from foon_asp.network import Source, counted
 
 _SHOWN = 40
 
@@ -63,7 +63,9 @@ class InputError(UserError):
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         lines = [str(diagnostic) for diagnostic in diagnostics[:_SHOWN]]
         if len(diagnostics) > _SHOWN:
-            lines.append(f"... and {len(diagnostics) - _SHOWN} more errors; foon-asp lint lists them all")
+            lines.append(
+                f"... and {counted(len(diagnostics) - _SHOWN, 'more error')}; foon-asp lint lists them all"
+            )
         super().__init__("\n".join(lines))
         self.diagnostics = tuple(diagnostics)
 

@@ -39,7 +39,8 @@ def read_json_units(
     listed = list(elements)
     videos = _videos(elements.others.get("source"))
     if listed and not elements.errors and all(_is_object(element.value) for element in listed):
-        message = f"{len(listed)} objects and no motion: a list such as a kitchen or goals, without units"
+        objects = "one object" if len(listed) == 1 else f"{len(listed)} objects"
+        message = f"{objects} and no motion: a list such as a kitchen or goals, without units"
         diagnostics.append(Diagnostic(Severity.WARNING, "no-motion", message, listed[0].source))
         return
     for element in listed:

@@ -9,6 +9,7 @@ from pathlib import Path
 from foon_asp.asp import Status
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
+from foon_asp.network import counted
 from foon_asp.problem import Number, Objective, Problem, success_rate
 from foon_asp.questions.arguments import Constants, asked_with, at_least, settings
 from foon_asp.questions.assist.assistant import Assistant, Assisted
@@ -17,7 +18,7 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text, counted, goal_lines, steps, success_text
+from foon_asp.report.answer import costs_text, goal_lines, steps, success_text
 from foon_asp.text.rate_table import read_rates
 
 

@@ -11,6 +11,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.errors import UserError
+from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, Root, success_rate
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Constants, asked_with, settings
@@ -20,7 +21,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.sensitivity.envelope import Envelope
 from foon_asp.questions.sensitivity.interval import End, Flip, Interval
-from foon_asp.report.answer import changes_text, counted, goal_lines, headline, success_text
+from foon_asp.report.answer import changes_text, goal_lines, headline, success_text
 from foon_asp.report.drawing import Drawing
 
 _SUCCESS = (Objective.SUCCESS,)
