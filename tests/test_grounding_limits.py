@@ -32,8 +32,8 @@ from tests.hard_problem import hard_problem
 
 pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
-ENDLESS = "p(0). p(f(X)) :- p(X).\n"
-HUGE = "q(A,B,C,D) :- unit(A), unit(B), unit(C), unit(D).\n"
+ENDLESS = "p(0). p(f(X)) :- p(X). :- use(U), p(f(U)).\n"  # what nothing looks at is left out
+HUGE = "q(A,B,C,D) :- unit(A), unit(B), unit(C), unit(D). :- use(U), q(U,A,B,-1).\n"
 LATE = 2.5  # seconds on a busy machine
 START = 4  # more, for a process of ours to start and to end
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="memory limits are held on Linux only")

@@ -123,6 +123,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         endless=endless,
         constants=tuple(constants),
         encodings=encodings,
+        ours=(*base, *questions),
         understood=understood,
     )
 

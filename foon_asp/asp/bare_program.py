@@ -52,7 +52,7 @@ def bare_program(
         settings = settings._replace(relaxed=relaxed)
         penalty = write_least_penalty(len(levels(tuple(objectives))) + 1)
     program = assemble(settings, lambda _: None)
-    first = prepare(problem, objectives, settings, program)
+    first = prepare(problem, objectives, settings, program._replace(understood=None))
     if first.tree is None:  # bare clingo is to see for itself that a goal cannot be made
         everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
         units = relevant(problem, everything) if program.own else everything.units

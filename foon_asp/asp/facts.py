@@ -296,6 +296,14 @@ def write_assisted(twins: Mapping[int, int], most: int) -> str:
     return "".join([*facts, f"_at_most_assisted({_check(most)}).\n"])
 
 
+def write_required(sets: Sequence[Iterable[int]]) -> str:
+    """Give sets of units, by their numbers in the whole network, of each of which a tree has to have one."""
+    return "".join(
+        "".join([f"_required({place}).\n", *(f"_one_of({place},{_check(number)}).\n" for number in numbers)])
+        for place, numbers in enumerate(sets)
+    )
+
+
 def write_tree(units: Collection[int]) -> str:
     """Ask for a tree of exactly these units."""
     return f"_tree_size({len(units)}).\n" + "".join(f"_in_tree({unit}).\n" for unit in units)

@@ -11,10 +11,11 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.deadline import Deadline
-from foon_asp.problem import Objective, Problem, first_tree, levels, reach, relevant
-from foon_asp.reduce import NONE, Listener, Reduced, reduce
+from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
+from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
 
 if TYPE_CHECKING:  # often there is nothing left to ask clingo
+    from foon_asp.asp.rules import Rules
     from foon_asp.asp.scales import Scales
     from foon_asp.grounding.run import Run
 
@@ -26,7 +27,10 @@ class Prepared:
     ``levels`` are the objectives as optimized and ``units`` what is left of the network after the cut, where
     ``tree`` is some tree: ``None`` where nothing makes the goals. ``reduced`` is what the reductions made of
     the question, where they were asked. ``stopped`` says that a limit or ctrl-C came in the middle of the
-    cut, and that nothing is known.
+    cut, and that nothing is known. ``kept`` is the problem as rules of the user leave it, where these are
+    applied before the search, ``contradicted`` says that they leave nothing at all, and ``asked`` is the
+    program with all of them. ``rest`` says that some of them are still to be kept to: ``tree`` and
+    ``reduced`` do not know of these.
     """
 
     problem: Problem
@@ -38,11 +42,15 @@ class Prepared:
     tree: frozenset[int] | None = None
     reduced: Reduced | None = None
     stopped: bool = False
+    kept: Problem | None = None
+    contradicted: bool = False
+    rest: bool = False
+    asked: Program | None = None
 
     @cached_property
     def holds(self) -> Postconditions:
         """What the answers are checked with."""
-        return Postconditions(self.problem, self.levels, self.settings, self.program.own)
+        return Postconditions(self.kept or self.problem, self.levels, self.settings, self.program.own)
 
     @cached_property
     def scales(self) -> "Scales":
@@ -57,12 +65,17 @@ class Prepared:
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
-        from foon_asp.asp.facts import write_below, write_facts  # noqa: PLC0415
+        from foon_asp.asp.facts import write_below, write_facts, write_required  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
             facts = write_facts(self.problem, self.units, self.scales, with_sources=not self.program.own)
             bounded = self.settings.bounded
-            return facts + (write_below(bounded.below, self.scales) if bounded else "")
+            facts += write_below(bounded.below, self.scales) if bounded else ""
+            if self.kept is None or self.kept.restriction is None or self.rest:
+                return facts
+            number, left = self.problem.network.unit_number, frozenset(self.units)
+            sets = self.kept.restriction.required
+            return facts + write_required([map(number, sorted(left & units)) for units in sets])
 
     def run(
         self,
@@ -108,35 +121,82 @@ def prepare(
     """Cut a network down to what can matter.
 
     Where all rules are ours, that is what the goals can need; with others it is all that can be made, since a
-    constraint may ask for units that no goal does. With a ``listener``, who hears of trees and bounds, it is
-    less what the reductions leave out: what only trees have that are no better than another, which may be the
-    only one within bounds, so then they leave out nothing. ``for_sale`` are object nodes that may come to
-    those in the kitchen. Raises :class:`UserError` where an objective needs rates that are not known.
+    constraint may ask for units that no goal does. Rules that are understood are applied first, unless no
+    reductions are asked for; those that are settled so need not be asked again. With a ``listener``, who
+    hears of trees and bounds, it is less what the reductions leave out: what only trees have that are no
+    better than another, which may be the only one within bounds, so then they leave out nothing.
+    ``for_sale`` are object nodes that may come to those in the kitchen. Raises :class:`UserError` where an
+    objective needs rates that are not known.
     """
     asked = levels(tuple(objectives))
     problem.require_known_for(asked)
     deadline = settings.begun
     first = Prepared(problem, asked, settings, deadline, program)
     try:
-        if program.own and listener is not None:
+        spare = False
+        if program.understood and settings.reductions and not for_sale:
+            first, spare = _applied(first, program.understood)
+        if first.contradicted:
+            return first
+        program, kept = first.program, first.kept or problem
+        if listener is not None and (program.own or _limits_rest(first)):
             reduced = reduce(
-                problem,
+                kept,
                 asked,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
-                listener,
+                _Bounds(listener) if first.rest else listener,
                 lambda: deadline.watched("cutting the network", late=True),
+                spare,
             )
             if reduced.interrupted:
                 deadline.interrupt()
-            return replace(first, units=reduced.units, tree=reduced.tree, reduced=reduced)
+            if not first.rest or reduced.wide is not None or reduced.tree is None:
+                return replace(first, units=reduced.units, tree=reduced.tree, reduced=reduced)
         with deadline.watched("cutting the network"):
-            stocked = replace(problem, kitchen=problem.kitchen.union(for_sale)) if for_sale else problem
+            stocked = replace(kept, kitchen=problem.kitchen.union(for_sale)) if for_sale else kept
             reached = reach(stocked)
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: what is for sale may also be made
-            units = relevant(problem, reached) if program.own else tuple(sorted(reached.units))
+            cut = program.own or (first.rest and not spare)
+            units = relevant(kept, reached) if cut else tuple(sorted(reached.units))
         return replace(first, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()
         return replace(first, stopped=True)
+
+
+def _applied(first: Prepared, rules: "Rules") -> tuple[Prepared, bool]:
+    """Apply the user's rules as far as they say which units there are, or which sets are needed.
+
+    Also tells whether a tree that keeps to the rest may need units that lead to no goal.
+    """
+    from foon_asp.asp.rule_kind import Kind  # noqa: PLC0415 (takes clingo along)
+
+    if rules.rest and not rules.local:
+        return first, False
+    found = rules.applied(first.problem, first.deadline)
+    if found is None:
+        return first, False
+    first = replace(first, asked=first.program)
+    if not isinstance(found, Restriction):
+        return replace(first, contradicted=True), False
+    kept = replace(first.problem, restriction=found)
+    if not rules.rest:
+        return replace(first, kept=kept, program=first.program.settled), False
+    return replace(first, kept=kept, rest=True), any(rule.kind is not Kind.SHRINKING for rule in rules.rest)
+
+
+def _limits_rest(first: Prepared) -> bool:
+    """Whether the rest of the user's rules is kept to by limits on costs."""
+    return first.rest and not first.program.bounded and Reduction.DEAR in first.settings.reductions
+
+
+class _Bounds(Listener):
+    """Passes on bounds alone: trees found on the way may not keep to all rules."""
+
+    def __init__(self, listener: Listener) -> None:
+        self._listener = listener
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        self._listener.bound(costs, bound)

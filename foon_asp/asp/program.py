@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from foon_asp.asp.own_encodings import question_encoding
+
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.asp.rules import Rules
 
@@ -20,8 +22,9 @@ class Program(NamedTuple):
     ``text`` is all that the files said when they were looked over. ``open`` says that the program means the
     same when facts are left open (:mod:`foon_asp.asp.session`). ``endless`` says that nobody knows whether
     its grounding comes to an end. ``encodings`` is the folder whose encodings are used in place of ours.
-    ``understood`` are the rules that are added, looked into: ``None`` where there are none, where encodings
-    are replaced, and where some of the rules may be broken or dropped.
+    ``ours`` are the files but for those that the user added. ``understood`` are the rules that are added,
+    looked into: ``None`` where there are none, where encodings are replaced, and where some of the rules may
+    be broken or dropped.
     """
 
     files: tuple[Loaded, ...]
@@ -37,4 +40,20 @@ class Program(NamedTuple):
     endless: bool = False
     constants: tuple[str, ...] = ()
     encodings: Path | None = None
+    ours: tuple[Path, ...] = ()
     understood: "Rules | None" = None
+
+    @property
+    def settled(self) -> "Program":
+        """The same without the user's rules, where they are applied to the problem before."""
+        return self._replace(
+            files=(*self.ours, question_encoding("required.lp")),
+            arguments=self.arguments[len(self.constants) :],
+            constants=(),
+            own=True,
+            looked_at=frozenset(),
+            text="",
+            open=False,
+            endless=False,
+            understood=None,
+        )

@@ -84,7 +84,7 @@ class OpenProgram:
         pairs: Iterable[tuple[Objective, int]],
         deadline: Deadline,
     ) -> None:
-        self._program = program
+        self._program = program._replace(understood=None)  # what the rules are, the text says
         self._problem = problem
         self._closed, self._open = closed, left_open
         self._units = _units({*closed, *left_open})
@@ -111,7 +111,7 @@ class OpenProgram:
         """Whether it has the same network and rules, whatever the kitchen and the goals."""
         ours = self._problem
         return (
-            program == self._program
+            program._replace(understood=None) == self._program
             and problem.network is ours.network
             and problem.containers is ours.containers
             and problem.rates == ours.rates

@@ -3,22 +3,27 @@
 import itertools
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.outcome import Outcome, Proof, Status
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
-from foon_asp.reduce import ExactCosts, Listener, Reduction
+from foon_asp.reduce import ExactCosts, Listener, Reduced, Reduction, Wide
 
 if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.asp.scales import Scales
     from foon_asp.asp.session import OpenProgram
     from foon_asp.grounding.grounded import Grounded
     from foon_asp.grounding.run import Run
+
+_NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
+_MORE = 4  # times as many, where there is none
 
 Units = frozenset[int]
 
@@ -146,8 +151,11 @@ class _Solver:
         if first.stopped:
             return self._outcome(Status.UNKNOWN, None, {})
         if first.tree is None:
-            self.holds.no_tree()
+            if not first.contradicted:
+                self.holds.no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
+        if first.rest and first.reduced and first.reduced.wide:
+            return self._under_rest(first.reduced, first.reduced.wide, first.tree)
         if self.program.own and not self.program.bounded:
             incumbent = first.tree
         else:  # the user's rules or the bounds decide what a tree is: let them find the first one
@@ -160,6 +168,58 @@ class _Solver:
             return self._optimal(incumbent)
         return self._search(incumbent)
 
+    def _under_rest(self, reduced: Reduced, wide: Wide, tree: Units) -> Outcome:
+        """Find the best tree that keeps to rules that the reductions did not know of.
+
+        If the best tree without them keeps to them, it is the one. Else a tree that does is looked for near
+        the goals. One that is better than the tree in hand has only units that trees up to its cost can have.
+        """
+        among, ended = Units(), None
+        if self._keeps(tree):
+            self.heard.tree(tree)
+            if reduced.settled:
+                return self._optimal(tree)
+        else:
+            self.first = replace(self.first, reduced=reduced._replace(settled=False))
+            known, most = wide.everything(), _NEAR
+            while ended is None or (ended.units is None and ended.exhausted and among < known):
+                among = known if most >= len(known) else wide.nearest(most) | tree
+                most *= _MORE
+                self._look_at(among)
+                ended = self._run(self.levels)
+            if ended.units is None:
+                return self._outcome(Status.INFEASIBLE if ended.exhausted else Status.UNKNOWN, None, {})
+            tree = self._in_hand(ended.units)
+            if not ended.exhausted:
+                return self._limited(tree, ())
+        try:
+            with self.deadline.watched("cutting the network", late=True):
+                within = wide.within(wide.total(tree), lambda: self.deadline.passed)
+        except KeyboardInterrupt:
+            self.deadline.interrupt()
+            return self._limited(tree, ())
+        if ended is not None and ended.units is not None and within <= among:
+            return self._ended(ended, ended.units)
+        self._look_at(within | tree)
+        return self._search(tree)
+
+    def _keeps(self, tree: Units) -> bool:
+        """Whether a tree keeps to the user's rules, which look at nothing else; not if that is not known."""
+        from foon_asp.asp.facts import write_given  # noqa: PLC0415
+
+        first = replace(self.first, units=tuple(sorted(tree)))
+        given = write_given(list(map(self.problem.network.unit_number, tree)))
+        ended = first.run(given, "ignore", (question_encoding("second_opinion.lp"),))
+        return ended.units is not None
+
+    def _look_at(self, units: Units) -> None:
+        """Search among these units from now on."""
+        self.first = replace(self.first, units=tuple(sorted(units)))
+        self._scales = None
+        if self._ground:
+            self._ground[1].close()
+            self._ground = None
+
     def _search(self, incumbent: Units) -> Outcome:
         """Ask clingo for what is better than the tree in hand."""
         wanted, strict = self._wanted(incumbent)
@@ -169,8 +229,12 @@ class _Solver:
                 return self._limited(incumbent, ended.lower)
             self.holds.require(strict, lambda: "a tree is at hand, but the encodings say that there is none")
             return self._optimal(incumbent)
-        best, proved = self._in_hand(ended.units), ended.exhausted
-        if self._measures_agree(ended.units, ended.cost, self.levels) and proved:
+        return self._ended(ended, ended.units)
+
+    def _ended(self, ended: "Run", units: Units) -> Outcome:
+        """Settle what a search ended with."""
+        best, proved = self._in_hand(units), ended.exhausted
+        if self._measures_agree(units, ended.cost, self.levels) and proved:
             best, proved = self._settle(best)
         return self._optimal(best) if proved else self._limited(best, ended.lower)
 
@@ -229,7 +293,12 @@ class _Solver:
             self.heard.tree(self._ids(units))
 
         try:
-            if self.first.settings.session is not None and self.program.open and self._kept:
+            if (
+                self.first.settings.session is not None
+                and self.program.open
+                and self._kept
+                and not self.first.rest
+            ):
                 ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
             else:
                 ended = self._grounded(objectives, products, wanted).search(
@@ -486,11 +555,12 @@ class _Solver:
             return outcome
         began = time.perf_counter()
         cuts = reduced.cuts.cuts if reduced and reduced.cuts else ()
+        size = len(self.problem.network.objects)  # beyond are sets of units that rules ask for
         outcome = outcome._replace(
             units=self.holds.tree(units),
             costs=self.heard.costs(units),
             left=0 if proof is Proof.CUTS else len(first.units),
-            cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts),
+            cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts if max(cut.objects) < size),
         )
         assert self.heard.best is not None
         self.holds.outcome(outcome, None if self.program.replaced else self.heard.best[1], reduced)
