@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
@@ -76,6 +77,29 @@ class Prepared:
             number, left = self.problem.network.unit_number, frozenset(self.units)
             sets = self.kept.restriction.required
             return facts + write_required([map(number, sorted(left & units)) for units in sets])
+
+    def keeps(self, units: Collection[int]) -> bool | None:
+        """Whether a tree keeps to all rules of the user's, which see no further than the tree.
+
+        ``None`` where that is not known at a limit. Raises :class:`UserError` for what is wrong with a rule.
+        """
+        from foon_asp.asp.facts import write_given  # noqa: PLC0415
+
+        program = self.asked or self.program
+        tree = replace(self, units=tuple(sorted(units)), program=program, rest=True)
+        numbers = list(map(self.problem.network.unit_number, tree.units))
+        ended = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
+        return True if ended.units is not None else (False if ended.exhausted else None)
+
+    def require_kept(self, units: Collection[int]) -> None:
+        """Require that a tree keeps to rules that were applied beforehand, as far as they can be asked."""
+        rules = self.asked.understood if self.asked else None
+        if rules is not None and rules.local and not self.rest:
+            kept = self.keeps(units)
+            self.holds.require(
+                kept is not False,
+                lambda: f"the tree {sorted(units)} does not keep to the rules that were added",
+            )
 
     def run(
         self,

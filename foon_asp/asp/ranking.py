@@ -91,6 +91,7 @@ class Ranked:
         if len(known) < len(units):
             raise UserError("a tree was found with units that are not in the network: check the encodings")
         order = self._holds.tree(known)
+        self._first.require_kept(order)
         costs, scales = self.problem.costs(order), self._first.scales
         rounded = (
             int(costs.measure(objective)) if objective.row.whole else scales.weight(objective, order)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.outcome import Outcome, Proof, Status
-from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
@@ -175,7 +174,7 @@ class _Solver:
         the goals. One that is better than the tree in hand has only units that trees up to its cost can have.
         """
         among, ended = Units(), None
-        if self._keeps(tree):
+        if self.first.keeps(tree):
             self.heard.tree(tree)
             if reduced.settled:
                 return self._optimal(tree)
@@ -202,15 +201,6 @@ class _Solver:
             return self._ended(ended, ended.units)
         self._look_at(within | tree)
         return self._search(tree)
-
-    def _keeps(self, tree: Units) -> bool:
-        """Whether a tree keeps to the user's rules, which look at nothing else; not if that is not known."""
-        from foon_asp.asp.facts import write_given  # noqa: PLC0415
-
-        first = replace(self.first, units=tuple(sorted(tree)))
-        given = write_given(list(map(self.problem.network.unit_number, tree)))
-        ended = first.run(given, "ignore", (question_encoding("second_opinion.lp"),))
-        return ended.units is not None
 
     def _look_at(self, units: Units) -> None:
         """Search among these units from now on."""
@@ -564,6 +554,7 @@ class _Solver:
         )
         assert self.heard.best is not None
         self.holds.outcome(outcome, None if self.program.replaced else self.heard.best[1], reduced)
+        first.require_kept(units)
         self._spent("check", began)
         return outcome
 
