@@ -12,6 +12,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.session import OpenProgram, Session
 from foon_asp.deadline import Deadline
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
+from foon_asp.reduce import ALL, NONE
 from tests import oracle
 from tests.hard_problem import hard_problem
 from tests.random_problems import SERIES, random_objectives, random_problem
@@ -70,7 +71,11 @@ def test_random_sessions(seeds: range, tmp_path: Path) -> None:
             objectives = random_objectives(rng, rng.randint(1, 3))
             with_nosy = rng.random() < 0.5
             files = (nosy,) if with_nosy else (Path(name),)
-            settings = Settings(constraints=files, constants=() if with_nosy else tuple(constants))
+            settings = Settings(
+                constraints=files,
+                constants=() if with_nosy else tuple(constants),
+                reductions=NONE if seed % 3 else ALL,
+            )
             afresh = solve(problem, objectives, settings)
             kept = solve(problem, objectives, settings._replace(session=session))
             assert measured(kept) == measured(afresh), (seed, objectives, files)
@@ -98,7 +103,8 @@ def test_one_program_serves_many_questions(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(OpenProgram, "__init__", count)
     problem = next(p for p in (random_problem(s, ContainerRule.STRICT, 20) for s in range(99)) if p.kitchen)
     everything = replace(problem, kitchen=frozenset(range(len(problem.network.objects))))
-    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=3",), session=Session())
+    rule = Settings(constraints=(Path("at_most_units"),), constants=("max_units=3",))
+    settings = rule._replace(session=Session(), reductions=NONE)
     orders = [(Objective.SUCCESS,), (Objective.KITCHEN, Objective.SUCCESS)]
     for objectives in orders:
         solve(everything, objectives, settings)

@@ -22,7 +22,7 @@ from foon_asp.grounding.grounded import Grounded
 from foon_asp.grounding.run import Run
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Costs, Objective, Problem, levels
-from foon_asp.reduce import NONE, Reduced, Reduction, reduce
+from foon_asp.reduce import ALL, NONE, Reduced, Reduction, reduce
 from foon_asp.resources import encodings_folder
 from tests.test_bounded import at_most
 from tests.test_objectives import NEW
@@ -182,7 +182,7 @@ def test_an_outcome_by_search() -> None:
     assert sum(outcome.seconds.values()) <= elapsed
 
 
-RULED = Settings(constraints=(Path("at_most_units"),), constants=("max_units=9",))
+RULED = Settings((Path("at_most_units"),), constants=("max_units=9",), reductions=NONE)
 
 
 @pytest.mark.parametrize("settings", [SEARCHED, Settings(), RULED])
@@ -232,9 +232,11 @@ def test_a_program_that_has_answered_is_closed(monkeypatch: pytest.MonkeyPatch) 
     assert optimum(problem, (SUCCESS,)) == (0,)
     assert made == {"begun": 3, "closed": 3}  # by weights, within the band, and what comes after
     made.clear()
-    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=3",))
-    assert optimum(problem, (UNITS,), settings) == (0,)
+    assert optimum(problem, (UNITS,), RULED) == (0,)
     assert made == {"begun": 1, "closed": 1}  # for the first tree and for the best one
+    made.clear()
+    assert optimum(problem, (UNITS,), RULED._replace(reductions=ALL)) == (0,)
+    assert made == {"begun": 1, "closed": 1}  # does the best tree keep to the rule?
     made.clear()
     monkeypatch.setattr(Grounded, "search", stumbling)
     with pytest.raises(UserError, match="no more"):
@@ -316,7 +318,7 @@ def test_within_bounds_and_under_rules_some_tree_comes_first(monkeypatch: pytest
     bounded = Settings(bounded=at_most({UNITS: 1}))
     assert optimum(problem, (UNITS,), bounded) == (2,)
     assert searches.modes == ["ignore", "opt"]
-    ruled = Settings(constraints=(Path("at_most_units"),), constants=("max_units=1",))
+    ruled = RULED._replace(constants=("max_units=1",))
     assert optimum(problem, (UNITS,), ruled) == (2,)
     assert searches.modes == ["ignore", "opt"] * 2
 
@@ -892,7 +894,7 @@ def test_no_tree_under_a_rule(
     exhausted: bool, status: Status, proof: Proof | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Searches(monkeypatch, Answer(Run(exhausted=exhausted)))
-    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=0",))
+    settings = RULED._replace(constants=("max_units=0",))
     outcome = solve(ways(["0.5"]), (UNITS,), settings)
     assert (outcome.status, outcome.proof, outcome.units) == (status, proof, None)
     assert outcome.bounds == {}
@@ -902,11 +904,16 @@ def test_under_a_rule_all_that_can_be_made_is_left(tmp_path: Path) -> None:
     rule = tmp_path / "rule.lp"
     rule.write_text(':- not use(U) : motion(U,"garnish").  :- use(U), source(U,"way 1").\n')
     problem = ways(["0.5"], ["0.2"], beside=True)
-    outcome = solve(problem, (SUCCESS,), Settings(constraints=(rule,)))
-    assert outcome.status is Status.OPTIMAL
+    outcome = solve(problem, (SUCCESS,), Settings(constraints=(rule,), reductions=NONE))
+    assert (outcome.status, outcome.proof) == (Status.OPTIMAL, Proof.SOLVER)
     assert outcome.units == (0, 2)
     assert outcome.left == 3
     assert outcome.cuts == ()
+    reduced = solve(problem, (SUCCESS,), Settings(constraints=(rule,)))
+    assert (reduced.status, reduced.proof) == (Status.OPTIMAL, Proof.CUTS)
+    assert reduced.units == (0, 2)
+    # the set of units that the rule asks for is a goal of no node, so no cut of it is told
+    assert reduced.cuts == ((problem.goals[0],),)
 
 
 @pytest.mark.parametrize("objectives", [(UNITS,), (SUCCESS,), (KITCHEN, SUCCESS, INPUTS)])
