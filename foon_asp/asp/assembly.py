@@ -90,7 +90,8 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         for message in encoding.unset_constants(extra, settings.constants):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
-        looked_at = frozenset(signature for each in extra for signature in each.used)
+        theirs = [*extra, *parsed] if encodings else extra
+        looked_at = frozenset(signature for each in theirs for signature in each.used)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))
         is_open = (
             encodings is None

@@ -26,7 +26,9 @@ Signature = tuple[str, int]
 # Every name that begins so is ours, but for the public ones below: see encodings/README.md.
 _PREFIX = "_"
 PUBLIC = frozenset((*FACT_PREDICATES.items(), ("use", 1), ("available", 1)))
-EXTENDED = frozenset((("allergen", 1), ("allowed", 1)))  # to which files of the user's add facts
+EXTENDED = frozenset(
+    (("allergen", 1), ("allowed", 1), ("heats", 1))
+)  # to which files of the user's add facts
 _LOOKED_AT = frozenset((("_by_person", 1),))  # by constraints, under a question that has it
 _TERMS = frozenset(objective.row.term for objective in Objective)
 _PUBLIC_NAMES = frozenset(name for name, _ in (*PUBLIC, *EXTENDED)) | _TERMS

@@ -52,6 +52,7 @@ SUBJECTS: dict[Signature, Subjects] = {
     ("inputs", 2): _NUMBER,
     ("ingredients", 2): _NUMBER,
     ("rate", 2): _NUMBER,
+    ("price", 2): _NUMBER,
 }
 DECISIONS: dict[Signature, Subjects] = {
     ("use", 1): Subjects({}, {0: Subject.UNIT}),

@@ -4,11 +4,13 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import PurePath
 
+from foon_asp.asp.encoding_file import LARGEST
 from foon_asp.asp.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
 from foon_asp.network import Source
 from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.text.exact_price import decimal_text
 
 # What is said of every question, with arity; encodings/README.md gives the meanings. What an encoding of a
 # question reads beside it, its header says.
@@ -28,9 +30,11 @@ FACT_PREDICATES = {
     "goal": 1,
     "utensil": 1,
     "source": 2,
+    "video": 2,
     "inputs": 2,
     "ingredients": 2,
     "rate": 2,
+    "price": 2,
     "risk": 2,
     "cost": 3,
     "optimize": 2,
@@ -39,25 +43,29 @@ FACT_PREDICATES = {
 _Atom = tuple[str, str]  # the name of the predicate, and the arguments as text
 
 _LARGEST = 2**31 - 1  # clingo's numbers wrap silently above
+_PRICE = ("price", 2)
+_OF_RULES = frozenset({("source", 2), ("video", 2), _PRICE})
 
 
 def write_facts(
     problem: Problem,
     units: Sequence[int],
     scales: Scales | None = None,
-    with_sources: bool = False,
+    looked_at: Collection[tuple[str, int]] | None = None,
 ) -> str:
     """Describe the given units of a problem, their object nodes, the kitchen and the goals.
 
     One line per unit and per object node; ids are those of the whole network. ``scales`` give the weights
-    of ``risk/2`` and ``cost/3``; without them there are none. ``with_sources`` adds where each unit was read,
-    which only constraints look at.
+    of ``risk/2`` and ``cost/3``; without them there are none. ``looked_at`` are the predicates that rules of
+    the user's look at, for whom is added where each unit was read and what it costs. Raises
+    :class:`UserError` where a price that they look at cannot be told exactly.
     """
     name = problem.network.object_number
     nodes = described(problem, units)
+    prices = None if looked_at is None else _hundredths(problem, units, looked_at)
     lines = []
     for unit in units:
-        atoms = _unit_atoms(problem, unit, scales, with_sources)
+        atoms = _unit_atoms(problem, unit, scales, prices)
         lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
     for o in nodes:
         atoms = _object_atoms(problem, o)
@@ -73,19 +81,20 @@ def write_facts(
 def write_facts_read(problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]]) -> str:
     """Describe units, their object nodes and the goals as :func:`write_facts` does, by some predicates alone.
 
-    Those that depend on scales are not among them.
+    Those that depend on scales are not among them. Raises :class:`UserError` as that does.
     """
     seen = problem.as_seen or problem
     name = problem.network.object_number
     nodes = described(problem, units)
     lines: list[str] = []
+    prices = _hundredths(problem, units, read) if _OF_RULES & {*read} else None
 
     def add(subject: str, atoms: Iterable[_Atom]) -> None:
         wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
         lines.append(". ".join([subject, *wanted]) + ".")
 
     for unit in units:
-        atoms = _unit_atoms(problem, unit, None, ("source", 2) in read)
+        atoms = _unit_atoms(problem, unit, None, prices)
         if problem.rates is not None:
             number = problem.network.unit_number(unit)
             atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
@@ -117,6 +126,8 @@ def write_open_facts(
     """
     name = problem.network.object_number
     lines = []
+    units = [id_ for kind, id_ in {*closed, *left_open} if kind == "unit"]
+    prices = _hundredths(problem, units, looked_at)
 
     def add(subject: str, is_open: bool, atoms: Iterable[_Atom]) -> None:
         lines.append(f"#external {subject}." if is_open else f"{subject}.")
@@ -127,7 +138,7 @@ def write_open_facts(
     for kind, id_ in sorted({*closed, *left_open}):
         is_open = (kind, id_) in left_open
         if kind == "unit":
-            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scales, with_sources=True))
+            add(_unit_atom(problem, id_), is_open, _unit_atoms(problem, id_, scales, prices))
         elif kind == "kitchen":
             add(f"kitchen({_check(name(id_))})", is_open, ())
         else:
@@ -148,8 +159,10 @@ def _unit_atom(problem: Problem, unit: int) -> str:
     return f"unit({_check(problem.network.unit_number(unit))})"
 
 
-def _unit_atoms(problem: Problem, unit: int, scales: Scales | None, with_sources: bool) -> list[_Atom]:
-    """Give the facts about a unit, except that it is one."""
+def _unit_atoms(
+    problem: Problem, unit: int, scales: Scales | None, prices: Mapping[int, int] | None
+) -> list[_Atom]:
+    """Give the facts about a unit, except that it is one; with ``prices``, also those for rules alone."""
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
     ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
@@ -167,10 +180,48 @@ def _unit_atoms(problem: Problem, unit: int, scales: Scales | None, with_sources
     if scales:
         weights = ((each.row.term, scales.weight(each, [unit])) for each in scales.facts)
         atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]
-    if with_sources:
-        names = source_names(network.sources[unit])
-        atoms += [("source", f"{u},{quote(source)}") for source in names]
+    if prices is not None:
+        sources = network.sources[unit]
+        atoms += [("source", f"{u},{quote(text)}") for text in source_names(sources)]
+        videos = dict.fromkeys(video for source in sources for video in source.videos)
+        atoms += [("video", f"{u},{quote(encodable(video))}") for video in videos]
+        atoms += [("price", f"{u},{prices[unit]}")] if unit in prices else []
     return atoms
+
+
+def _hundredths(
+    problem: Problem, units: Iterable[int], looked_at: Collection[tuple[str, int]]
+) -> dict[int, int]:
+    """Give the price of each unit that has one, in hundredths.
+
+    Where that cannot be told exactly, or a sum could not, there are none, or :class:`UserError` is raised if
+    somebody looks at them.
+    """
+    if problem.unit_prices is None:
+        if _PRICE in looked_at:
+            raise UserError(
+                "a rule looks at price/2, and no prices of units are known: "
+                "give a file of prices, with --unit-prices FILE or in Python load(..., unit_prices=FILE)"
+            )
+        return {}
+    prices = [(unit, price) for unit in units if (price := problem.prices[unit]) is not None]
+    broken = next((each for each in prices if (each[1] * 100).denominator != 1), None)
+    if broken is None and sum(price for _, price in prices) * 100 <= LARGEST:
+        return {unit: int(price * 100) for unit, price in prices}
+    if _PRICE not in looked_at:
+        return {}
+    if broken is None:
+        raise UserError(
+            f"a rule looks at price/2, and the prices of all units together are more than {LARGEST // 100}, "
+            "which is more than clingo's numbers of 32 bits can tell in hundredths: divide all prices by 10"
+        )
+    unit, price = broken
+    text = decimal_text(price) if 10**18 % price.denominator == 0 else f"{price}"
+    raise UserError(
+        f"a rule looks at price/2, and the price {text} of the unit "
+        f"{problem.network.motions[unit]!r} is not a whole number of hundredths: round it, or multiply all "
+        "prices by 10"
+    )
 
 
 def _object_atom(problem: Problem, o: int) -> str:

@@ -69,7 +69,8 @@ class Prepared:
         from foon_asp.asp.facts import write_below, write_facts, write_required  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
-            facts = write_facts(self.problem, self.units, self.scales, with_sources=not self.program.own)
+            looked_at = None if self.program.own else self.program.looked_at
+            facts = write_facts(self.problem, self.units, self.scales, looked_at)
             bounded = self.settings.bounded
             facts += write_below(bounded.below, self.scales) if bounded else ""
             if self.kept is None or self.kept.restriction is None or self.rest:

@@ -1,0 +1,159 @@
+"""The facts that only rules look at: videos and prices, as exact as clingo's numbers allow."""
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import foon_asp
+from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp.bare_program import bare_program
+from foon_asp.asp.constraint import given_constraint
+from foon_asp.asp.encoding_file import LARGEST
+from foon_asp.asp.session import Session
+from foon_asp.errors import UserError
+from foon_asp.network import UnitPrices
+from foon_asp.problem import ContainerRule, Objective, Problem
+from tests import oracle
+from tests.conftest import Cli
+from tests.random_problems import random_problem
+
+TOAST = """//
+O\tbread
+S\tsliced
+M\t{motion}
+O\tbread
+S\ttoasted
+//
+"""
+
+
+def folder(path: Path, *units: tuple[str, str, str]) -> Path:
+    """Write a folder with a network file for each unit: its name, its motion and its source."""
+    path.mkdir(exist_ok=True)
+    for name, motion, source in units:
+        (path / name).write_text(f"# Source: {source}\n{TOAST.format(motion=motion)}")
+    (path / "kitchen.json").write_text('[{"label": "bread", "states": ["sliced"]}]')
+    return path
+
+
+def priced(prices: dict[str, str | Fraction], tmp_path: Path) -> Problem:
+    """Give a problem with a unit for each motion with a price."""
+    data = folder(tmp_path, *((f"{motion}.txt", motion, "v") for motion in ("fry", "grill", "bake")))
+    problem = foon_asp.load(data).problem("bread; toasted")
+    motions = {motion: Fraction(price) for motion, price in prices.items()}
+    return replace(problem, unit_prices=UnitPrices(motions, {}))
+
+
+def asked(problem: Problem, *constraints: str, session: Session | None = None) -> Outcome:
+    settings = Settings(tuple(map(given_constraint, constraints)), session=session)
+    return solve(problem, (Objective.UNITS,), settings)
+
+
+def facts(problem: Problem, *constraints: str) -> str:
+    settings = Settings(tuple(map(given_constraint, constraints)))
+    return bare_program(problem, (Objective.UNITS,), settings, {}).facts
+
+
+def test_a_video_is_a_fact_of_each_unit_that_was_annotated_from_it(tmp_path: Path, cli: Cli) -> None:
+    data = folder(
+        tmp_path / "data",
+        ("one.txt", "fry", "https://a"),
+        ("two.txt", "fry", "https://b"),
+        ("three.txt", "fry", "https://b"),
+        ("four.txt", "grill", "https://b"),
+    )
+    words = ("--data", data, "--goal", "bread; toasted")
+    text = cli("facts", *words, "--rule", ":- use(99).").out
+    assert 'video(0,"https://b").' in text
+    assert 'video(1,"https://a").' in text
+    assert 'video(1,"https://b").' in text
+    assert text.count("video(") == 3
+    assert "video(" not in cli("facts", *words).out
+
+    def code(rule: str) -> int:
+        return cli("solve", *words, "--constraint", rule).code
+
+    assert [code(f"at_least_videos:least_videos={n}") for n in (1, 2, 3)] == [0, 0, 1]
+    motions = cli("solve", *words, "--constraint", "at_least_videos:least_videos=2", "--format", "json").json
+    assert [unit["motion"] for unit in motions["units"]] == ["fry"]
+
+
+def test_prices_are_facts_in_hundredths(tmp_path: Path) -> None:
+    problem = priced({"fry": "2.5", "grill": "0.01"}, tmp_path)
+    text = facts(problem, ":- use(99).")
+    number = {motion: unit for unit, motion in enumerate(problem.network.motions)}
+    assert f"price({number['fry']},250)." in text
+    assert f"price({number['grill']},1)." in text
+    assert text.count("price(") == 2
+    assert "price(" not in facts(problem)
+
+
+@pytest.mark.parametrize(
+    ("most", "motions"), [("1", {"grill"}), ("249", {"grill"}), ("250", {"fry", "grill"}), ("0", set())]
+)
+def test_a_limit_is_met_to_the_hundredth(most: str, motions: set[str], tmp_path: Path) -> None:
+    problem = priced({"fry": "2.5", "grill": "0.01"}, tmp_path)
+    limit = f"at_most_price:max_price={most}"
+    possible = {
+        motion
+        for motion in problem.network.motions
+        if asked(problem, limit, f':- not use(U), unit(U), motion(U,"{motion}").').units is not None
+    }
+    assert possible == motions
+    assert (asked(problem, limit).status is Status.OPTIMAL) == bool(motions)
+
+
+@pytest.mark.parametrize(
+    ("price", "message"),
+    [
+        ("0.125", "the price 0.125 of the unit 'fry' is not a whole number of hundredths"),
+        (Fraction(1, 3), "the price 1/3 of the unit 'fry' is not a whole number of hundredths"),
+        (Fraction(LARGEST, 100), "the prices of all units together are more than 21474836"),
+        (Fraction(10**30), "the prices of all units together are more than 21474836"),
+    ],
+)
+def test_prices_that_cannot_be_told_are_refused_where_they_are_looked_at(
+    price: str | Fraction, message: str, tmp_path: Path
+) -> None:
+    problem = priced({"fry": price, "grill": "0.01"}, tmp_path)
+    for session in (None, Session()):
+        for rule in ("at_most_price:max_price=5", ":- use(U), price(U,N), N > 3."):
+            with pytest.raises(UserError, match=message):
+                asked(problem, rule, session=session)
+    assert "price(" not in facts(problem, ":- use(99).")
+    assert asked(problem, ":- use(99).").status is Status.OPTIMAL
+
+
+def test_the_largest_sum_is_told(tmp_path: Path) -> None:
+    problem = priced({"fry": Fraction(LARGEST - 1, 100), "grill": "0.01"}, tmp_path)
+    assert asked(problem, "at_most_price:max_price=0").status is Status.INFEASIBLE
+    assert asked(problem, f"at_most_price:max_price={LARGEST}").status is Status.OPTIMAL
+
+
+def test_without_prices_a_rule_about_them_is_refused(tmp_path: Path, cli: Cli) -> None:
+    data = folder(tmp_path, ("one.txt", "fry", "v"))
+    ran = cli("solve", "--data", data, "--goal", "bread; toasted", "--constraint", "at_most_price")
+    assert ran.code == 2
+    assert "a rule looks at price/2, and no prices of units are known: give a file of prices" in ran.err
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_limit_on_prices_against_brute_force(seed: int) -> None:
+    problem = random_problem(seed, ContainerRule.STRICT, units=7)
+    motions = sorted(set(problem.network.motions))
+    prices = {motion: Fraction((seed + 3) * place % 11, 4) for place, motion in enumerate(motions)}
+    problem = replace(problem, unit_prices=UnitPrices(prices, {}))
+    session = Session()
+    free = list(oracle.trees(problem))
+    for most in (0, 2, 5):
+        held = [tree for tree in free if sum(prices[unit.motion] for unit in tree) <= most]
+        best = oracle.best(held, problem, ["units"])
+        for kept in (None, session):
+            found = asked(problem, f"at_most_price:max_price={most * 100}", session=kept)
+            assert (found.units is None) == (best is None)
+            if found.units is not None:
+                tree = tuple(map(problem.network.unit, found.units))
+                assert oracle.key(problem, tree, ["units"]) == best
+                assert sum(prices[unit.motion] for unit in tree) <= most
