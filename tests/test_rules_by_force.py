@@ -29,7 +29,7 @@ def _task_tree() -> str:
 def kept(problem: Problem, rules: str, units: Iterable[int]) -> set[Tree] | None:
     """Give all trees that keep to rules, with only some units in the facts; ``None`` for faulty rules."""
     chosen = sorted(units)
-    facts = write_facts(problem, chosen, Scales(problem, chosen), with_sources=True)
+    facts = write_facts(problem, chosen, Scales(problem, chosen), ())
     control = Control(["0", "--project=show"], logger=lambda *_: None)
     try:
         control.add("base", [], f"{_task_tree()}{facts}{rules}#show use/1.\n")
