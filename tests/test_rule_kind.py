@@ -14,14 +14,20 @@ LOCAL, FAR = True, False
 
 # Every ready-made constraint: what its constraints are with constants that are set, and without.
 LIBRARY = {
+    "at_least_videos": ([Kind.DELETING], [Kind.FACT]),
     "at_most_motion": ([Kind.SHRINKING], [Kind.FACT]),
+    "at_most_price": ([Kind.SHRINKING, Kind.DELETING], [Kind.FACT, Kind.FACT]),
     "at_most_units": ([Kind.SHRINKING], [Kind.FACT]),
+    "at_most_utensil_uses": ([Kind.SHRINKING], [Kind.FACT]),
     "at_most_utensils": ([Kind.SHRINKING], [Kind.FACT]),
     "before": ([Kind.SHRINKING], [Kind.FACT]),
     "forbid_ingredient": ([Kind.DELETING, Kind.DELETING, Kind.FACT],) * 2,
     "forbid_motion": ([Kind.DELETING],) * 2,
     "forbid_object": ([Kind.DELETING, Kind.DELETING],) * 2,
     "least_rate": ([Kind.DELETING], [Kind.FACT]),
+    "motion_only_with": ([Kind.DELETING], [Kind.FACT]),
+    "never_heated": ([Kind.DELETING],) * 2,
+    "not_both_motions": ([Kind.SHRINKING],) * 2,
     "only_sources": ([Kind.DELETING],) * 2,
     "require_ingredient": ([Kind.REQUIRING], [Kind.FACT]),
     "require_intermediate": ([Kind.REQUIRING], [Kind.FACT]),
