@@ -50,8 +50,8 @@ cli: asking click_option exit_code held main named_path options output output_fi
 dataset: dataset names paths reading
 document: json_document
 grounding: stated
-network: functional_unit level network node_pattern object_node source spelling task_tree
-    unit_prices
+network: counted functional_unit level network node_pattern object_node source spelling
+    task_tree unit_prices
 problem: containers costs number objective order problem relevance restriction root
 proof: simulation
 questions: answer arguments caller contract docstring index options posing result solve
@@ -59,8 +59,8 @@ reduce: derivation dominance exact_costs forced graph narrow near reduction redu
     upper_bound wide
 report: answer
 text: data_folder diagnostics exact_price goal_name grammar json_fault json_list json_node
-    json_object json_units json_value label_list line listed_unit motion_times object_list
-    plain_file provenance rate_table reader stated_prices table_rows unit_price_list writer
+    json_object json_value label_list line listed_unit motion_times object_list plain_file
+    provenance rate_table reader stated_prices table_rows unit_price_list writer
 """
 ALONE = {"deadline", "errors", "escapes", "resources", "warning"}
 # parameters that the command line has no option for: it has them from elsewhere

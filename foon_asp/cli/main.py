@@ -43,8 +43,6 @@ def cli() -> None:
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with the documented code."""
-    # Networks are many small objects that stay to the end: looking for garbage among them finds none.
-    gc.set_threshold(100_000, 50, 50)
     words = sys.argv[1:] if arguments is None else arguments
     with safe_streams():
         for word in words:

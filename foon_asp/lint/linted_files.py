@@ -12,10 +12,9 @@ from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.dialect import is_object_list
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
-from foon_asp.text.json_units import is_json
 from foon_asp.text.line import Line, LineError
 from foon_asp.text.listed_unit import ListedUnit
-from foon_asp.text.plain_file import split_lines
+from foon_asp.text.plain_file import is_json, split_lines
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 

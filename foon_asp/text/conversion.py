@@ -13,7 +13,7 @@ from foon_asp.text.formatter import format_text
 from foon_asp.text.json_layout import lay_out
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
-from foon_asp.text.json_units import is_json, read_json_units
+from foon_asp.text.json_units import read_json_units
 from foon_asp.text.json_writer import (
     json_motion,
     json_object,
@@ -26,7 +26,7 @@ from foon_asp.text.json_writer import (
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import MotionFields
-from foon_asp.text.plain_file import split_lines
+from foon_asp.text.plain_file import is_json, split_lines
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line

@@ -5,9 +5,8 @@ from enum import StrEnum
 from pathlib import Path
 
 from foon_asp.text.json_list import JsonList
-from foon_asp.text.json_units import is_json
 from foon_asp.text.line import MotionLine, ObjectLine
-from foon_asp.text.plain_file import split_lines
+from foon_asp.text.plain_file import is_json, split_lines
 from foon_asp.text.reader import FoonReader
 
 

@@ -8,9 +8,8 @@ from typing import NamedTuple
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_layout import check_json, lay_out
-from foon_asp.text.json_units import is_json
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine
-from foon_asp.text.plain_file import split_lines
+from foon_asp.text.plain_file import is_json, split_lines
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 

@@ -23,11 +23,6 @@ _LABELS = {"label", "object_label"}
 _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_type", "weight_success"}
 
 
-def is_json(text: str) -> bool:
-    """Whether a text is JSON; no line of FOON text begins with a bracket."""
-    return text[:1_000].lstrip(" \t\r\n")[:1] in {"{", "["}
-
-
 def read_json_units(
     text: str, file: str, diagnostics: list[Diagnostic], lenient: bool
 ) -> Iterator[ListedUnit]:

@@ -7,8 +7,7 @@ from foon_asp.network import NodePattern, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
-from foon_asp.text.json_units import is_json
-from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.plain_file import is_json, read_plain_text
 from foon_asp.text.reader import FoonReader
 
 

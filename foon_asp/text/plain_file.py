@@ -37,6 +37,11 @@ def read_content(file: Path) -> bytes:
         raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
 
 
+def is_json(text: str) -> bool:
+    """Whether a text is JSON; no line of FOON text begins with a bracket."""
+    return text[:1_000].lstrip(" \t\r\n")[:1] in {"{", "["}
+
+
 def split_lines(text: str) -> list[str]:
     """Give the lines of a text without their ends, whatever these are."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

@@ -7,8 +7,6 @@ from typing import NamedTuple, cast
 
 from foon_asp.network import Contents, FunctionalUnit, Network, NetworkBuilder, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.exact_price import read_price
-from foon_asp.text.json_units import is_json, read_json_units
 from foon_asp.text.line import (
     Line,
     LineError,
@@ -19,7 +17,7 @@ from foon_asp.text.line import (
     parse_lines,
 )
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, node_of
-from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.plain_file import is_json, read_plain_text
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.writer import write_line
@@ -166,6 +164,10 @@ class FoonReader:
         return _FileReading(self, text, file).object_blocks()
 
     def _json_units(self, text: str, file: str) -> Iterator[ListedUnit]:
+        # most networks are none
+        from foon_asp.text.exact_price import read_price  # noqa: PLC0415
+        from foon_asp.text.json_units import read_json_units  # noqa: PLC0415
+
         for unit in read_json_units(text, file, self.diagnostics, self.lenient):
             if unit.price:
                 self.prices.add(_of(unit), read_price(unit.price), unit.motion_source)

@@ -85,7 +85,7 @@ def test_an_input_error_shows_the_first_errors_and_counts_the_rest(count: int, s
     assert lines[:shown] == [str(d) for d in found[:shown]]
     assert len(lines) == shown + bool(rest)
     if rest:
-        assert lines[-1].startswith(f"... and {rest} more errors")
+        assert lines[-1].startswith(f"... and {rest} more error{'s' * (rest > 1)}; ")
 
 
 def test_a_fix_is_no_part_of_what_is_shown() -> None:
