@@ -12,6 +12,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.deadline import Deadline
+from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
 
@@ -155,9 +156,17 @@ def prepare(
     """
     asked = levels(tuple(objectives))
     problem.require_known_for(asked)
+    for objective in program.named.intersection(asked):
+        raise UserError(
+            f"found #const {objective} in a constraint or an encoding, but that is the name of a measure: "
+            "give one of them another name"
+        )
     deadline = settings.begun
     first = Prepared(problem, asked, settings, deadline, program)
     try:
+        if problem.measures:
+            with deadline.watched("measuring units"):
+                problem.apply_measures(deadline)
         spare = False
         if program.understood and settings.reductions and not for_sale:
             first, spare = _applied(first, program.understood)
