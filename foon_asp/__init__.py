@@ -33,8 +33,10 @@ if TYPE_CHECKING:
     from foon_asp.network import TaskTree as TaskTree
     from foon_asp.problem import ContainerRule as ContainerRule
     from foon_asp.problem import Costs as Costs
+    from foon_asp.problem import Fate as Fate
     from foon_asp.problem import Objective as Objective
     from foon_asp.problem import Problem as Problem
+    from foon_asp.problem import UsedUp as UsedUp
     from foon_asp.proof import Simulation as Simulation
     from foon_asp.proof import Verdict as Verdict
     from foon_asp.proof.verify import RefusedError as RefusedError
@@ -79,6 +81,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.solve_soft import SoftAnswer as SoftAnswer
     from foon_asp.questions.solve_soft import solve_soft as solve_soft
     from foon_asp.questions.tree import Tree as Tree
+    from foon_asp.questions.units import Units as Units
+    from foon_asp.questions.units import units as units
     from foon_asp.questions.verify import VerifiedCertificate as VerifiedCertificate
     from foon_asp.questions.verify import verify as verify
     from foon_asp.questions.why_not import Explanation as Explanation
@@ -99,7 +103,7 @@ _ROOMS = {
     "asp": ("Outcome", "Reporter", "Status"),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
-    "problem": ("ContainerRule", "Costs", "Objective", "Problem"),
+    "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
     "proof": ("Simulation", "Verdict"),
     "proof.verify": ("RefusedError",),
     "text.line": ("parse_node",),

@@ -37,11 +37,18 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
         ("--goal", "apple pie"),
         ("--goal", "ice", "--objective", "attempts,inputs+ingredients,kitchen"),
         ("--goal", "whipped cream", "--time-limit", "0"),
+        ("--goal", "ice", "--items", "used-up"),
     ],
     "optima": [("--goal", "ice"), ("--goal", "tea", "--objective", "kitchen,success", "--level", "2")],
     "search": [("bfs", "--goal", "ice"), ("bfs", "--goal", "macaroni"), ("dfs", "--goal", "apple pie")],
     "compare": [("--goal", "ice"), ("--goal", "apple pie", "--level", "2")],
-    "check": [("TORN", "--goal", "ice"), ("TREE", "--goal", "tea"), ("TREE", "--goal", "ice")],
+    "check": [
+        ("TORN", "--goal", "ice"),
+        ("TREE", "--goal", "tea"),
+        ("TREE", "--goal", "ice"),
+        ("TORN", "--goal", "ice", "--items", "used-up"),
+        ("TREE", "--goal", "ice", "--items", "used-up"),
+    ],
     "verify": [("PROOF",), ("FORGED",)],
     "why-not": [("--goal", "apple pie"), ("--goal", "ice", *FORBID)],
     "shopping-list": [("--goal", "apple pie"), ("--goal", "ice")],
@@ -62,6 +69,7 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
     ],
     "read-plan": [("PLAN", "--map", "MAP")],
     "batch": [("QUESTIONS", "--results", "ROWS")],
+    "units": [("--unit", "3", "--explain-items"), ("--unit", "3")],
     "stats": [()],
     "facts": [("--goal", "ice"), ("--goal", "ice", *SOFT[:2])],
     "constraints": [()],
@@ -262,7 +270,7 @@ LOOSE = {
     "loss",
     "costs",
 }
-SOME = {"stands_for", "penalty", "soft_constraints", "cross_check"}
+SOME = {"stays", "why", "replay", "stands_for", "penalty", "soft_constraints", "cross_check"}
 
 
 def changed(document: Any) -> Iterator[Any]:

@@ -15,9 +15,9 @@ PAGES = (
     "README.md",
     pytest.param("docs/questions.md", marks=pytest.mark.slow),
     "docs/writing-constraints.md",
-    "docs/writing-objectives.md",
     "docs/json.md",
     "docs/pddl.md",
+    "docs/plans.md",
 )
 # A block with a file name is a file; one without is a session.
 FENCE = re.compile(r"^```(?:[\w-]* )?(\S+\.\w+)?\n((?:.*\n)*?)```$", re.MULTILINE)

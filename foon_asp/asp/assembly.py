@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from foon_asp.asp.constraint import Constraint, LibraryUse, find_constraint
-from foon_asp.asp.own_encodings import ENCODING_FILES, exact_success, is_own
+from foon_asp.asp.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import UserError
@@ -42,13 +42,14 @@ _RESERVED = (
 _OF_ONE_SEARCH = ("optimize", 2)
 
 
-def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
+def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = False) -> Program:
     """Find and check the encodings that the settings ask for.
 
+    ``used_up`` asks for those of plans in which items are used up.
     Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that
     no encoding has and for clingo options that would change what an answer means.
     """
-    ours = encodings_folder()
+    ours = encodings_folder() / USED_UP if used_up else encodings_folder()
     folder = _find_encodings(settings.encodings, ours)
     base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
     added = tuple(dict.fromkeys(map(find_constraint, settings.constraints)))
@@ -66,7 +67,7 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         rules += bounded.rules
     constants: list[str] = []
     looked_at: frozenset[tuple[str, int]] = frozenset()
-    text, is_open, named = "", False, frozenset[str]()
+    text, is_open = "", False
     understood: Rules | None = None
     replaced = not all(map(is_own, base))
     endless = replaced or not all(map(_is_own, added))
@@ -92,7 +93,6 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
         theirs = [*extra, *parsed] if encodings else extra
         looked_at = frozenset(signature for each in theirs for signature in each.used)
-        named = frozenset(name for each in (*parsed, *extra) for name in each.constants)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))
         is_open = (
             encodings is None
@@ -127,7 +127,6 @@ def assemble(settings: Settings, warn: Callable[[str], None]) -> Program:
         encodings=encodings,
         ours=(*base, *questions),
         understood=understood,
-        named=named,
     )
 
 

@@ -42,6 +42,10 @@ class RateScale(NamedTuple):
                 total[factor] += exponent
         return total
 
+    def weigh(self, product: Fraction) -> int:
+        """Give ``floor(scale * -ln product)`` of a product of rates: no plan of that success weighs more."""
+        return _weight(product, self.scale)
+
     def success_bound(self, weight: int) -> Fraction:
         """Bound from above the success of every tree whose weights sum to at least ``weight``.
 

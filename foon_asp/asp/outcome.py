@@ -29,11 +29,13 @@ class Proof(StrEnum):
     """What proves a claim.
 
     ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search; see
-    docs/reductions.md. ``certificate``: a certificate that was verified without either.
+    docs/reductions.md. ``counts``: where items are used up, no whole counts of executions cost less; see
+    docs/plans.md. ``certificate``: a certificate that was verified without either.
     """
 
     SOLVER = "solver"
     CUTS = "cuts"
+    COUNTS = "counts"
     CERTIFICATE = "certificate"
 
 

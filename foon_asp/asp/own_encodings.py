@@ -12,6 +12,8 @@ from foon_asp.errors import UserError
 from foon_asp.resources import encodings_folder
 
 ENCODING_FILES = ("task_tree.lp", "objectives.lp", "show.lp")
+USED_UP = "used_up"
+"""The folder of the encodings of plans in which items are used up."""
 _DIGESTS = "SHA256SUMS"
 
 

@@ -24,8 +24,7 @@ def answer_row(asker: Asker, asked: Asked, memory_limit: int | None = None) -> R
         with deadline.watched("reading", late=True):
             problem = asker.problem(asked)
         settings = Settings(deadline=deadline)
-        objectives = parse_objectives([asked.objective], problem.measures)
-        row = _answered(asked, solve(problem, objectives, settings))
+        row = _answered(asked, solve(problem, parse_objectives([asked.objective]), settings))
     except LimitError as limit:
         row = {**failed_row(asked, f"stopped at {limit.stopped}"), "status": "unknown"}
     except UserError as error:

@@ -18,7 +18,8 @@ from foon_asp.cli.output import console, write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
-from foon_asp.questions.contract import Part, Question
+from foon_asp.problem import ITEMS
+from foon_asp.questions.contract import Part, Question, not_built
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 
@@ -34,6 +35,9 @@ def question_command(verb: str) -> click.Command:
     command = options.data_options(command)
     for option in _format_options(question):
         command = option(command)
+    names = {option.name for option in question.options}
+    if "containers" in names and "items" not in names:
+        command = _without_used_up(verb)(command)
     own = [o for o in question.options if not (o.name in _LIMITS and o.part is Part.COMMAND)]
     if len(own) < len(question.options):
         command = options.limit_options(command)
@@ -41,6 +45,23 @@ def question_command(verb: str) -> click.Command:
         command = click_option(each)(command)
     help_ = f"{INDEX[verb].line}\n\n{textwrap.dedent(question.help).strip()}"
     return click.command(verb, help=help_)(command)
+
+
+def _without_used_up(verb: str) -> Callable[[Command], Command]:
+    """Make a hidden ``--items`` that says by the name of the verb that items cannot be used up."""
+
+    def refuse(_: click.Context, __: click.Parameter, value: str) -> None:
+        if value != "lasting":
+            raise not_built(verb)
+
+    return click.option(
+        "--items",
+        type=click.Choice(ITEMS),
+        default="lasting",
+        hidden=True,
+        expose_value=False,
+        callback=refuse,
+    )
 
 
 def _answering(question: Question) -> Callable[..., ExitCode]:

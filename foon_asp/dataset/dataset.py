@@ -1,24 +1,22 @@
 """Data that was read, and the problems that are posed of it."""
 
-import copy
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from types import MappingProxyType
 
-from foon_asp.asp.measure import read_measures
 from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_ids
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, UnitPrices, counted, pattern_at_level
 from foon_asp.problem import (
     Changes,
-    Measure,
     Names,
     Number,
+    Origin,
     Problem,
     UnitPricesNamed,
     Unpriced,
+    UsedUp,
     container_rule,
     count_unpriced,
 )
@@ -28,8 +26,14 @@ from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 
 
-def ask(data: Data, goals: Sequence[int], containers: str, origin: "Dataset") -> Problem:
-    """Ask for goals of the network under a container rule, of data that belong to others."""
+def ask(
+    data: Data,
+    goals: Sequence[int],
+    containers: str,
+    origin: Origin | None = None,
+    items: UsedUp | None = None,
+) -> Problem:
+    """Ask for goals of the network under a container rule."""
     return Problem(
         data.network,
         data.kitchen,
@@ -39,7 +43,7 @@ def ask(data: Data, goals: Sequence[int], containers: str, origin: "Dataset") ->
         container_rule(containers),
         origin=origin,
         unit_prices=data.unit_prices,
-        measures=origin.measures,
+        items=items,
     )
 
 
@@ -50,10 +54,8 @@ class Dataset:
     it. ``listed`` are the entries of the goals file, ``names`` what goals are looked up in, ``rates`` the
     success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
     rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words; ``has_kitchen`` says
-    that a kitchen was given, even an empty one. ``measures`` are the user's own, by name.
+    that a kitchen was given, even an empty one.
     """
-
-    measures: Mapping[str, Measure] = MappingProxyType({})
 
     def __init__(
         self, data: Data, read_seconds: float, remarks: tuple[str, ...] = (), has_kitchen: bool = True
@@ -112,16 +114,8 @@ class Dataset:
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Give the same data with the kitchen of another file."""
         kitchen = kitchen_nodes(self.data.network, items)
-        return self._varied(self.data._replace(kitchen=kitchen, kitchen_items=tuple(items)))
-
-    def _varied(self, data: Data) -> "Dataset":
-        return Dataset(data, self.read_seconds).measured(self.measures)
-
-    def measured(self, measures: Mapping[str, Measure]) -> "Dataset":
-        """Give the same data with other measures of the user's."""
-        other = copy.copy(self)
-        other.measures = measures
-        return other
+        data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items))
+        return Dataset(data, self.read_seconds)
 
     def varied(
         self,
@@ -136,7 +130,7 @@ class Dataset:
         kitchen = self._data.kitchen if only is None else only
         items = self._data.kitchen_items if only is None else ()
         at_hand = frozenset(kitchen).union(more).difference(less)
-        return self._varied(self._data._replace(kitchen=at_hand, kitchen_items=items))
+        return Dataset(self._data._replace(kitchen=at_hand, kitchen_items=items), self.read_seconds)
 
     def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
         """Give the same data with some success rates and some prices changed."""
@@ -146,14 +140,12 @@ class Dataset:
         changed = changed_rates(self._data.rates, rates)
         prices = changed_prices(self._data.unit_prices, unit_prices, self.motions, network)
         data = self._data._replace(rates=None if changed is None else dict(changed), unit_prices=prices)
-        return self._varied(data)
+        return Dataset(data, self.read_seconds)
 
     def vary(self, changes: Changes) -> "Dataset":
         """Give the same data with another kitchen, other rates or prices."""
-        kitchen, adding, without, rates, unit_prices, measures = changes
+        kitchen, adding, without, rates, unit_prices = changes
         dataset = self.valued(rates, unit_prices)
-        if measures is not None:
-            dataset = dataset.measured(read_measures(measures))
         if kitchen is None and not adding and not without:
             return dataset
         only = None
@@ -177,19 +169,20 @@ class Dataset:
         """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
-        return _with_own_rates(dataset.problem(ids, containers or problem.containers), problem)
+        posed = dataset.problem(ids, containers or problem.containers, items=problem.items)
+        return _with_own_rates(posed, problem)
 
     def posed_whole(self, problem: Problem) -> Problem:
         """Pose a problem of these data over the whole network."""
         dataset = self.with_kitchen_of(problem)
-        posed = dataset.problem(_whole_goals(problem), problem.containers, everything=True)
+        posed = dataset.problem(_whole_goals(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
 
     def posed_about(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
         """Pose a problem of these data over what its goals and these units are made of."""
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.part(_whole_goals(problem), tree=units)
-        return _with_own_rates(ask(data, goals, problem.containers, dataset), problem)
+        return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
 
     def named_goals(self, names: Names) -> tuple[int, ...]:
         """Find goals that Python names, by id in the whole network, each once.
@@ -227,12 +220,19 @@ class Dataset:
             if price is None
         )
 
-    def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
+    def problem(
+        self,
+        goals: Sequence[int],
+        containers: str,
+        everything: bool = False,
+        items: UsedUp | None = None,
+    ) -> Problem:
         """Ask for goals, which are those of the problem in the same order, under a container rule.
 
-        ``everything`` asks for units that no goal needs to be there too.
+        ``everything`` asks for units that no goal needs to be there too. ``items`` says that items are used
+        up, if they are.
         """
-        return ask(self.data, goals, containers, self)
+        return ask(self.data, goals, containers, self, items)
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()

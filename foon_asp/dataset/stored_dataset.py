@@ -11,7 +11,7 @@ from foon_asp.dataset.dataset import Dataset, ask, left_out
 from foon_asp.dataset.names import changed_prices, changed_rates
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, UnitPrices, network_at_level, pattern_at_level
-from foon_asp.problem import Number, Problem, UnitPricesNamed, Unpriced, container_rule, require_rates
+from foon_asp.problem import Number, Problem, UnitPricesNamed, Unpriced, UsedUp, container_rule, require_rates
 from foon_asp.store.store import Store
 from foon_asp.text.data_folder import Data, DataFiles, kitchen_item_warning, kitchen_nodes, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic, summarize
@@ -115,8 +115,7 @@ class StoredDataset(Dataset):
     def with_kitchen(self, items: Sequence[ListedObject]) -> Dataset:
         """Give the same store with the kitchen of another file."""
         began = time.perf_counter()
-        beside = self.listed, self.rates, self.utensils, self._prices
-        return StoredDataset(self._store, items, *beside, began).measured(self.measures)
+        return StoredDataset(self._store, items, self.listed, self.rates, self.utensils, self._prices, began)
 
     def varied(
         self,
@@ -201,13 +200,26 @@ class StoredDataset(Dataset):
         ours = {o for o in numbers if self._at_hand(o)}
         return frozenset(theirs - ours), frozenset(ours - theirs)
 
-    def problem(self, goals: Sequence[int], containers: str, everything: bool = False) -> Problem:
+    def problem(
+        self,
+        goals: Sequence[int],
+        containers: str,
+        everything: bool = False,
+        items: UsedUp | None = None,
+    ) -> Problem:
         """Ask for goals; what no tree for them needs is not read, unless everything is asked for."""
         if everything:
-            return ask(self.data, goals, containers, self)
+            return ask(self.data, goals, containers, self, items)
         began = time.perf_counter()
-        cone = self._store.cone(goals, container_rule(containers), self.utensils, self._at_hand)
-        problem = ask(self._part(cone), _places(cone, goals), containers, self)
+        # of what may run out, more may have to be made
+        counted = {self._store.object_id(node) for node in (items.stock if items else ())}
+        cone = self._store.cone(
+            goals,
+            container_rule(containers),
+            self.utensils,
+            (lambda o: o not in counted and self._at_hand(o)) if counted else self._at_hand,
+        )
+        problem = ask(self._part(cone), _places(cone, goals), containers, self, items)
         self.read_seconds += time.perf_counter() - began
         return problem
 

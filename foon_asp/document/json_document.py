@@ -20,13 +20,17 @@ def document(
     head: Json = {}
     if problem is not None:
         network = problem.network
-        head = head_json(goals_json(network, problem.goals), problem.containers, network.level, objectives)
+        goals = goals_json(network, problem.goals)
+        items = "lasting" if problem.items is None else "used-up"
+        head = head_json(goals, problem.containers, network.level, objectives, items)
     return {"schema": schema_name(kind), **head, **fields}
 
 
-def head_json(goals: list[Json], containers: str, level: int, objectives: Iterable[str]) -> Json:
+def head_json(
+    goals: list[Json], containers: str, level: int, objectives: Iterable[str], items: str = "lasting"
+) -> Json:
     """Give what every document about goals begins with."""
-    head = {"goals": goals, "containers": str(containers), "items": "lasting", "level": level}
+    head = {"goals": goals, "containers": str(containers), "items": items, "level": level}
     return {**head, "objectives": list(map(str, objectives))}
 
 
@@ -90,8 +94,10 @@ def steps_json(problem: Problem, units: Collection[int], bought: Collection[int]
     steps = []
     for step, (unit, origins) in enumerate(input_origins(problem, units, bought), 1):
         shown = unit_json(network, unit)
-        for node, origin in zip(shown["inputs"], origins, strict=True):
+        for node, o, origin in zip(shown["inputs"], network.inputs[unit], origins, strict=True):
             node["from"] = origin
+            if problem.items is not None:
+                node["stays"] = o not in problem.flows[unit].uses
         for node, o in zip(shown["outputs"], network.outputs[unit], strict=True):
             node["made"] = o in problem.gives[unit]
         steps.append({"step": step, **shown})
@@ -106,6 +112,9 @@ def input_origins(
     ``bought`` are the items of the kitchen, by id, that were not there before. In a list that does not
     execute as it is, a needed input may be made by a later step only, or by none.
     """
+    if problem.items is not None:
+        yield from _copies_origins(problem, units)
+        return
     makers: dict[int, list[int]] = {}
     for step, unit in enumerate(units, 1):
         for o in problem.gives[unit]:
@@ -124,6 +133,28 @@ def input_origins(
             else:
                 later = next((maker for maker in makes if maker > step), 0)
                 origins.append({"later_step": later} if later else {"missing": True})
+        yield unit, origins
+
+
+def _copies_origins(problem: Problem, plan: Collection[int]) -> Iterator[tuple[int, list[Json]]]:
+    """Say the same of a plan in which items are used up: each input is the oldest copy that there is."""
+    copies: dict[int, list[Json]] = {}
+    for o in problem.kitchen:
+        copies[o] = [{"kitchen": True}] * (problem.stock_of(o) or 0)
+    for step, unit in enumerate(plan, 1):
+        asks, uses, adds = problem.flows[unit]
+        origins: list[Json] = []
+        for o in problem.network.inputs[unit]:
+            if o in problem.endless:
+                origins.append({"kitchen": True})
+            elif o not in asks:
+                origins.append({"implied": True})
+            elif not copies.get(o):
+                origins.append({"missing": True})
+            else:
+                origins.append(copies[o].pop(0) if o in uses else copies[o][0])
+        for o in adds:
+            copies.setdefault(o, []).append({"step": step})
         yield unit, origins
 
 
@@ -163,7 +194,7 @@ def costs_json(costs: Costs | None) -> Json | None:
     """Give all measures of a tree by objective, ``None`` where nothing is known, and its ingredients."""
     if costs is None:
         return None
-    figures = figures_json({**dict.fromkeys(Objective), **costs.measures})
+    figures = figures_json({each: costs.measures.get(each) for each in Objective})
     return figures | {"ingredients": costs.ingredients}
 
 

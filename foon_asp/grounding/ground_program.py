@@ -81,7 +81,8 @@ class GroundProgram:
         def model(model: Model) -> bool:
             try:
                 atoms = {name: _numbers(model, name, arity) for name, arity in predicates}
-                on_tree(Heard(_used(model), tuple(model.cost), atoms))
+                rows = {name: _rows(model, name, arity) for name, arity in predicates}
+                on_tree(Heard(_used(model), tuple(model.cost), atoms, rows))
             except Exception as error:
                 faults.append(error)
             return not faults
@@ -121,6 +122,15 @@ def _used(model: Model) -> frozenset[int]:
                 raise UserError(f"the encodings made {symbol}, expected use(U) with the number of a unit")
             units.add(argument.number)
     return frozenset(units)
+
+
+def _rows(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
+    atoms = (symbol.arguments for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
+    return frozenset(
+        tuple(argument.number for argument in arguments)
+        for arguments in atoms
+        if all(argument.type is SymbolType.Number for argument in arguments)
+    )
 
 
 def _numbers(model: Model, name: str, arity: int) -> Counter[int]:

@@ -72,7 +72,7 @@ class Grounded:
         began = time.perf_counter()
 
         def tree(heard: Heard) -> None:
-            result.units, result.cost, result.atoms = heard
+            result.units, result.cost, result.atoms, result.rows = heard
             if on_tree:
                 on_tree(heard.units)
 

@@ -17,11 +17,15 @@ class ProgramError(Exception):
 
 
 class Heard(NamedTuple):
-    """An answer: the units in use, the cost vector, and counts of the atoms that were asked for."""
+    """An answer: the units in use, the cost vector, and counts of the atoms that were asked for.
+
+    ``rows`` has the arguments of those atoms that have numbers only.
+    """
 
     units: frozenset[int]
     cost: tuple[int, ...]
     atoms: dict[str, Counter[int]]
+    rows: dict[str, frozenset[tuple[int, ...]]]
 
 
 @dataclass
@@ -32,7 +36,8 @@ class Run:
     wraps at 32 bits. ``exhausted`` says that the search space was, so that
     the answer is optimal, or that there is none. ``lower`` holds the proved lower bound of each priority,
     highest first, as far as known. ``atoms`` says for each predicate that was
-    asked for how many of its atoms in the answer begin with each number.
+    asked for how many of its atoms in the answer begin with each number, and ``rows`` what the arguments are
+    of those that have numbers only.
     """
 
     units: frozenset[int] | None = None
@@ -40,5 +45,6 @@ class Run:
     exhausted: bool = False
     lower: list[int] = field(default_factory=list)
     atoms: dict[str, Counter[int]] = field(default_factory=dict)
+    rows: dict[str, frozenset[tuple[int, ...]]] = field(default_factory=dict)
     ground_seconds: float = 0.0
     solve_seconds: float = 0.0

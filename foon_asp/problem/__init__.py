@@ -7,6 +7,10 @@ from foon_asp.problem.containers import given_outputs as given_outputs
 from foon_asp.problem.containers import needed_inputs as needed_inputs
 from foon_asp.problem.costs import Costs as Costs
 from foon_asp.problem.costs import tree_costs as tree_costs
+from foon_asp.problem.items import ITEMS as ITEMS
+from foon_asp.problem.items import Fate as Fate
+from foon_asp.problem.items import Flow as Flow
+from foon_asp.problem.items import UsedUp as UsedUp
 from foon_asp.problem.number import Number as Number
 from foon_asp.problem.number import exact as exact
 from foon_asp.problem.number import success_rate as success_rate
@@ -20,7 +24,6 @@ from foon_asp.problem.objective import multiplies as multiplies
 from foon_asp.problem.objective import parse_objectives as parse_objectives
 from foon_asp.problem.order import executable_order as executable_order
 from foon_asp.problem.problem import Changes as Changes
-from foon_asp.problem.problem import Measure as Measure
 from foon_asp.problem.problem import Names as Names
 from foon_asp.problem.problem import Origin as Origin
 from foon_asp.problem.problem import Problem as Problem

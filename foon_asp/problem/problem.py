@@ -4,11 +4,9 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree, UnitPrices
 from foon_asp.problem.containers import (
@@ -18,6 +16,7 @@ from foon_asp.problem.containers import (
     network_sides,
 )
 from foon_asp.problem.costs import Costs, tree_costs
+from foon_asp.problem.items import Flow, UsedUp
 from foon_asp.problem.number import Number
 from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
@@ -37,20 +36,6 @@ class Unpriced(NamedTuple):
     source: Source
 
 
-class Measure(Protocol):
-    """A measure of the user's own: rules that say what each unit costs."""
-
-    @property
-    def text(self) -> str:
-        """The rules."""
-
-    def costs(self, problem: "Problem", deadline: Deadline | None = None) -> Sequence[int | Fraction]:
-        """Give what each unit of a problem costs, exactly and never below 0.
-
-        Raises :class:`UserError` for rules that give a unit two costs, or none that is a number.
-        """
-
-
 class Changes(NamedTuple):
     """What varies of the data that a problem was posed of; see :meth:`foon_asp.Foon.vary`."""
 
@@ -59,7 +44,6 @@ class Changes(NamedTuple):
     without: Names = ()
     rates: Mapping[str, Number] | None = None
     unit_prices: UnitPricesNamed | None = None
-    measures: "str | PathLike[str] | Iterable[str | PathLike[str]] | None" = None
 
 
 class Origin(Protocol):
@@ -90,10 +74,10 @@ class Problem:
     ``containers`` is about. ``own_rates`` has, by id, the rates of units that differ from that of their
     motion; :meth:`rate` gives the rate of any unit. ``unit_prices`` are the prices of units, or ``None``;
     :meth:`price` gives that of a unit. For a store, ``network`` is the part that can matter for the goals.
-    ``measures`` are those of the user's own, by the name of the objective; :meth:`measure` gives what a unit
-    costs by one. ``origin`` is the data that it was made from, or ``None`` for a problem made by hand.
-    ``as_seen`` is the problem whose rates the user's rules look at, if others are used. ``restriction`` is
-    what rules leave of the network, for this question only: a variation of it has to find its own.
+    ``origin`` is the data that it was made from, or ``None`` for a problem made by hand. ``as_seen`` is the
+    problem whose rates the user's rules look at, if others are used. ``restriction`` is what rules leave of
+    the network, for this question only: a variation of it has to find its own. ``items`` says that items are
+    used up, and which; ``None`` if they last.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -112,7 +96,7 @@ class Problem:
     as_seen: "Problem | None" = field(default=None, kw_only=True)
     unit_prices: UnitPrices | None = field(default=None, kw_only=True)
     restriction: Restriction | None = field(default=None, kw_only=True)
-    measures: Mapping[str, Measure] = field(default_factory=dict, kw_only=True)
+    items: UsedUp | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
@@ -169,11 +153,11 @@ class Problem:
         without: Names = (),
         rates: Mapping[str, Number] | None = None,
         unit_prices: UnitPricesNamed | None = None,
-        measures: str | PathLike[str] | Iterable[str | PathLike[str]] | None = None,
     ) -> "Problem":
-        """Give the same problem with other goals, container rule, kitchen, rates, prices or measures.
+        """Give the same problem with other goals, another container rule, kitchen, rates or prices.
 
         Nothing is read or indexed again, except that a store is read as far as the new problem needs more.
+        Whether items are used up stays as it is.
 
         Parameters:
             goals: The new goals: one object node or several, by name or as :class:`ObjectNode`.
@@ -184,7 +168,6 @@ class Problem:
                 it.
             rates: New success rates of some motions, above 0 and at most 1.
             unit_prices: New prices, from 0, of motions by name and of single units.
-            measures: All measures of your own: files with rules for what units cost, or the rules themselves.
 
         Raises:
             UserError: for a name that means no object node or several, a value out of range, or a problem
@@ -192,7 +175,7 @@ class Problem:
         """
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
-        changes = Changes(kitchen, adding, without, rates, unit_prices, measures)
+        changes = Changes(kitchen, adding, without, rates, unit_prices)
         return self.origin.posed_anew(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
@@ -207,7 +190,8 @@ class Problem:
     @property
     def conditions(self) -> str:
         """What every claim about this question holds under, in a few words: ``strict containers``."""
-        return conditions(self.containers, self.network.level)
+        said = conditions(self.containers, self.network.level)
+        return said if self.items is None else f"{said}, items used up"
 
     @cached_property
     def needs(self) -> tuple[tuple[int, ...], ...]:
@@ -228,6 +212,50 @@ class Problem:
         makers = network_makers(self.network, self.containers, self.utensils)
         return makers if self.restriction is None else self.restriction.makers(makers)
 
+    @cached_property
+    def flows(self) -> tuple[Flow, ...]:
+        """For each unit, what it asks for, uses up and adds; where items last, it uses up nothing."""
+        items, network = self.items, self.network
+        if items is None:
+            return tuple(Flow(needs, (), gives) for needs, gives in zip(self.needs, self.gives, strict=True))
+        return tuple(
+            items.flow(network, unit, self.needs[unit], self.gives[unit], self.utensils)
+            for unit in range(len(network))
+        )
+
+    def stock_of(self, o: int) -> int | None:
+        """Give how many copies of a kitchen item there are, ``None`` where it never runs out.
+
+        Parameters:
+            o: The id of the object node.
+        """
+        return None if self.items is None else self.items.stock.get(self.network.objects[o])
+
+    @cached_property
+    def endless(self) -> frozenset[int]:
+        """The ids of the object nodes that never run out: where items last, all of the kitchen."""
+        return frozenset(o for o in self.kitchen if self.stock_of(o) is None)
+
+    def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
+        """Give how many copies of each kitchen item that may run out a plan cannot do without.
+
+        Parameters:
+            plan: The ids of the units, in the order of execution.
+        """
+        taken = dict.fromkeys(self.kitchen - self.endless, 0)
+        made = dict.fromkeys(taken, 0)
+        for unit in plan:
+            asks, uses, adds = self.flows[unit]
+            for o in taken.keys() & asks:
+                taken[o] = max(taken[o], 1 - made[o])
+            for o in made.keys() & uses:
+                made[o] -= 1
+            for o in made.keys() & adds:
+                made[o] += 1
+        for o in taken.keys() & self.goals:
+            taken[o] = max(taken[o], 1 - made[o])
+        return taken
+
     @property
     def targets(self) -> tuple[int, ...]:
         """What a tree has to make: the goals, and one node more for each set that a restriction requires."""
@@ -244,15 +272,8 @@ class Problem:
             objectives: The objectives.
 
         Raises:
-            UserError: if rates, prices or the rules of a measure are missing, or if a rate is 0 and an
-                objective has no value then.
+            UserError: if rates or prices are missing, or if a rate is 0 and an objective has no value then.
         """
-        for each in objectives:
-            if each.row.needs is Known.MEASURES and each not in self.measures:
-                raise UserError(
-                    f"the objective {each} needs the rules of its measure: "
-                    "give them with --measure FILE or in Python load(..., measures=FILE)"
-                )
         by_rates = [each for each in objectives if each.row.needs is Known.RATES]
         sums = [str(each) for each in by_rates if not each.row.multiplies]
         if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
@@ -309,43 +330,6 @@ class Problem:
             raise ValueError(f"no price of unit {unit} is known")
         return price
 
-    def measure(self, name: str, unit: int) -> int | Fraction:
-        """Give what a unit costs by a measure of the user's own.
-
-        Parameters:
-            name: The name of the measure.
-            unit: The id of the unit.
-
-        Raises:
-            ValueError: if there is no such measure.
-            UserError: if its rules are wrong.
-        """
-        return self._costs_by(name)[unit]
-
-    @cached_property
-    def _known_costs(self) -> dict[str, Sequence[int | Fraction]]:
-        return {}  # by measure
-
-    def _costs_by(self, name: str) -> Sequence[int | Fraction]:
-        """Give what each unit costs by a measure, worked out when it is first asked for."""
-        if name not in self.measures:
-            raise ValueError(f"no measure {name} is known")
-        self.apply_measures()
-        return self._known_costs[name]
-
-    def apply_measures(self, deadline: Deadline | None = None) -> None:
-        """Work out what units cost by the measures, unless it is known.
-
-        Parameters:
-            deadline: The limits.
-
-        Raises:
-            UserError: if rules are wrong.
-            KeyboardInterrupt: at a limit.
-        """
-        for name in self.measures.keys() - self._known_costs.keys():
-            self._known_costs[name] = self.measures[name].costs(self, deadline)
-
     @cached_property
     def unpriced(self) -> Sequence[Unpriced]:
         """The units that have no price, by motion: of a store, those of all of it."""
@@ -378,18 +362,22 @@ class Problem:
         return TaskTree(tuple(self.network.unit(unit) for unit in units))
 
     def costs(self, units: Iterable[int]) -> Costs:
-        """Compute what a set of units costs; each unit counts once.
+        """Compute what a tree or a plan costs.
+
+        Each unit of a tree counts once. Where items are used up, each execution counts, and so does each copy
+        that cannot be done without of kitchen items that may run out.
 
         Parameters:
-            units: The ids of the units.
+            units: The ids of the units; of a plan in the order of execution, with repeats.
         """
-        chosen = sorted(set(units))
-        taken = {o for unit in chosen for o in self.needs[unit] if o in self.kitchen}
-        known = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
+        chosen = sorted(set(units)) if self.items is None else list(units)
+        taken = len({o for unit in chosen for o in self.needs[unit] if o in self.endless})
+        if self.items is not None:
+            taken += sum(self.copies_taken(chosen).values())
+        known = {Known.RATES} if self.rates is not None else set()
         if self.unit_prices is not None and all(self.prices[unit] is not None for unit in chosen):
             known.add(Known.PRICES)
-        more = map(Objective.of_measure, self.measures)
-        return tree_costs(list(map(self.measured, chosen)), len(taken), known, more)
+        return tree_costs(list(map(self.measured, chosen)), taken, known)
 
     def measured(self, unit: int) -> Measured:
         """Give a unit as objectives look at it.
@@ -410,20 +398,6 @@ class Problem:
             ValueError: if a rate or price is missing that the objective needs.
         """
         return objective.row.unit(_MeasuredUnit(self, unit))
-
-    def figures(self, objective: Objective, units: Iterable[int]) -> Iterable[int | Fraction]:
-        """Give what each of some units costs, as :meth:`figure` does.
-
-        Parameters:
-            objective: The objective.
-            units: The ids of the units.
-
-        Raises:
-            ValueError: if a rate, price or measure is missing that the objective needs.
-        """
-        if objective.row.needs is Known.MEASURES:
-            return map(self._costs_by(objective).__getitem__, units)
-        return (self.figure(objective, unit) for unit in units)
 
 
 class _MeasuredUnit(NamedTuple):
@@ -447,10 +421,6 @@ class _MeasuredUnit(NamedTuple):
     def price(self) -> Fraction:
         """Its price."""
         return self.problem.price(self.unit)
-
-    def measure(self, name: str) -> int | Fraction:
-        """What it costs by a measure of the user's."""
-        return self.problem.measure(name, self.unit)
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.solver import solve as find
+from foon_asp.asp.optimum import solve as find
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result

@@ -7,12 +7,13 @@ from os import PathLike
 from foon_asp.document.json_document import costs_json, document
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Problem
-from foon_asp.proof import Simulation, Verdict, simulate_for
+from foon_asp.proof import Replay, Simulation, Verdict, replay_for, simulate_for
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.replay import replay_json, replay_text
 from foon_asp.report.verdict import Listed, verdict_json, verdict_text
 from foon_asp.text.json_value import Json
 
@@ -20,6 +21,9 @@ from foon_asp.text.json_value import Json
 @dataclass(frozen=True, repr=False)
 class Checked(Result):
     """The ``tree`` that was simulated, and the ``simulation`` with its ``verdict`` and what stops the tree.
+
+    Where items are used up, the tree is a plan, whose order and repeats count, and ``replay`` says what
+    became of each copy; otherwise it is ``None``.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -29,10 +33,13 @@ class Checked(Result):
 
     tree: Tree
     simulation: Simulation
+    replay: Replay | None = None
 
     @property
     def executes(self) -> bool:
-        """Whether the tree executes, as listed or in another order."""
+        """Whether the tree executes, as listed or in another order; a plan, as listed."""
+        if self.replay is not None:
+            return self.replay.shortage is None
         return self.simulation.verdict is not Verdict.NEVER
 
     @property
@@ -40,6 +47,8 @@ class Checked(Result):
         """The tree in an order that executes, ``None`` where no order does."""
         if not self.executes:
             return None
+        if self.replay is not None:
+            return self.tree
         units, places = self.tree.units, self.tree.places
         order = self.simulation.order
         return Tree(tuple(units[n] for n in order), self.tree.problem, tuple(places[n] for n in order))
@@ -61,16 +70,19 @@ class Checked(Result):
 
     def text(self) -> str:
         """Say whether the tree executes, in which order, and what stops it."""
+        if self.replay is not None:
+            return replay_text(self.problem, self._listed(), self.replay)
         return verdict_text(self.problem, self._listed(), self.simulation)
 
     def json_dict(self) -> Json:
         """Give the same; positions count from 1."""
-        problem, foreign = self.problem, self.foreign
+        problem, foreign, replay = self.problem, self.foreign, self.replay
         known = [unit for unit in self._ids() if unit is not None]
         return document(
             "check",
             problem,
-            **verdict_json(problem, self._listed(), self.simulation),
+            **verdict_json(problem, self._listed(), None if replay else self.simulation),
+            **({} if replay is None else {"replay": replay_json(problem, self._listed(), replay)}),
             not_in_network=[position + 1 for position in foreign],
             costs=None if foreign else costs_json(problem.costs(known)),
         )
@@ -96,11 +108,14 @@ class Checked(Result):
     ),
     GOALS,
     CONTAINERS,
+    *ITEMS,
     help_="""
     \b
     foon-asp check tree.txt --goal macaroni
 
     The tree is FOON text, units in the order of execution, or an answer in JSON.
+
+    With --items used-up, order and repeats count: the plan is replayed copy by copy.
 
     Exits with 0 when the tree executes, as listed or in the order that is then given; with 1 when no
     order executes or a unit is not in the network.
@@ -111,7 +126,8 @@ def check(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]
 
     Parameters:
         tree: The path of a file (FOON text, or an answer in JSON), or functional units in the order listed,
-            such as a :class:`TaskTree`.
+            such as a :class:`TaskTree`. Where items are used up, it is a plan, in which a unit may be listed
+            several times.
 
     Returns:
         Whether the tree ``executes``, the tree ``in_order``, and the ``simulation`` with what stops it.
@@ -128,4 +144,5 @@ def check(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]
         'stove'
     """
     given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
-    return Checked(given, simulate_for(given.problem, given))
+    replay = None if given.problem.items is None else replay_for(given.problem, given)
+    return Checked(given, simulate_for(given.problem, given), replay)

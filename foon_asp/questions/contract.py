@@ -1,11 +1,13 @@
 """Questions: functions for Python, with options from which a command line is made."""
 
+import functools
 from collections.abc import Callable, Mapping
 from enum import Flag, StrEnum, auto
 from pathlib import Path
 from typing import NamedTuple, ParamSpec, TypeVar
 
 from foon_asp.errors import UserError
+from foon_asp.problem import Problem
 from foon_asp.questions.docstring import complete_docstring
 from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
@@ -124,10 +126,29 @@ def question(
     """Make a decorator that describes a function for a command line, see :func:`question_of`."""
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
+        if not any(option.name == "items" for option in options):
+            ask = _for_lasting_items(ask)
         ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, command or ask)
         return described(*options)(ask)
 
     return decorate
+
+
+def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
+    """Refuse problems whose items are used up, by the name of the question."""
+
+    @functools.wraps(ask)
+    def asked(*about: P.args, **named: P.kwargs) -> R:
+        if any(isinstance(each, Problem) and each.items is not None for each in about):
+            raise not_built(ask.__module__.removeprefix("foon_asp.questions."))
+        return ask(*about, **named)
+
+    return asked
+
+
+def not_built(name: str) -> UserError:
+    """Say that a question, by the name of its verb or its module, is not built for items that are used up."""
+    return UserError(f"{name.replace('_', '-')} is not built for items that are used up (--items used-up)")
 
 
 def question_of(ask: Callable[..., object]) -> Question:

@@ -107,6 +107,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Draw an optimal task tree, a given one, some functional units, or a whole network.",
         ("draw", "Drawn"),
     ),
+    "units": Entry(
+        "Show",
+        "List the functional units of a network, and say which of their inputs are used up.",
+        ("units", "Units"),
+    ),
     "diff": Entry(
         "Show",
         "Show what two task trees have in common, what only one has, what each costs, and where they part.",

@@ -1,5 +1,6 @@
 """The options that questions share."""
 
+from foon_asp.problem import ITEMS as ITEM_WORDS
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.questions.contract import Kind, Option, Part
 
@@ -19,6 +20,29 @@ CONTAINERS = Option(
     part=Part.PROBLEM,
     default="strict",
     choices=tuple(map(str, ContainerRule)),
+)
+ITEMS = (
+    Option(
+        "items",
+        "Whether what is there can be used again and again (lasting), or a plan uses it up (used-up).",
+        part=Part.PROBLEM,
+        default="lasting",
+        choices=ITEM_WORDS,
+    ),
+    Option(
+        "stock",
+        "If items are used up: how many copies the kitchen has of some object nodes; others never run out.",
+        Kind.FILE,
+        Part.PROBLEM,
+        metavar="FILE",
+    ),
+    Option(
+        "stays",
+        "If items are used up: labels and object nodes that stay, or are used up, whatever the rule says.",
+        Kind.FILE,
+        Part.PROBLEM,
+        metavar="FILE",
+    ),
 )
 OBJECTIVES = Option(
     "objectives",

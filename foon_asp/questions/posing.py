@@ -5,6 +5,8 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
+from foon_asp.dataset.items import items_of
+from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.result import Result
@@ -39,11 +41,19 @@ Pose = Callable[..., tuple[object, ...]]
 problem by name."""
 
 
-def one_problem(command: Command, goals_named: Sequence[str], containers: str) -> tuple[Problem]:
+def one_problem(
+    command: Command,
+    goals_named: Sequence[str],
+    containers: str,
+    items: str = "lasting",
+    stock: File | None = None,
+    stays: File | None = None,
+) -> tuple[Problem]:
     """Pose one problem, whose tree makes all goals that are named."""
     dataset = command.dataset
     with command.reading():
-        return (dataset.problem(dataset.goals(goals_named), containers),)
+        how = items_of(dataset, items, stock, stays)
+        return (dataset.problem(dataset.goals(goals_named), containers, items=how),)
 
 
 def the_data(command: Command) -> "tuple[Foon]":
@@ -53,11 +63,19 @@ def the_data(command: Command) -> "tuple[Foon]":
     return (Foon(command.dataset, "the data"),)
 
 
-def each_goal(command: Command, goals_named: Sequence[str], containers: str) -> tuple[Problem]:
+def each_goal(
+    command: Command,
+    goals_named: Sequence[str],
+    containers: str,
+    items: str = "lasting",
+    stock: File | None = None,
+    stays: File | None = None,
+) -> tuple[Problem]:
     """Pose goals that are a question of their own each: those that are named, or all of the goals file."""
     dataset = command.dataset
     with command.reading():
+        how = items_of(dataset, items, stock, stays)
         goals = dataset.each_goal(goals_named)
         if not goals:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        return (dataset.problem(tuple(dict.fromkeys(goals)), containers),)
+        return (dataset.problem(tuple(dict.fromkeys(goals)), containers, items=how),)

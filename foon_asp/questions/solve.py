@@ -17,8 +17,8 @@ from foon_asp.questions.arguments import (
     settings,
     whole,
 )
-from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES, SOFT
+from foon_asp.questions.contract import Kind, Option, not_built, question
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
 
@@ -51,6 +51,14 @@ def solve_and_more(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
+    if problem.items is not None:
+        for given, what in (
+            (soft, "--soft"),
+            (certificate_file, "--certificate"),
+            (cross_check, "--cross-check"),
+        ):
+            if given:
+                raise not_built(f"solve {what}")
     if soft and certificate_file is not None:
         raise UserError("soft constraints have no certificates; leave one of them out")
     engines: tuple[Engine, ...] = ()
@@ -80,6 +88,7 @@ def solve_and_more(
     GOALS,
     OBJECTIVES,
     CONTAINERS,
+    *ITEMS,
     *RULES,
     SOFT,
     *LIMITS,

@@ -108,10 +108,11 @@ def headline(outcome: Outcome) -> str:
     """Give the claim in one line."""
     rule = outcome.problem.conditions
     best = ", then ".join(outcome.objectives)
+    what = "task tree" if outcome.problem.items is None else "plan"
     if outcome.costs is None:
         if outcome.status is Status.INFEASIBLE:
-            return f"infeasible: proved that no task tree exists ({rule})"
-        return f"unknown: stopped at {outcome.stopped or 'a limit'}, before any task tree was found ({rule})"
+            return f"infeasible: proved that no {what} exists ({rule})"
+        return f"unknown: stopped at {outcome.stopped or 'a limit'}, before any {what} was found ({rule})"
     if outcome.encodings is not None:
         rule += f", as {outcome.encodings} has it"
     claim = "optimal" if outcome.status is Status.OPTIMAL else "feasible, not proved best"
@@ -184,6 +185,8 @@ def steps(
         for o, origin in zip(network.inputs[unit], origins, strict=True):
             ((where, step),) = origin.items()
             said = {"step": f"step {step}", "later_step": f"step {step}, which is later"}.get(where, where)
+            if o in problem.flows[unit].uses:
+                said += ", used up"
             yield f"       {network.objects[o]}  ({said})"
         for o in network.outputs[unit]:
             made = "" if o in problem.gives[unit] else "  (implied, not made here)"
@@ -235,6 +238,9 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
     """
     available = reach(problem).available
     network = problem.network
+    if all(available[goal] for goal in problem.goals) and problem.items is not None:
+        yield "if items lasted there could be a task tree: each plan would use up more than there is"
+        return
     if all(available[goal] for goal in problem.goals):
         yield "without the constraints there is one: together they rule out every tree"
         yield "foon-asp clash finds those that do, and which to drop"

@@ -1,0 +1,27 @@
+"""The best tree; or the best plan, where items are used up."""
+
+from collections.abc import Sequence
+
+from foon_asp.asp import solver
+from foon_asp.asp.outcome import Outcome
+from foon_asp.asp.settings import Settings
+from foon_asp.asp.solver import Reporter
+from foon_asp.problem import Objective, Problem
+
+
+def solve(
+    problem: Problem,
+    objectives: Sequence[Objective] = (Objective.UNITS,),
+    settings: Settings | None = None,
+    reporter: Reporter | None = None,
+) -> Outcome:
+    """Find the best tree or plan under a lexicographic list of objectives, and prove it.
+
+    ``units`` decides last. Stops at the limits with the best so far. Raises :class:`UserError` as
+    :func:`foon_asp.asp.solver.solve` and :func:`foon_asp.asp.used_up.solve_used_up` do.
+    """
+    if problem.items is None:
+        return solver.solve(problem, objectives, settings, reporter)
+    from foon_asp.asp.used_up import solve_used_up  # noqa: PLC0415 (numpy and HiGHS)
+
+    return solve_used_up(problem, objectives, settings, reporter)

@@ -1,0 +1,339 @@
+"""Optimal plans where items are used up: whole counts of executions, an order for them, and the claim."""
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property
+from graphlib import TopologicalSorter
+
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.exact_success import RateScale, rate_scale
+from foon_asp.asp.outcome import Outcome, Proof, Status
+from foon_asp.asp.settings import Settings
+from foon_asp.asp.solver import Reporter
+from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
+from foon_asp.proof import replay_for
+
+Plan = tuple[int, ...]
+"""Units by id in the order of execution, with repeats."""
+
+_LARGEST = 10**9  # a cost that is not rounded
+_FINE = 10**6  # steps of the greatest cost, where costs are rounded
+_MOST_COPIES = 64  # executions of a unit, up to which a first plan is looked for
+
+
+def solve_used_up(
+    problem: Problem,
+    objectives: Sequence[Objective] = (Objective.UNITS,),
+    settings: Settings | None = None,
+    reporter: Reporter | None = None,
+) -> Outcome:
+    """Find the best plan under a lexicographic list of objectives, and prove it.
+
+    Raises :class:`UserError` for what is not built for items that are used up, by name.
+    """
+    settings, reporter = settings or Settings(), reporter or Reporter()
+    _require_built(settings)
+    asked = levels(tuple(objectives))
+    problem.require_known_for(asked)
+    return _Solver(problem, tuple(objectives), asked, settings, reporter).solve()
+
+
+def _require_built(settings: Settings) -> None:
+    for given, what in (
+        (settings.encodings, "other encodings (--encodings)"),
+        (settings.relaxed, "soft constraints"),
+        (settings.bounded, "bounds on objectives"),
+    ):
+        if given is not None:
+            raise UserError(f"{what} are not built for items that are used up")
+
+
+class _Solver:
+    """One question that is being solved."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        objectives: tuple[Objective, ...],
+        asked: tuple[Objective, ...],
+        settings: Settings,
+        reporter: Reporter,
+    ) -> None:
+        self.problem, self.objectives, self.levels = problem, objectives, asked
+        self.deadline, self.reporter = settings.begun, reporter
+        self.program = assemble(settings, reporter.warning, used_up=True)
+        self.settings = settings
+        self.seconds: dict[str, float] = {}
+        self.best: tuple[Plan, Costs] | None = None
+        self.bounds: dict[Objective, int | Fraction] = {}
+
+    def solve(self) -> Outcome:
+        began = time.perf_counter()
+        try:
+            with self.deadline.watched("cutting the network", late=True):
+                units = self._cut()
+            self._spent("cut", began)
+            if units is None:
+                return self._outcome(Status.INFEASIBLE, Proof.CUTS)
+            return self._search(units)
+        except (Stopped, KeyboardInterrupt):
+            self.deadline.interrupt()
+            return self._outcome(Status.UNKNOWN if self.best is None else Status.FEASIBLE, None)
+
+    def _cut(self) -> list[int] | None:
+        """Give the units that can matter, ascending; ``None`` where no goal is reached even if items last.
+
+        They make what a goal or another of them asks for and what does not run out.
+        """
+        problem = self.problem
+        stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
+        reached = reach(problem if stocked == problem.kitchen else replace(problem, kitchen=stocked))
+        if not all(reached.available[goal] for goal in problem.goals):
+            return None
+        allowed = set(reached.units)
+        makers: dict[int, list[int]] = {}
+        for unit in reached.units:
+            for o in problem.flows[unit].adds:
+                makers.setdefault(o, []).append(unit)
+        wanted = [goal for goal in problem.goals if goal not in problem.endless]
+        seen, chosen = set(wanted), set[int]()
+        while wanted:
+            for unit in makers.get(wanted.pop(), ()):
+                if unit in allowed and unit not in chosen:
+                    chosen.add(unit)
+                    new = [o for o in problem.flows[unit].asks if o not in seen and o not in problem.endless]
+                    seen.update(new)
+                    wanted += new
+        return sorted(chosen)
+
+    def _search(self, units: list[int]) -> Outcome:
+        if not units:  # every goal is there
+            self._take(())
+            return self._outcome(Status.OPTIMAL, Proof.CUTS)
+        counting = _Counting(self, units)
+        began = time.perf_counter()
+        counts = counting.bound.counts([counting.measure(objective) for objective in self.levels])
+        self._spent("bound", began)
+        if counts is None:
+            if counting.bound.none():
+                return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
+            raise Stopped
+        plan = counting.order(counts)
+        if plan is None:
+            plan = counting.any_order(counts)
+        if plan is None:
+            raise Stopped
+        self._take(plan)
+        while True:
+            try:
+                began = time.perf_counter()
+                counting.prove()
+                self._spent("bound", began)
+                return self._outcome(Status.OPTIMAL, Proof.COUNTS)
+            except BetterError:
+                self._spent("bound", began)
+
+    def _take(self, plan: Plan) -> bool:
+        """Keep a plan if it is the best so far."""
+        costs = self.problem.costs(plan)
+        if self.best is not None and costs.key(self.levels) >= self.best[1].key(self.levels):
+            return False
+        self.best = plan, costs
+        self.reporter.tree(costs)
+        return True
+
+    def _outcome(self, status: Status, proof: Proof | None) -> Outcome:
+        plan, costs = self.best or (None, None)
+        if plan is not None and costs is not None:
+            self._require_runs(plan, costs)
+            if status is Status.OPTIMAL:
+                self.bounds = {objective: costs.measure(objective) for objective in self.levels}
+        return Outcome(
+            self.problem,
+            self.objectives,
+            status,
+            plan,
+            costs,
+            self.bounds if plan is not None else {},
+            self.seconds,
+            proof=proof,
+            stopped=None if proof else self.deadline.stopped or "a limit",
+        )
+
+    def _require_runs(self, plan: Plan, costs: Costs) -> None:
+        """Require that a plan runs, and that it costs what is said: replayed without any of the above."""
+        replay = replay_for(self.problem, self.problem.tree(plan))
+        if replay.shortage is not None:
+            raise BugError(f"the plan {list(plan)} lacks {replay.shortage.node}")
+        if self.problem.costs(plan) != costs:
+            raise BugError(f"the plan {list(plan)} does not cost {costs}")
+        objects = self.problem.network.objects
+        taken = {objects[o]: count for o, count in self.problem.copies_taken(plan).items()}
+        if taken != replay.stock:
+            raise BugError(f"the plan {list(plan)} takes {replay.stock} of the stock and not {taken}")
+
+    def _spent(self, phase: str, began: float) -> None:
+        self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
+
+
+class _Counting:
+    """Counts of the units of a question, by place, and the orders that they can be executed in."""
+
+    def __init__(self, solver: _Solver, units: list[int]) -> None:
+        self._solver, self._problem, self._units = solver, solver.problem, units
+        problem = solver.problem
+        asked = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
+
+        def finite(ids: Sequence[int]) -> list[int]:
+            return [o for o in ids if o not in problem.endless and o in asked]
+
+        flows = [problem.flows[unit] for unit in units]
+        self.bound = CountBound(
+            Flows(
+                [finite(flow.asks) for flow in flows],
+                [finite(flow.uses) for flow in flows],
+                [finite(flow.adds) for flow in flows],
+                [[o for o in flow.asks if o in problem.endless] for flow in flows],
+                {o: problem.stock_of(o) or 0 for o in asked & problem.kitchen - problem.endless},
+                [goal for goal in problem.goals if goal not in problem.endless],
+            ),
+            expired=lambda: solver.deadline.passed,
+        )
+        self._measures: dict[Objective, Measure] = {}
+
+    def measure(self, objective: Objective) -> Measure:
+        """Give what each unit costs by an objective, once for each objective."""
+        if objective not in self._measures:
+            self._measures[objective] = self._measured(objective)
+        return self._measures[objective]
+
+    def _measured(self, objective: Objective) -> Measure:
+        row, figures = objective.row, self._figures(objective)
+        if multiplies(objective):
+            classes = [self._class(figures, figure, Fraction(1)) for figure in figures]
+
+            def product(counts: Mapping[int, int]) -> Fraction:
+                return -math.prod((figures[a] ** n for a, n in counts.items()), start=Fraction(1))
+
+            return Measure([self._rates.weights[rate] for rate in figures], 0, product, classes)
+        scale = self._scale(objective)
+        costs = [math.floor(scale * figure) for figure in figures]
+        if all(cost == scale * figure for cost, figure in zip(costs, figures, strict=True)):
+            return Measure(costs, row.item)
+
+        def total(counts: Mapping[int, int]) -> Fraction:
+            return sum((figures[a] * n for a, n in counts.items()), start=Fraction(0))
+
+        return Measure(costs, 0, total, [self._class(figures, figure, Fraction(0)) for figure in figures])
+
+    def _figures(self, objective: Objective) -> list[Fraction]:
+        return [Fraction(self._problem.figure(objective, unit)) for unit in self._units]
+
+    @staticmethod
+    def _class(figures: Sequence[Fraction], figure: Fraction, idle: Fraction) -> int:
+        return -1 if figure == idle else sorted(set(figures)).index(figure)
+
+    @cached_property
+    def _rates(self) -> RateScale:
+        try:
+            return rate_scale(self._problem.different_rates(self._units))
+        except ValueError:
+            raise UserError(
+                "a success rate is 0, for which plans with items that are used up cannot be compared"
+            ) from None
+
+    def _scale(self, objective: Objective) -> Fraction:
+        """Give into how many steps 1 is divided: as many as needed, or as are of use."""
+        figures = self._figures(objective)
+        common = math.lcm(*(figure.denominator for figure in figures))
+        most = max(figures, default=Fraction(0))
+        return Fraction(common) if common * most <= _LARGEST else _FINE / most
+
+    def level(self, objective: Objective, costs: Costs) -> Level:
+        """Give a level of the question with what a plan costs."""
+        measure, cost = self.measure(objective), Fraction(costs.measure(objective))
+        if multiplies(objective):
+            return Level(measure, -cost, self._rates.weigh(cost))
+        scale = self._scale(objective)
+        if measure.exact is not None:
+            return Level(measure, cost, math.floor(scale * cost))
+        return Level(measure, scale * cost, int(scale * cost))
+
+    def prove(self) -> None:
+        """Prove that no plan is better than the best so far; raises :class:`BetterError` if one is."""
+        assert self._solver.best is not None
+        costs = self._solver.best[1]
+        self.bound.prove([self.level(objective, costs) for objective in self._solver.levels], self._is_better)
+
+    def _is_better(self, counts: Counts) -> bool:
+        plan = self.order(counts)
+        return plan is not None and self._solver._take(plan)
+
+    def order(self, counts: Counts) -> Plan | None:
+        """Ask clingo for an order in which units can be executed so often; ``None`` where there is none."""
+        return self._plan({a: (n, n) for a, n in counts.items()})
+
+    def any_order(self, counts: Counts) -> Plan | None:
+        """Ask clingo for a good plan that executes units not much more often than counts say."""
+        extra = 1
+        while extra <= _MOST_COPIES:
+            plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self._units))}, True)
+            if plan is not None:
+                return plan
+            extra *= 2
+        return None
+
+    def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
+        from foon_asp.asp import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
+        from foon_asp.asp.scales import Scales  # noqa: PLC0415
+
+        solver, problem = self._solver, self._problem
+        units = [self._units[a] for a in times]
+        number = problem.network.unit_number
+        # within fixed counts only the copies that are taken of a stock are left to choose
+        wanted = solver.levels if best else [each for each in solver.levels if each is Objective.KITCHEN]
+        scales = Scales(problem, units, wanted) if best else None
+        text = facts.write_facts(problem, units, scales)
+        text += facts.write_times({number(self._units[a]): each for a, each in times.items()})
+        text += facts.write_objectives(wanted)
+        ended = search.run(
+            solver.program.files,
+            text,
+            solver.program.arguments,
+            solver.deadline,
+            "opt" if wanted else "ignore",
+            predicates=[("times", 2), ("_after", 4)],
+            endless=solver.program.endless,
+        )
+        solver.seconds["ground"] = solver.seconds.get("ground", 0.0) + ended.ground_seconds
+        solver.seconds["solve"] = solver.seconds.get("solve", 0.0) + ended.solve_seconds
+        if ended.units is None:
+            if not ended.exhausted:
+                raise Stopped
+            return None
+        return _sequence(problem, ended.rows["times"], ended.rows["_after"])
+
+
+def _sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:
+    """Put executions into an order, the earliest units first where there is a choice."""
+    before: dict[tuple[int, int], set[tuple[int, int]]] = {
+        (unit, turn): set() for unit, count in times for turn in range(1, count + 1)
+    }
+    for unit, turn, other, earlier in after:
+        before[unit, turn].add((other, earlier))
+    plan: list[int] = []
+    sorter = TopologicalSorter(before)
+    sorter.prepare()
+    while sorter.is_active():
+        ready = sorted(sorter.get_ready())
+        for unit, _ in ready:
+            here = problem.network.unit_of_number(unit)
+            assert here is not None
+            plan.append(here)
+        sorter.done(*ready)
+    return tuple(plan)

@@ -1,0 +1,452 @@
+"""Whole counts of executions where what actions need is used up: lower bounds on what every plan costs.
+
+How often a plan executes each action satisfies a few linear conditions: of every object no more copies are
+used up than there are, one of every target is left, and for each action that is used, another makes what it
+reads, if nothing else provides it. Landmarks of plans in which nothing is used up hold as well. HiGHS solves
+the relaxations in floats; what it proves is weighed again in whole numbers, so that no float decides.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from heapq import heappop, heappush
+from typing import NamedTuple
+
+from foon_asp.bounds.whole_program import WholeProgram
+
+Counts = dict[int, int]
+"""How often each action is executed; those that are not are left out."""
+
+_Bounds = tuple[list[int], list[int | None]]
+
+_NEAR = 1e-6  # what differs less from a whole number is one, for choosing where to branch
+_PROBES = 60  # actions that a root looks at to see whether they can be executed twice
+_MOST_PARTS = 20_000  # that are looked at before a proof is given up
+_FAR = 1000  # executions of an action that HiGHS takes to be many when it looks for counts
+
+
+class Flows(NamedTuple):
+    """Actions over objects, both by number.
+
+    An action can be executed while there is a copy of each object that it ``asks`` for. Then one copy of
+    each that it ``uses`` is gone, and there is one more of each that it ``adds``. ``start`` says how many
+    copies there are at first, where there are any. What never runs out is in none of these; ``items`` are
+    the objects of that kind that an action asks for. One copy of each of the ``targets`` is to be left.
+    """
+
+    asks: Sequence[Sequence[int]]
+    uses: Sequence[Sequence[int]]
+    adds: Sequence[Sequence[int]]
+    items: Sequence[Sequence[int]]
+    start: Mapping[int, int]
+    targets: Sequence[int]
+
+
+class Measure(NamedTuple):
+    """What executions cost by one objective, of which less is better.
+
+    ``costs`` are those of each action, whole numbers from 0, and ``item`` what each distinct one of its
+    ``items`` costs and each copy that is taken of what is there at first. Where ``exact`` is not ``None``,
+    costs are rounded down: it gives the exact cost of counts, which depends on how many executions there are
+    of each of the ``classes`` of actions; those of class -1 do not change it.
+    """
+
+    costs: Sequence[int]
+    item: int = 0
+    exact: Callable[[Mapping[int, int]], Fraction] | None = None
+    classes: Sequence[int] = ()
+
+
+class Landmark(NamedTuple):
+    """That one of the ``members`` is executed, or a copy of one of ``stock`` is taken.
+
+    With an ``action``, only if that is executed.
+    """
+
+    members: tuple[int, ...]
+    stock: tuple[int, ...] = ()
+    action: int | None = None
+
+
+class Level(NamedTuple):
+    """An objective, and what the plan in hand costs by it.
+
+    ``most`` is the greatest sum of costs, rounded down as they are, that a plan can have which is as good.
+    """
+
+    measure: Measure
+    cost: Fraction
+    most: int
+
+
+class BetterError(Exception):
+    """Counts were found that may belong to a better plan, and do."""
+
+    def __init__(self, counts: Counts) -> None:
+        super().__init__("a better plan was found")
+        self.counts = counts
+
+
+class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
+    """Time is up, or floats led nowhere."""
+
+
+class CountBound:
+    """The counts of plans for one question; ``expired`` says when to give up, and raises :class:`Stopped`.
+
+    ``required`` are sets of actions of each of which one has to be executed.
+    """
+
+    def __init__(
+        self,
+        flows: Flows,
+        required: Sequence[Sequence[int]] = (),
+        expired: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self._flows, self._expired = flows, expired
+        self._size = len(flows.asks)
+        self._landmarks = [Landmark(tuple(units)) for units in required]
+        self._makers: dict[int, list[int]] = {}
+        for action, added in enumerate(flows.adds):
+            for o in added:
+                self._makers.setdefault(o, []).append(action)
+
+    def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
+        """Find counts that cost least by HiGHS' word, the first measure most important; ``None`` if none.
+
+        They are those of a plan in which nothing is used up, at least; whether a plan has them is left open,
+        and nothing is proved.
+        """
+        found: Counts | None = None
+        for _ in range(rounds):
+            model = _Model(self, measures, far=True)
+            x: list[float] = []
+            for measure in measures:
+                whole = model.program.whole_optimum(model.objective(measure))
+                if whole is None:
+                    return None
+                x = whole
+                model.keep(measure, x)
+                self._check()
+            found = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
+            if not self._add_landmark(x, model):
+                break
+        return found
+
+    def none(self) -> bool:
+        """Whether it is proved that no counts satisfy the conditions, so that there is no plan."""
+        model = _Model(self, ())
+        return self._hopeless(model)
+
+    def _hopeless(self, model: "_Model") -> bool:
+        for _ in range(self._size + 1):
+            solved = model.program.solve({})
+            if solved.x is None:
+                return solved.bound > 0
+            if not self._add_landmark(solved.x, model):
+                return False
+            self._check()
+        return False
+
+    def caps(self, level: Level) -> list[int | None]:
+        """Give for each action how often a plan that is as good can execute it; ``None`` if not known."""
+        model = _Model(self, (level.measure,))
+        model.limit(level)
+        caps: list[int | None] = []
+        for action in range(self._size):
+            self._check()
+            solved = model.program.solve({action: -1})
+            caps.append(None if solved.bound == -math.inf else math.floor(-solved.bound))
+            model.program.upper[action] = caps[-1]
+            model.tighten()
+        return caps
+
+    def prove(self, levels: Sequence[Level], is_better: Callable[[Counts], bool]) -> None:
+        """Prove that no plan is better than the one in hand, the first level most important.
+
+        ``is_better`` is asked of counts that would be: whether there is an order to execute them in that is.
+        Raises :class:`BetterError` with them, and :class:`Stopped`.
+        """
+        for place in range(len(levels)):
+            self._prove(levels[:place], levels[place], is_better)
+
+    def _prove(self, before: Sequence[Level], level: Level, is_better: Callable[[Counts], bool]) -> None:
+        model = _Model(self, [each.measure for each in (*before, level)])
+        for each in before:
+            model.limit(each)
+        rounded = level.measure.exact is not None
+        cutoff = level.most if rounded else math.ceil(level.cost) - 1
+        objective = model.objective(level.measure)
+        model.cap(level.measure, cutoff)
+        self._tighten_root(model, objective, cutoff)
+        first = list(model.program.lower), list(model.program.upper)
+        number = 0
+        waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, 0, number, first)]
+        while waiting:
+            self._check()
+            bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
+            model.tighten()
+            solved = model.program.solve(objective, cutoff)
+            if solved.bound > cutoff:
+                continue
+            if solved.x is None:
+                raise Stopped  # floats say that there is nothing, and no whole numbers do
+            if self._add_landmark(solved.x, model):
+                heappush(waiting, (bound, 0, number, (model.program.lower, model.program.upper)))
+                continue
+            for part in self._branches(model, solved.x, before, level, is_better):
+                number += 1
+                executions = sum(part[0][: self._size])
+                heappush(waiting, (max(bound, solved.bound), executions, -number, part))
+            if number > _MOST_PARTS:
+                raise Stopped
+
+    def _tighten_root(self, model: "_Model", objective: Mapping[int, int], cutoff: int) -> None:
+        """Look which actions cannot be executed twice: others need not be told what they read so loosely."""
+        program, probed = model.program, set[int]()
+        while len(probed) < _PROBES:
+            self._check()
+            solved = program.solve(objective, cutoff)
+            if solved.x is None or solved.bound > cutoff:
+                return
+            if self._add_landmark(solved.x, model):
+                continue
+            loose = [
+                a
+                for a in range(self._size)
+                if solved.x[self._size + a] < min(1.0, solved.x[a]) - _NEAR
+                and a not in probed
+                and program.upper[a] != 1
+            ]
+            if not loose:
+                return
+            for action in loose[: _PROBES - len(probed)]:
+                probed.add(action)
+                self._check()
+                lower = program.lower[action]
+                program.lower[action] = 2
+                if program.solve(objective, cutoff).bound > cutoff:
+                    program.upper[action] = 1
+                program.lower[action] = lower
+            model.tighten()
+
+    def _branches(
+        self,
+        model: "_Model",
+        x: Sequence[float],
+        before: Sequence[Level],
+        level: Level,
+        is_better: Callable[[Counts], bool],
+    ) -> Iterator[_Bounds]:
+        """Give the parts into which what is left is divided, after a look at what was found."""
+        program = model.program
+        halves = [(abs(value - math.floor(value) - 0.5), column) for column, value in enumerate(x)]
+        half = min((h for h in halves if h[0] < 0.5 - _NEAR), default=None)
+        if half is not None:
+            column = half[1]
+            below = math.floor(x[column])
+            yield program.with_bounds(column, None, below)
+            yield program.with_bounds(column, below + 1, None)
+            return
+        counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
+        idle = next((a for a in counts if not round(x[self._size + a])), None)
+        if idle is not None:  # nothing says how often it may be executed, and so that it is
+            yield program.with_bounds(idle, None, 0)
+            lower, upper = program.with_bounds(idle, 1, None)
+            lower[self._size + idle] = 1
+            yield lower, upper
+            return
+        rounded = [each for each in (*before, level) if each.measure.exact is not None]
+        worse = [
+            each
+            for each in rounded
+            if _exact(each, counts) > each.cost or (each is level and _exact(each, counts) == each.cost)
+        ]
+        if worse:
+            yield from _around(program, x, model.class_columns(worse[0].measure))
+            return
+        if is_better(counts):
+            raise BetterError(counts)
+        yield from _around(program, x, range(self._size))
+
+    def _add_landmark(self, x: Sequence[float], model: "_Model") -> bool:
+        """Add a landmark that what is found misses; whether there is one.
+
+        What can be made by the actions it executes, if nothing is used up, is closed. A target or an action
+        that is not reached needs something that makes what is not reached from what is.
+        """
+        flows = self._flows
+        used = {a for a in range(self._size) if x[self._size + a] > _NEAR}
+        reached = {o for o, n in flows.start.items() if n and x[model.stock.get(o, 0)] > _NEAR}
+        if not model.stock:
+            reached = {o for o, n in flows.start.items() if n}
+        waiting = set(used)
+        grown = True
+        while grown:
+            ready = [a for a in waiting if reached.issuperset(flows.asks[a])]
+            grown = bool(ready)
+            waiting.difference_update(ready)
+            reached.update(o for a in ready for o in flows.adds[a])
+        missed: list[tuple[int, int | None]]
+        missed = [(target, None) for target in flows.targets if target not in reached]
+        missed += [(next(o for o in flows.asks[a] if o not in reached), a) for a in sorted(waiting)]
+        for o, action in missed[:1]:
+            landmark = self._landmark(o, reached, used, model)._replace(action=action)
+            self._landmarks.append(landmark)
+            model.add_landmark(landmark)
+        return bool(missed)
+
+    def _landmark(self, o: int, reached: set[int], used: set[int], model: "_Model") -> Landmark:
+        """Grow a cut backwards from an object that is not reached, as small as it can be."""
+        asks = self._flows.asks
+        zone, stack, edge = {o}, [o], dict[int, None]()
+        while stack:
+            for maker in self._makers.get(stack.pop(), ()):
+                edge[maker] = None
+                if maker in used and zone.isdisjoint(asks[maker]):
+                    lacking = next(each for each in asks[maker] if each not in reached)
+                    zone.add(lacking)
+                    stack.append(lacking)
+        members = tuple(maker for maker in edge if zone.isdisjoint(asks[maker]))
+        return Landmark(members, tuple(sorted(zone & model.stock.keys())))
+
+    def _check(self) -> None:
+        if self._expired():
+            raise Stopped
+
+
+class _Model:
+    """The conditions as rows over columns: first how often each action is executed, then helpers."""
+
+    def __init__(self, bound: CountBound, measures: Sequence[Measure], far: bool = False) -> None:
+        flows, size = bound._flows, bound._size
+        self._flows = flows
+        self.program = program = WholeProgram(size)
+        self._far, self._size = far, size
+        for _ in range(size):
+            program.column(0, 1)  # whether an action is executed at all
+        self._loose = [program.row({size + a: 0, a: 0}, 0) for a in range(size)]
+        for a in range(size):
+            program.row({a: 1, size + a: -1}, 0)
+        self._classes: dict[int, list[int]] = {}
+        priced = any(measure.item for measure in measures)
+        self.stock: dict[int, int] = {}
+        if priced:
+            self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
+        change: dict[int, dict[int, int]] = {o: {} for o in (*bound._makers, *flows.targets)}
+        for action in range(size):
+            for o in flows.adds[action]:
+                change[o][action] = change[o].get(action, 0) + 1
+            for o in flows.uses[action]:
+                row = change.setdefault(o, {})
+                row[action] = row.get(action, 0) - 1
+        wanted = set(flows.targets)
+        for o, row in change.items():
+            if any(part < 0 for part in row.values()) or o in wanted:
+                program.row(*self._with_stock(o, row, int(o in wanted)))
+        items: dict[int, int] = {}
+        for action in range(size):
+            reads = [o for o in flows.asks[action] if o not in flows.uses[action]]
+            reads = [o for o in reads if not flows.start.get(o) or o in self.stock]
+            y = size + action
+            for o in reads:
+                makers = {size + maker: 1 for maker in bound._makers.get(o, ())}
+                program.row(*self._with_stock(o, {**makers, y: -1}, 0))
+            for o in flows.items[action] if priced else ():
+                if o not in items:
+                    items[o] = program.column(0, 1)
+                program.row({items[o]: 1, y: -1}, 0)
+        self._items = list(items.values())
+        for landmark in bound._landmarks:
+            self.add_landmark(landmark)
+        for measure in measures:
+            if measure.exact is not None and not far:
+                self._add_classes(measure)
+        self.tighten()
+
+    def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
+        if o in self.stock:
+            return {**row, self.stock[o]: 1}, least
+        return row, least - self._flows.start.get(o, 0)
+
+    def _add_classes(self, measure: Measure) -> None:
+        columns = []
+        for number in sorted(set(measure.classes) - {-1}):
+            members = [a for a, each in enumerate(measure.classes) if each == number]
+            column = self.program.column(0, None)
+            self.program.row({column: 1, **dict.fromkeys(members, -1)}, 0)
+            self.program.row({column: -1, **dict.fromkeys(members, 1)}, 0)
+            columns.append(column)
+        self._classes[id(measure)] = columns
+
+    def class_columns(self, measure: Measure) -> list[int]:
+        """Give the columns that count the executions of each class."""
+        return self._classes[id(measure)]
+
+    def add_landmark(self, landmark: Landmark) -> None:
+        """Add what a landmark says, unless what is there at first is not counted here and may fulfil it."""
+        members, stock, action = landmark
+        if not self.stock.keys() >= set(stock):
+            return
+        row = {self._size + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
+        if action is None:
+            self.program.row(row, 1)
+        else:
+            self.program.row({**row, self._size + action: -1}, 0)
+
+    def tighten(self) -> None:
+        """Tie each indicator to its action by the greatest count that it can have."""
+        program = self.program
+        for action, row in enumerate(self._loose):
+            most = program.upper[action]
+            if most is None and self._far:
+                most = _FAR
+            program.change(row, {} if most is None else {self._size + action: most, action: -1})
+
+    def cap(self, measure: Measure, most: int) -> None:
+        """Bound counts of actions by what all of them may cost together."""
+        for action, cost in enumerate(measure.costs):
+            if cost:
+                self.program.cap(action, max(most, 0) // cost)
+        self.tighten()
+
+    def objective(self, measure: Measure) -> dict[int, int]:
+        """Give what each column costs."""
+        costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
+        if measure.item:
+            costs |= dict.fromkeys((*self._items, *self.stock.values()), measure.item)
+        return costs
+
+    def limit(self, level: Level) -> None:
+        """Require that counts are as good by a level as the plan in hand."""
+        costs = self.objective(level.measure)
+        self.program.row({column: -cost for column, cost in costs.items()}, -level.most)
+        self.cap(level.measure, level.most)
+
+    def keep(self, measure: Measure, found: Sequence[float]) -> None:
+        """Require that counts cost no more than those found."""
+        costs = self.objective(measure)
+        most = sum(cost * round(found[column]) for column, cost in costs.items())
+        self.program.row({column: -cost for column, cost in costs.items()}, -most)
+
+
+def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
+    assert level.measure.exact is not None
+    return level.measure.exact(counts)
+
+
+def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[_Bounds]:
+    """Give all that differs from what was found in one of the columns, which are whole, in parts."""
+    lower, upper = list(program.lower), list(program.upper)
+    for column in sorted(columns, key=lambda column: -x[column]):
+        found = round(x[column])
+        if lower[column] < found:
+            less = list(upper)
+            less[column] = found - 1
+            yield list(lower), less
+        most = upper[column]
+        if most is None or most > found:
+            more = list(lower)
+            more[column] = found + 1
+            yield more, list(upper)
+        lower[column] = upper[column] = found

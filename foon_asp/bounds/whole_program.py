@@ -1,0 +1,181 @@
+"""A linear program over whole numbers: solved in floats by HiGHS, bounded in whole numbers."""
+
+import math
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+# What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
+_PARTS = (1, 12, 720720, 2**40)
+
+
+class Solved(NamedTuple):
+    """A relaxed solution ``x``, ``None`` if there is none, and a proved lower ``bound``.
+
+    The bound is infinite where it is proved that there is no solution, and -infinite where nothing is.
+    """
+
+    x: list[float] | None
+    bound: float | Fraction
+
+
+class WholeProgram:
+    """Columns between ``lower`` and ``upper`` (``None`` is no bound), and rows of whole numbers.
+
+    Each row says that its columns, times their parts, add up to at least a number.
+    """
+
+    def __init__(self, columns: int) -> None:
+        # slow to import, so only when counts are asked for
+        import highspy  # noqa: PLC0415
+        import numpy as np  # noqa: PLC0415
+
+        self._library, self._np = highspy, np
+        self._highs: Any = None
+        self.lower: list[int] = [0] * columns
+        self.upper: list[int | None] = [None] * columns
+        self._rows: list[tuple[dict[int, int], int]] = []
+        self._sent = 0  # rows that HiGHS has
+        self._changed: set[int] = set()
+
+    @property
+    def columns(self) -> int:
+        """How many columns there are."""
+        return len(self.lower)
+
+    def column(self, lower: int, upper: int | None) -> int:
+        """Add a column, and give its number."""
+        self.lower.append(lower)
+        self.upper.append(upper)
+        self._highs = None
+        return len(self.lower) - 1
+
+    def row(self, parts: dict[int, int], least: int) -> int:
+        """Add a row, and give its number."""
+        self._rows.append((parts, least))
+        return len(self._rows) - 1
+
+    def change(self, row: int, parts: dict[int, int]) -> None:
+        """Change the parts of the columns that a row has; without parts, all become 0."""
+        now = self._rows[row][0]
+        new = {column: parts.get(column, 0) for column in now}
+        if new != now:
+            self._rows[row] = new, self._rows[row][1]
+            self._changed.add(row)
+
+    def cap(self, column: int, most: int) -> None:
+        """Bound a column from above, if it is not bounded more tightly."""
+        known = self.upper[column]
+        self.upper[column] = most if known is None else min(known, most)
+
+    def with_bounds(
+        self, column: int, lower: int | None, upper: int | None
+    ) -> tuple[list[int], list[int | None]]:
+        """Give the bounds of all columns with one changed."""
+        lowers, uppers = list(self.lower), list(self.upper)
+        if lower is not None:
+            lowers[column] = lower
+        if upper is not None:
+            uppers[column] = upper
+        return lowers, uppers
+
+    def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
+        """Solve the relaxation; a bound above ``cutoff`` is enough."""
+        if any(u is not None and lo > u for lo, u in zip(self.lower, self.upper, strict=True)):
+            return Solved(None, math.inf)
+        highs = self._send(objective)
+        highs.run()
+        status, kinds = highs.getModelStatus(), self._library.HighsModelStatus
+        if status == kinds.kOptimal:
+            solution = highs.getSolution()
+            weights = list(solution.row_dual)
+            return Solved(list(solution.col_value), self._bound(objective, weights, cutoff))
+        if status == kinds.kInfeasible:
+            found = highs.getDualRay()
+            ray = [abs(weight) for weight in found[2]] if found[1] else []
+            if ray and self._bound({}, [weight / max(ray) for weight in ray], 0) > 0:
+                return Solved(None, math.inf)
+        return Solved(None, -math.inf)
+
+    def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
+        """Give the best whole solution by HiGHS' word; ``None`` if it finds none."""
+        highs = self._send(objective)
+        count = self.columns
+        whole = self._library.HighsVarType.kInteger
+        highs.changeColsIntegrality(
+            count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
+        )
+        highs.setOptionValue("presolve", "on")
+        highs.run()
+        found = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        values = list(highs.getSolution().col_value) if found else None
+        self._highs = None
+        return values
+
+    def _send(self, objective: Mapping[int, int]) -> Any:
+        """Tell HiGHS what has changed."""
+        np, inf = self._np, self._library.kHighsInf
+        count = self.columns
+        if self._highs is None:
+            self._highs = self._library.Highs()  # type: ignore[no-untyped-call]
+            for option, value in _OPTIONS.items():
+                self._highs.setOptionValue(option, value)
+            self._highs.addVars(count, np.zeros(count), np.full(count, inf))
+            self._sent = 0
+            self._changed.clear()
+        highs = self._highs
+        for parts, least in self._rows[self._sent :]:
+            columns = np.array(list(parts), dtype="int32")
+            highs.addRow(float(least), inf, len(parts), columns, np.array(list(parts.values()), dtype=float))
+        for row in self._changed:
+            if row < self._sent:
+                for column, part in self._rows[row][0].items():
+                    highs.changeCoeff(row, column, float(part))
+        self._sent = len(self._rows)
+        self._changed.clear()
+        every = np.arange(count, dtype="int32")
+        upper = [inf if most is None else most for most in self.upper]
+        highs.changeColsBounds(count, every, np.array(self.lower, dtype=float), np.array(upper, dtype=float))
+        costs = np.zeros(count)
+        for column, cost in objective.items():
+            costs[column] = cost
+        highs.changeColsCost(count, every, costs)
+        return highs
+
+    def _bound(
+        self, objective: Mapping[int, int], weights: Sequence[float], cutoff: float
+    ) -> float | Fraction:
+        """Give the bound that weights of rows prove, whatever they are, computed in whole numbers."""
+        best: float | Fraction = -math.inf
+        for parts in _PARTS:
+            scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]
+            total = 0
+            left = dict.fromkeys(range(self.columns), 0)
+            for column, cost in objective.items():
+                left[column] = cost * parts
+            for (row, least), weight in zip(self._rows, scaled, strict=True):
+                if weight:
+                    total += weight * least
+                    for column, part in row.items():
+                        left[column] -= weight * part
+            for column, rest in left.items():
+                if rest > 0:
+                    total += rest * self.lower[column]
+                elif rest < 0:
+                    most = self.upper[column]
+                    if most is None:
+                        break
+                    total += rest * most
+            else:
+                best = max(best, Fraction(total, parts))
+                if best > cutoff:
+                    break
+        return best
+
+
+_OPTIONS: dict[str, bool | str | float] = {
+    "output_flag": False,
+    "presolve": "off",
+    "solver": "simplex",
+    "threads": 1,
+}

@@ -1,0 +1,72 @@
+"""Items that are used up, as somebody asks for them of data that were read."""
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+
+from foon_asp.dataset.dataset import Dataset
+from foon_asp.dataset.names import node_id
+from foon_asp.errors import UserError
+from foon_asp.network import ObjectNode
+from foon_asp.problem import ITEMS, UsedUp
+from foon_asp.text.item_list import read_stays, read_stock, stated_name
+from foon_asp.text.line import LineError
+
+Stock = str | PathLike[str] | Mapping[str | ObjectNode, int]
+"""The path of a stock file, or the number of copies by object node."""
+
+Stays = str | PathLike[str] | Mapping[str | ObjectNode, bool]
+"""The path of a file that says what stays, or the same by label or object node."""
+
+
+def items_of(dataset: Dataset, items: str, stock: Stock | None, stays: Stays | None) -> UsedUp | None:
+    """Read how items are meant; ``None`` if they last.
+
+    Raises :class:`UserError` for another word, a stock or an exception where items last, a node that the
+    kitchen does not have, a name that the network does not have, and below level 3.
+    """
+    if items not in ITEMS:
+        raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
+    if items == "lasting":
+        if stock is not None or stays is not None:
+            given = "a stock" if stock is not None else "what stays"
+            raise UserError(f"{given} is for items that are used up: add --items used-up (items='used-up')")
+        return None
+    if dataset.names.level < 3:
+        raise UserError(
+            f"items are used up at level 3 only, and this is level {dataset.names.level}: whether an input "
+            "stays depends on contents"
+        )
+    told = {} if stays is None else _told(dataset, stays)
+    return UsedUp(told, {} if stock is None else _stock(dataset, stock))
+
+
+def _told(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
+    if isinstance(stays, str | PathLike):
+        found = read_stays(Path(stays))
+    else:
+        try:
+            found = {stated_name(n) if isinstance(n, str) else n: bool(told) for n, told in stays.items()}
+        except LineError as error:
+            raise UserError(f"what stays: {error}") from None
+    for name in found:
+        if isinstance(name, ObjectNode):
+            node_id(dataset, name, "item that stays or goes")
+        elif not dataset.names.labelled(name)[0]:
+            raise UserError(f"what stays: no object node of the network has the label {name!r}")
+    return found
+
+
+def _stock(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
+    if isinstance(stock, str | PathLike):
+        found = read_stock(Path(stock))
+    else:
+        found = {}
+        for name, count in stock.items():
+            if not isinstance(count, int) or isinstance(count, bool) or count < 0:
+                raise UserError(f"found the stock {count!r} of {str(name)!r}, expected a whole number from 0")
+            found[dataset.names.node(node_id(dataset, name, "kitchen item"))] = count
+    for node in found:
+        if not dataset.at_hand(node_id(dataset, node, "kitchen item")):
+            raise UserError(f"the stock counts {str(node)!r}, which the kitchen does not have")
+    return found

@@ -1,0 +1,148 @@
+"""Does a plan run where items are used up? Replayed copy by copy, in plain Python, without a solver."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.problem import Problem, given_outputs, needed_inputs
+
+
+class Copy(NamedTuple):
+    """One copy of an object node: ``made`` is the position of the step that made it, ``None`` in the kitchen.
+
+    Example:
+        >>> foon_asp.Copy(foon_asp.parse_node("ice; crushed"), 1).made
+        1
+    """
+
+    node: ObjectNode
+    made: int | None
+
+
+class Shortage(NamedTuple):
+    """The copy that is missing: of ``node``, at the position ``step`` (from 0), or at the end if ``None``.
+
+    ``taken`` are the positions of the steps that used up the copies there were, in order; where it is empty,
+    there never was one.
+    """
+
+    step: int | None
+    node: ObjectNode
+    taken: tuple[int, ...]
+
+
+class Step(NamedTuple):
+    """What a step does: the copies that it uses up, those of what stays, and those that it makes."""
+
+    unit: FunctionalUnit
+    gone: tuple[Copy, ...]
+    stayed: tuple[Copy, ...]
+    came: tuple[Copy, ...]
+
+
+class Replay(NamedTuple):
+    """What a replay found: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
+
+    ``left`` are the copies there are after the last of these steps: those that were made, and what is left
+    of the stock. What never runs out is not in it. ``stock`` says how many copies of each node with a finite
+    stock the plan cannot do without.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice", items="used-up")
+        >>> foon_asp.check(problem, foon_asp.solve(problem).tree).replay.shortage is None
+        True
+    """
+
+    steps: tuple[Step, ...]
+    shortage: Shortage | None
+    left: tuple[Copy, ...]
+    stock: dict[ObjectNode, int]
+
+
+def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
+    """Run a plan from the kitchen of a problem in which items are used up, and look for its goals at the end.
+
+    The kitchen never runs out, but for what the stock counts. A repeated unit runs again.
+    """
+    return _Kitchen(problem).run(list(plan))
+
+
+class _Kitchen:
+    """What is there: nodes without end, and single copies of others, the oldest first."""
+
+    def __init__(self, problem: Problem) -> None:
+        items = problem.items
+        assert items is not None
+        self._problem, self._items = problem, items
+        self._copies: dict[ObjectNode, list[Copy]] = {}
+        self._taken: dict[ObjectNode, list[int]] = {}
+        for node, count in items.stock.items():
+            if problem.at_hand(node):
+                self._copies[node] = [Copy(node, None)] * count
+        self._made: Counter[ObjectNode] = Counter()  # copies made less copies used up
+        self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
+
+    def run(self, plan: Sequence[FunctionalUnit]) -> Replay:
+        steps: list[Step] = []
+        shortage: Shortage | None = None
+        for position, unit in enumerate(plan):
+            needed = self._needed(unit)
+            lacking = next((node for node in needed if not self._has(node)), None)
+            if lacking is not None:
+                shortage = self._shortage(position, lacking)
+                break
+            steps.append(self._step(position, unit, needed))
+        if shortage is None:
+            missing = [node for node in self._problem.goal_nodes if not self._has(node)]
+            if missing:
+                shortage = self._shortage(None, missing[0])
+        left = tuple(copy for copies in self._copies.values() for copy in copies)
+        return Replay(tuple(steps), shortage, left, self._least)
+
+    def _step(self, position: int, unit: FunctionalUnit, needed: Sequence[ObjectNode]) -> Step:
+        problem = self._problem
+        gone, stayed = [], []
+        for node in needed:
+            if self._items.fate(unit, node, problem.utensils).stays:
+                stayed.append(self._endless(node) or self._copies[node][0])
+            else:
+                gone.append(self._take(node, position))
+        came = []
+        made = given_outputs(unit, problem.containers, problem.utensils, problem.network)
+        for node in dict.fromkeys(made):
+            if node not in unit.inputs:
+                came.append(Copy(node, position))
+                if not self._endless(node):
+                    self._copies.setdefault(node, []).append(came[-1])
+                    self._made[node] += 1
+        return Step(unit, tuple(gone), tuple(stayed), tuple(came))
+
+    def _needed(self, unit: FunctionalUnit) -> tuple[ObjectNode, ...]:
+        problem = self._problem
+        return tuple(
+            dict.fromkeys(needed_inputs(unit, problem.containers, problem.utensils, problem.network))
+        )
+
+    def _endless(self, node: ObjectNode) -> Copy | None:
+        endless = self._problem.at_hand(node) and node not in self._items.stock
+        return Copy(node, None) if endless else None
+
+    def _has(self, node: ObjectNode) -> bool:
+        """Whether a copy of a node is there, which is then one that the plan needs."""
+        if self._endless(node):
+            return True
+        if node in self._least:
+            self._least[node] = max(self._least[node], 1 - self._made[node])
+        return bool(self._copies.get(node))
+
+    def _take(self, node: ObjectNode, position: int) -> Copy:
+        endless = self._endless(node)
+        if endless:
+            return endless
+        self._taken.setdefault(node, []).append(position)
+        self._made[node] -= 1
+        return self._copies[node].pop(0)
+
+    def _shortage(self, step: int | None, node: ObjectNode) -> Shortage:
+        return Shortage(step, node, tuple(self._taken.get(node, ())))

@@ -1,0 +1,290 @@
+"""Items that are used up: the rule, the replay of plans, and the best plans against brute force."""
+
+from collections import Counter
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import foon_asp
+from foon_asp import ObjectNode, Source, UserError, parse_node
+from foon_asp.asp import Status, solve
+from foon_asp.problem import Fate, Objective, UsedUp, levels
+from foon_asp.problem.items import fate
+from foon_asp.proof import replay_for
+from foon_asp.text.item_list import read_stays, read_stock
+from tests.conftest import Cli
+from tests.used_up_oracle import UTENSILS, key, plans, random_problem, stays
+
+# --- The rule.
+
+
+def fated(inputs: str, outputs: str, told: dict[str | ObjectNode, bool] | None = None) -> Fate:
+    """Give what becomes of the first input; nodes are separated by bars."""
+    before, after = ([parse_node(text.strip()) for text in side.split("|")] for side in (inputs, outputs))
+    return fate(before[0], before, after, UTENSILS, told or {})
+
+
+@pytest.mark.parametrize(
+    ("inputs", "outputs", "expected"),
+    [
+        ("egg; raw", "egg; raw | egg; done", Fate.OUTPUT),
+        ("egg; raw", "egg; done", Fate.USED_UP),
+        ("knife; clean | egg; raw", "egg; done", Fate.TOOL),
+        ("knife; clean; in [drawer]", "egg; done", Fate.TOOL),
+        ("knife; clean", "knife; dirty", Fate.USED_UP),
+        ("stove; hot", "egg; done", Fate.USED_UP),
+        ("bowl; contains {egg} | egg", "egg; done; in [bowl]", Fate.VESSEL),
+        ("bowl; contains {egg}", "egg; done; in [pan]", Fate.USED_UP),
+        ("bowl; contains {egg}", "bowl; empty | egg; in [bowl]", Fate.USED_UP),
+        ("egg; in [bowl] | bowl; contains {egg}", "bowl; contains {egg,oil}", Fate.INSIDE),
+        ("egg; in [bowl] | oil", "bowl; contains {egg,oil}", Fate.USED_UP),
+        ("egg; in [bowl] | bowl; contains {egg}", "bowl; contains {oil}", Fate.USED_UP),
+        ("egg; in [bowl] | bowl; contains {egg}", "bowl; contains {egg} | egg; done", Fate.USED_UP),
+        ("egg; on [pan]; in [bowl] | bowl", "bowl; coated {oil}; contains {egg}", Fate.INSIDE),
+    ],
+)
+def test_what_becomes_of_an_input(inputs: str, outputs: str, expected: Fate) -> None:
+    assert fated(inputs, outputs) is expected
+
+
+def test_what_somebody_says_counts_before_the_rule_and_a_node_before_its_label() -> None:
+    node = parse_node("egg; raw")
+    assert fated("egg; raw", "egg; raw", {"egg": False}) is Fate.TOLD_GOES
+    assert fated("egg; raw", "egg; done", {"egg": False, node: True}) is Fate.TOLD_STAYS
+    assert fated("oil", "egg; done", {"egg": True}) is Fate.USED_UP
+
+
+def test_a_skipped_input_is_neither_asked_for_nor_used_up_nor_made() -> None:
+    network = foon_asp.NetworkBuilder()
+    egg, bowl, cup = map(parse_node, ("egg; in [bowl]", "bowl; contains {egg}", "egg; in [cup]"))
+    network.add("pour", [egg, bowl], [cup, bowl], Source("by hand", 1))
+    foon = foon_asp.build(network.build(), kitchen=[egg], utensils=UTENSILS)
+    flow = foon.problem(cup, containers="implied", items="used-up").flows[0]
+    assert flow == ((0,), (0,), (2,))
+    flow = foon.problem(cup, items="used-up").flows[0]
+    assert flow == ((0, 1), (0,), (2,))
+
+
+def test_the_figures_of_the_real_network(universal: Path) -> None:
+    with pytest.warns(foon_asp.FoonWarning):
+        foon = foon_asp.load(universal)
+    network, labels, takers = foon.network, Counter[bool](), dict[int, set[int]]()
+    for u in range(len(network)):
+        unit = network.unit(u)
+        outputs = {node.label for node in unit.outputs}
+        labels.update(node.label in foon.utensils for node in unit.inputs if node.label not in outputs)
+        for o, node in zip(network.inputs[u], unit.inputs, strict=True):
+            if not fate(node, unit.inputs, unit.outputs, foon.utensils).stays:
+                takers.setdefault(o, set()).add(u)
+    assert sum(map(len, network.inputs)) == 7177
+    assert (labels.total(), labels[True]) == (3009, 1983)
+    made = {o for u, outputs in enumerate(network.outputs) for o in outputs if o not in network.inputs[u]}
+    assert sum(o in made and len(units) > 1 for o, units in takers.items()) == 491
+    for goal, strict, implied in (
+        ("greek salad", 31, 25),
+        ("macaroni", 6, 6),
+        ("sweet potato", 3, 3),
+        ("ice", 1, 1),
+        ("whipped cream", None, None),
+    ):
+        for rule, units in (("strict", strict), ("implied", implied)):
+            answer = foon_asp.solve(foon.problem(goal, containers=rule, items="used-up"))
+            assert (answer.costs and answer.costs.units) == units
+            assert answer.status is (Status.OPTIMAL if units else Status.INFEASIBLE)
+
+
+# --- Files.
+
+
+def test_what_stays_is_read_from_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "stays.txt"
+    file.write_text("# mine\nbowl\tstays\negg; raw\tused-up\negg;\tstays\n", encoding="utf-8")
+    assert read_stays(file) == {"bowl": True, parse_node("egg; raw"): False, parse_node("egg"): True}
+    file.write_text("bowl\tkept\n", encoding="utf-8")
+    with pytest.raises(UserError, match="found 'kept', expected stays or used-up"):
+        read_stays(file)
+    file.write_text("bowl\tstays\nbowl\tused-up\n", encoding="utf-8")
+    with pytest.raises(UserError, match="the opposite above"):
+        read_stays(file)
+
+
+def test_a_stock_is_a_table_or_a_list_of_copies(tmp_path: Path) -> None:
+    file = tmp_path / "stock.txt"
+    expected = {parse_node("egg"): 2, parse_node("bowl; contains {egg}"): 1}
+    file.write_text("egg\t2\nbowl; contains {egg}\t1\n", encoding="utf-8")
+    assert read_stock(file) == expected
+    file.write_text("O\tegg\nO\tbowl\nS\tcontains\t{egg}\nO\tegg\n", encoding="utf-8")
+    assert read_stock(file) == expected
+    file.write_text("egg\t-1\n", encoding="utf-8")
+    with pytest.raises(UserError, match="expected a number of copies"):
+        read_stock(file)
+
+
+@pytest.mark.parametrize(
+    ("named", "message"),
+    [
+        ({"items": "lasting", "stock": {"knife; clean": 1}}, "a stock is for items that are used up"),
+        ({"items": "mine"}, "found the items 'mine'"),
+        ({"stock": {"ice; crushed; in [drinking glass]": 1}}, "which the kitchen does not have"),
+        ({"stays": {"unicorn": True}}, "no object node of the network has the label 'unicorn'"),
+        ({"stock": {"knife; clean": -1}}, "found the stock -1"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(named: dict[str, object], message: str) -> None:
+    with pytest.raises(UserError, match=message):
+        foon_asp.load().problem("ice", **{"items": "used-up", **named})  # type: ignore[arg-type]
+
+
+def test_below_level_3_it_is_refused() -> None:
+    with pytest.raises(UserError, match="at level 3 only"):
+        foon_asp.load(level=2).problem("ice", items="used-up")
+
+
+# --- The best plans.
+
+OBJECTIVES = (
+    (Objective.UNITS,),
+    (Objective.SUCCESS,),
+    (Objective.KITCHEN,),
+    (Objective.ATTEMPTS, Objective.KITCHEN),
+    (Objective.INPUTS_AND_INGREDIENTS, Objective.SUCCESS),
+    (Objective.KITCHEN, Objective.SUCCESS),
+)
+_LONGEST = 8
+
+
+def hold_against_brute_force(seed: int) -> Status:
+    problem, objectives = random_problem(seed), OBJECTIVES[seed % len(OBJECTIVES)]
+    asked = levels(objectives)
+    best = min((key(problem, *plan, asked) for plan in plans(problem, _LONGEST)), default=None)
+    outcome = solve(problem, objectives)
+    if outcome.costs is None:
+        assert outcome.status is Status.INFEASIBLE
+        assert best is None
+        return outcome.status
+    assert outcome.status is Status.OPTIMAL
+    found = tuple(map(Fraction, outcome.costs.key(asked)))
+    short = outcome.costs.units <= _LONGEST
+    assert best == found if short else best is None or found <= best
+    return outcome.status
+
+
+@pytest.mark.parametrize("seed", range(36))
+def test_small_networks(seed: int) -> None:
+    hold_against_brute_force(seed)
+
+
+@pytest.mark.slow
+def test_many_small_networks() -> None:
+    statuses = Counter(map(hold_against_brute_force, range(36, 1200)))
+    assert min(statuses[Status.OPTIMAL], statuses[Status.INFEASIBLE]) > 300
+
+
+def test_the_rule_is_that_of_brute_force() -> None:
+    for seed in range(300):
+        problem = random_problem(seed)
+        for u in range(len(problem.network)):
+            unit = problem.network.unit(u)
+            for node in unit.inputs:
+                found = fate(node, unit.inputs, unit.outputs, UTENSILS)
+                assert found.stays is stays(node, unit.inputs, unit.outputs), (seed, node, unit)
+
+
+@pytest.mark.parametrize(("goal", "units"), [("greek salad", 33), ("tomato soup", 22), ("apple crumble", 22)])
+def test_plans_of_the_bundled_kitchen(goal: str, units: int) -> None:
+    problem = foon_asp.load().problem(goal, items="used-up")
+    answer = foon_asp.solve(problem)
+    assert (answer.status, answer.costs and answer.costs.units) == (Status.OPTIMAL, units)
+    assert answer.tree is not None
+    assert foon_asp.check(problem, answer.tree).executes
+    assert answer.bounds[Objective.UNITS] == units
+
+
+def test_one_copy_in_stock_forbids_what_needs_two() -> None:
+    network = foon_asp.NetworkBuilder()
+    egg, oil, cake = map(parse_node, ("egg", "oil", "cake"))
+    network.add("boil", [egg], [parse_node("egg; done")], Source("by hand", 1))
+    network.add("bake", [parse_node("egg; done"), egg, oil], [cake], Source("by hand", 2))
+    foon = foon_asp.build(network.build(), kitchen=[egg, oil])
+
+    def asked(copies: int) -> foon_asp.Outcome:
+        return foon_asp.solve(foon.problem(cake, items="used-up", stock={egg: copies}), "kitchen")
+
+    assert asked(1).status is Status.INFEASIBLE
+    answer = asked(2)
+    assert answer.units == (0, 1)
+    assert answer.costs is not None
+    assert answer.costs.kitchen == 3  # two eggs, and oil that never runs out
+
+
+def test_a_goal_at_hand_takes_no_step_and_one_in_stock_has_to_be_left_over() -> None:
+    network = foon_asp.NetworkBuilder()
+    egg, cake = parse_node("egg"), parse_node("cake")
+    network.add("bake", [egg], [cake], Source("by hand", 1))
+    foon = foon_asp.build(network.build(), kitchen=[egg])
+    assert foon_asp.solve(foon.problem(egg, items="used-up")).units == ()
+    assert foon_asp.solve(foon.problem(egg, items="used-up", stock={egg: 1})).units == ()
+    assert foon_asp.solve(foon.problem(egg, items="used-up", stock={egg: 0})).status is Status.INFEASIBLE
+    assert foon_asp.solve(foon.problem(egg, cake, items="used-up", stock={egg: 2})).units == (0,)
+    both = foon.problem(egg, cake, items="used-up", stock={egg: 1})
+    assert foon_asp.solve(both).status is Status.INFEASIBLE
+    assert "each plan would use up more than there is" in foon_asp.solve(both).text()
+
+
+# --- Replay.
+
+
+def test_a_replay_says_which_copy_is_missing_and_who_took_it(cli: Cli, tmp_path: Path) -> None:
+    tree = tmp_path / "tree.txt"
+    foon = foon_asp.load()
+    tree.write_text(str(foon_asp.solve(foon.problem("greek salad")).tree), encoding="utf-8")
+    ran = cli("check", tree, "--goal", "greek salad", "--items", "used-up")
+    assert ran.code == 1
+    assert "does not run (strict containers, items used up)\nstep 14, core" in ran.out
+    assert "lacks a copy of knife; clean; used up by step 4 (cut)" in ran.out
+    problem = foon.problem("greek salad", items="used-up")
+    checked = foon_asp.check(problem, tree)
+    assert checked.replay is not None
+    assert checked.replay.shortage is not None
+    assert checked.replay.shortage.taken == (3,)
+    assert checked.in_order is None
+
+
+def test_a_plan_may_repeat_units_and_is_read_back_with_its_repeats(cli: Cli, tmp_path: Path) -> None:
+    for format_, name in (("foon", "plan.txt"), ("json", "plan.json")):
+        plan = tmp_path / name
+        ran = cli("solve", "--goal", "greek salad", "--items", "used-up", "--format", format_)
+        plan.write_text(ran.out, encoding="utf-8")
+        ran = cli("check", plan, "--goal", "greek salad", "--items", "used-up")
+        assert ran.code == 0
+        assert "33 units" in ran.out
+
+
+def test_a_missing_goal_is_said_too() -> None:
+    problem = random_problem(0)
+    empty = replace(problem, kitchen=frozenset(), items=UsedUp())
+    shortage = replay_for(empty, ()).shortage
+    assert shortage is not None
+    assert (shortage.step, shortage.taken) == (None, ())
+
+
+# --- What is not built says so.
+
+
+def test_other_questions_say_by_name_that_they_are_not_built_for_it(cli: Cli) -> None:
+    problem = foon_asp.load().problem("ice", items="used-up")
+    with pytest.raises(UserError, match=r"^pareto is not built for items that are used up"):
+        foon_asp.pareto(problem)
+    with pytest.raises(UserError, match=r"^why-not is not built"):
+        foon_asp.why_not(problem)
+    ran = cli("regret", "--goal", "ice", "--items", "used-up")
+    assert (ran.code, ran.err) == (
+        2,
+        "error: regret is not built for items that are used up (--items used-up)\n",
+    )
+    for words in (("--soft", "forbid_motion=3"), ("--cross-check",), ("--certificate", "x.json")):
+        ran = cli("solve", "--goal", "ice", "--items", "used-up", *words)
+        assert ran.code == 2
+        assert f"solve {words[0]} is not built for items that are used up" in ran.err
