@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from foon_asp.problem import Objective as Objective
     from foon_asp.problem import Problem as Problem
     from foon_asp.problem import UsedUp as UsedUp
-    from foon_asp.proof import Simulation as Simulation
-    from foon_asp.proof import Verdict as Verdict
+    from foon_asp.proof.simulation import Simulation as Simulation
+    from foon_asp.proof.simulation import Verdict as Verdict
     from foon_asp.proof.verify import RefusedError as RefusedError
     from foon_asp.questions.alternatives import Alternatives as Alternatives
     from foon_asp.questions.alternatives import alternatives as alternatives
@@ -104,7 +104,7 @@ _ROOMS = {
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
-    "proof": ("Simulation", "Verdict"),
+    "proof.simulation": ("Simulation", "Verdict"),
     "proof.verify": ("RefusedError",),
     "text.line": ("parse_node",),
     "text.reader": ("FoonReader",),

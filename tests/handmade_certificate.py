@@ -1,5 +1,6 @@
 """Certificates written by hand, without the finder: right ones, and forged ones with a seal that fits."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from foon_asp.problem import Problem
@@ -19,7 +20,7 @@ def handmade(problem: Problem, **values: Any) -> Content:
         "level": problem.network.level,
         "objective": ["units"],
         "digests": verify.digests(*_data(problem)),
-        "forbidden": {"motions": [], "objects": []},
+        "rules": [],
         "not_covered": [],
         "tree": None,
         "costs": None,
@@ -28,6 +29,10 @@ def handmade(problem: Problem, **values: Any) -> Content:
         "proof": {"weights": []},
         **values,
     }
+    if content["version"] in (1, 2, 3):
+        content = {"forbidden": {"motions": [], "objects": []}, **content}
+        del content["rules"]
+        content["digests"] = {key: sha for key, sha in content["digests"].items() if key != "sources"}
     return {**content, "seal": verify.seal(content)}
 
 
@@ -37,8 +42,16 @@ def check(content: Any, problem: Problem) -> verify.Verified:
 
 
 def older(problem: Problem) -> dict[str, str]:
-    """Give the digests that certificates had before there were prices."""
-    return {name: digest for name, digest in verify.digests(*_data(problem)).items() if name != "prices"}
+    """Give the digests that certificates had before there were prices, and sources."""
+    digests = verify.digests(*_data(problem))
+    return {name: digest for name, digest in digests.items() if name not in ("prices", "sources")}
+
+
+def forbid(motions: Iterable[str] = (), labels: Iterable[str] = ()) -> list[dict[str, str]]:
+    """Give the rules that forbid motions and labels of objects, in order."""
+    rules = [{"rule": "forbid_motion", "forbidden_motion": motion} for motion in motions]
+    rules += [{"rule": "forbid_object", "forbidden_object": label} for label in labels]
+    return sorted(rules, key=verify.canonical)
 
 
 def _data(problem: Problem) -> tuple[Any, ...]:

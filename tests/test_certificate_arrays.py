@@ -9,6 +9,7 @@ from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof.verify import LimitError
+from tests.handmade_certificate import forbid
 
 UNITS, INPUTS, INGREDIENTS, SUCCESS, KITCHEN, *_ = Objective
 START, SALT, MIDDLE, END = range(4)
@@ -115,10 +116,13 @@ def test_goals_at_hand_ask_for_nothing() -> None:
 
 def test_units_of_forbidden_motions_and_objects() -> None:
     asked = problem()
-    assert Arrays(asked, (UNITS,), Coverage(("bake", "pour"))).forbidden == {1, 2}
-    assert Arrays(asked, (UNITS,), Coverage((), ("middle",))).forbidden == {0, 1}  # made by one, needed
-    assert Arrays(asked, (UNITS,), Coverage(("pour",), ("salt",))).forbidden == {0, 2}
-    assert Arrays(asked, (UNITS,), Coverage(("stir",), ("pepper",))).forbidden == frozenset()
+    assert Arrays(asked, (UNITS,), Coverage(tuple(forbid(["bake", "pour"])))).forbidden == {1, 2}
+    assert Arrays(asked, (UNITS,), Coverage(tuple(forbid([], ["middle"])))).forbidden == {
+        0,
+        1,
+    }
+    assert Arrays(asked, (UNITS,), Coverage(tuple(forbid(["pour"], ["salt"])))).forbidden == {0, 2}
+    assert Arrays(asked, (UNITS,), Coverage(tuple(forbid(["stir"], ["pepper"])))).forbidden == frozenset()
 
 
 def test_what_nobody_asks_for_takes_no_rates() -> None:

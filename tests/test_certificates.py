@@ -25,6 +25,7 @@ from foon_asp.certificate import (
 from foon_asp.errors import BugError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.proof.constraint import Rule
 from foon_asp.proof.verify import RefusedError, Verified, read_certificate, verify
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
@@ -33,6 +34,7 @@ from foon_asp.text.writer import write_units
 from tests import oracle
 from tests.conftest import Cli
 from tests.gap_problem import gap_problem
+from tests.handmade_certificate import forbid
 from tests.random_problems import MOTIONS, random_objectives, random_problem
 
 RULES = list(ContainerRule)
@@ -157,18 +159,18 @@ def test_forbidden_motions_and_objects_are_certified() -> None:
         )
         settings = Settings((Path(name),), constants=(constant,))
         covered = coverage(settings)
-        by_motion = Coverage((motion,), ())
-        assert covered == (by_motion if name == "forbid_motion" else Coverage((), (label,)))
+        forbidden = forbid([motion]) if name == "forbid_motion" else forbid([], [label])
+        assert covered == Coverage(tuple(forbidden))
         outcome, found = certify_outcome(solve(problem, (Objective.SUCCESS,), settings), settings)
         assert found is not None
         assert outcome.proof is Proof.CERTIFICATE
         claim = verified(found, problem)
-        assert (claim.motions, claim.labels, claim.not_covered) == (*covered[:2], ())
+        assert (claim.rules, claim.not_covered) == covered
 
-        def allowed(tree: tuple[FunctionalUnit, ...], by: Coverage = covered) -> bool:
+        def allowed(tree: tuple[FunctionalUnit, ...], by: tuple[Rule, ...] = covered.rules) -> bool:
+            names = [name for rule in by for name in rule.values()]
             return not any(
-                unit.motion in by.motions
-                or any(node.label in by.labels for node in (*unit.inputs, *unit.outputs))
+                unit.motion in names or any(node.label in names for node in (*unit.inputs, *unit.outputs))
                 for unit in tree
             )
 
@@ -183,12 +185,12 @@ def test_forbidden_motions_and_objects_are_certified() -> None:
 
 
 @pytest.mark.slow
-def test_other_constraints_leave_a_bound_on_all_trees() -> None:
+def test_other_constraints_leave_a_bound_on_all_trees(tmp_path: Path) -> None:
     bounds = optimal = 0
     for seed in range(240):
         problem = random_problem(seed, RULES[seed % 2])
         motion = random.Random(seed).choice(MOTIONS)
-        settings = Settings((Path("require_motion"),), constants=(f"required_motion={motion}",))
+        settings = Settings((mine(tmp_path, f':- not use(U) : motion(U,"{motion}").'),))
         outcome, found = certify_outcome(solve(problem, (), settings), settings)
         if outcome.status is Status.INFEASIBLE:
             free = list(oracle.trees(problem))
@@ -218,7 +220,7 @@ def test_a_file_of_the_users_is_not_ours_by_its_name(tmp_path: Path) -> None:
     file = tmp_path / "forbid_motion.lp"
     file.write_text('#const forbidden_motion = "".\n:- use(U), motion(U,forbidden_motion), U > 3.\n')
     found = coverage(Settings((file,), constants=("forbidden_motion=pour",)))
-    assert found.motions == ()
+    assert found.rules == ()
     assert [name.split()[0] for name in found.not_covered] == ["forbid_motion.lp", "forbidden_motion=pour"]
 
 
@@ -340,7 +342,7 @@ def test_verify_refuses_other_data_and_changes(cli: Cli, tmp_path: Path) -> None
     changed = cli("verify", file, "--format", "json")
     assert changed.code == 1
     reason = "the seal does not match: something was changed"
-    assert changed.json == {"schema": "foon-asp/verify/1", "verified": False, "reason": reason}
+    assert changed.json == {"schema": "foon-asp/verify/2", "verified": False, "reason": reason}
     file.write_text("{")
     assert cli("verify", file).code == 1
     assert cli("verify", tmp_path / "none.json").code == 2
@@ -357,7 +359,8 @@ def test_certify_a_given_tree(cli: Cli, tmp_path: Path) -> None:
     file.unlink()
     forbidden = cli(*words, "--constraint", "forbid_object", "-c", "forbidden_object=macaroni")
     assert forbidden.code == 1
-    assert forbidden.err == "no certificate: a unit of the tree is forbidden by the constraints\n"
+    said = "by the constraints, the tree has unit 78, which a rule removes"
+    assert forbidden.err == f"no certificate: {said}\n"
     worse = cli(*words, "--objective", "success")
     assert worse.code == 1
     assert worse.err.startswith(
@@ -373,12 +376,21 @@ def test_certify_a_given_tree(cli: Cli, tmp_path: Path) -> None:
     assert "is not in the network" in foreign.err
 
 
-def test_certify_prints_what_it_finds(cli: Cli) -> None:
+def mine(folder: Path, rule: str) -> Path:
+    """Write a rule of the user's own, of which certificates do not speak."""
+    file = folder / "mine.lp"
+    file.write_text(rule)
+    return file
+
+
+NO_CRUSHING = ':- use(U), motion(U,"crush").'
+
+
+def test_certify_prints_what_it_finds(cli: Cli, tmp_path: Path) -> None:
     found = cli("certify", "--goal", "apple pie")
     assert found.code == 1
     assert found.json["claim"] == "infeasible"
-    words = ("--constraint", "at_most_motion", "-c", "limited_motion=crush", "-c", "max_uses=0")
-    bound = cli("certify", "--goal", "ice", *words)
+    bound = cli("certify", "--goal", "ice", "--constraint", mine(tmp_path, NO_CRUSHING))
     assert bound.code == 3
     assert bound.json["claim"] == "bound"
     assert "units at least 2; the tree has 3 (gap 1)" in bound.err
@@ -403,7 +415,7 @@ def test_the_answer_stands_when_the_search_for_a_certificate_is_interrupted(
 
 def test_a_bound_by_success_is_a_product(cli: Cli, tmp_path: Path) -> None:
     file = tmp_path / "proof.json"
-    words = ("--constraint", "at_most_units", "-c", "max_units=9", "--objective", "success")
+    words = ("--constraint", mine(tmp_path, ":- #count{U : use(U)} > 9."), "--objective", "success")
     ran = cli("solve", "--goal", "macaroni", *words, "--certificate", file, "--format", "json")
     assert ran.code == 0
     assert ran.json["proof"] == "solver"
@@ -412,7 +424,7 @@ def test_a_bound_by_success_is_a_product(cli: Cli, tmp_path: Path) -> None:
 
 def test_a_bound_is_said_to_be_one(cli: Cli, tmp_path: Path) -> None:
     file = tmp_path / "proof.json"
-    words = ("--constraint", "at_most_motion", "-c", "limited_motion=crush", "-c", "max_uses=0")
+    words = ("--constraint", mine(tmp_path, NO_CRUSHING))
     ran = cli("solve", "--goal", "ice", *words, "--certificate", file, "--format", "json")
     assert ran.code == 0
     assert ran.json["status"] == "optimal"
@@ -420,7 +432,7 @@ def test_a_bound_is_said_to_be_one(cli: Cli, tmp_path: Path) -> None:
     checked = cli("verify", file)
     assert checked.code == 0
     assert "verified: a bound on all task trees" in checked.out
-    assert "not covered, so among all trees: at_most_motion.lp" in checked.out
+    assert "not covered, so among all trees: mine.lp" in checked.out
 
 
 @pytest.mark.parametrize("level", [1, 2])
@@ -467,6 +479,7 @@ print(*sys.modules)
     loaded = run_python("-I", "-c", alone).split()
     ours = {name for name in loaded if name.split(".")[0] == "foon_asp"}
     names = {"foon_asp", "foon_asp.questions", "foon_asp.questions.index"}  # what there is, by name alone
+    names |= {"foon_asp.proof", "foon_asp.proof.constraint", "foon_asp.proof.ruled"}  # its own parts
     assert ours == names | {name for name in ours if name.startswith("foon_asp.network")}
     assert not {"clingo", "highspy", "numpy", "lark", "click"} & {*loaded}
 

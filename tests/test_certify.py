@@ -24,7 +24,7 @@ from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Objective, Problem
 from foon_asp.proof import verify
 from tests.gap_problem import gap_problem
-from tests.handmade_certificate import check
+from tests.handmade_certificate import check, forbid
 
 UNITS, INPUTS, INGREDIENTS, SUCCESS, KITCHEN, *_ = Objective
 POUR, MIX, BAKE = range(3)
@@ -69,9 +69,9 @@ def found(certificate: Certificate | None) -> Certificate:
             ["{", ' "cuts": [],', ' "proof": {"weights": []},', ' "tree": null', "}"],
         ),
         (
-            {"forbidden": {"weights": [1]}, "proof": {"weights": [[0, ["1"]], [1, [{"1/2": "1"}]]]}},
+            {"rules": {"weights": [1]}, "proof": {"weights": [[0, ["1"]], [1, [{"1/2": "1"}]]]}},
             [
-                *("{", ' "forbidden": {"weights": [1]},', ' "proof": {"weights": ['),
+                *("{", ' "rules": {"weights": [1]},', ' "proof": {"weights": ['),
                 *('  [0, ["1"]],', '  [1, [{"1/2": "1"}]]', " ]}", "}"),
             ],
         ),
@@ -138,9 +138,9 @@ def test_among_trees_that_keep_to_other_rules_only_a_bound_is_proved() -> None:
 
 
 def test_what_is_forbidden_is_no_better_tree() -> None:
-    rules = Coverage(motions=("pour",), labels=("pepper",))
+    rules = Coverage(tuple(forbid(["pour"], ["pepper"])))
     certificate = found(certify(SMALL, (UNITS,), [MIX, BAKE], rules))
-    assert certificate.content["forbidden"] == {"motions": ["pour"], "objects": ["pepper"]}
+    assert certificate.content["rules"] == forbid(["pour"], ["pepper"])
     assert check(certificate.content, SMALL).tree == (MIX, BAKE)
 
 
@@ -187,7 +187,7 @@ def test_no_tree() -> None:
     assert END in cut
     assert SALT not in cut
     assert certify_infeasible(SMALL) is None
-    forbidden = found(certify_infeasible(SMALL, Coverage(motions=("bake",), labels=("salt",))))
+    forbidden = found(certify_infeasible(SMALL, Coverage(tuple(forbid(["bake"], ["salt"])))))
     assert forbidden.content["cuts"] == [[END]]
 
 
@@ -397,7 +397,7 @@ def test_a_certificate_holds_to_the_format_of_the_verifier() -> None:
     assert content["seal"] == verify.seal(content)
     assert list(content) == [
         *("format", "version", "claim", "goals", "containers", "level", "objective", "digests"),
-        *("forbidden", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
+        *("rules", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
     ]
     assert content["proof"] == {"weights": [[0, ["1"]]]}
     assert (content["tree"], content["costs"], content["cuts"]) == ([POUR], [1], [[END, MIDDLE]])

@@ -18,7 +18,7 @@ from foon_asp.compare.results_file import ResultsFile, comparison_json, read_com
 from foon_asp.compare.summary import Distance, summarize_comparisons
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
-from foon_asp.proof import Verdict
+from foon_asp.proof.simulation import Verdict
 from foon_asp.search import SEARCHES
 from tests.conftest import Cli
 from tests.test_command_line import KITCHEN, NETWORK, RATES

@@ -33,7 +33,7 @@ from foon_asp.network import (
     unit_at_level,
 )
 from foon_asp.problem import ContainerRule, Objective, Problem, executable_order, first_tree, reach, relevant
-from foon_asp.proof import Verdict, simulate, simulate_for
+from foon_asp.proof.simulation import Verdict, simulate, simulate_for
 from foon_asp.proof.verify import VERSION, RefusedError, seal
 from foon_asp.questions.diff import side
 from foon_asp.questions.menu import menu

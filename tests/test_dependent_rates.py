@@ -163,7 +163,7 @@ def test_a_constant_in_quotes_is_the_text_that_the_solver_takes_it_for(
 ) -> None:
     ran = cli("certify", *quoted, "-c", f"forbidden_motion={constant}")
     assert ran.code == 0
-    assert ran.json["forbidden"] == {"motions": ['cr"u\\sh'], "objects": []}
+    assert ran.json["rules"] == [{"rule": "forbid_motion", "forbidden_motion": 'cr"u\\sh'}]
     assert len(ran.json["tree"]) == 2
 
 

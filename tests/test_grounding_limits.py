@@ -24,7 +24,7 @@ from foon_asp.errors import UserError
 from foon_asp.grounding import worker_process
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.alternatives import alternatives
 from foon_asp.text.data_folder import find_data
 from tests.conftest import Cli

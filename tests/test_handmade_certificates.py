@@ -23,7 +23,7 @@ from foon_asp.network import (
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import verify
 from foon_asp.proof.verify import LimitError, RefusedError, digests, load_certificate, read_certificate
-from tests.handmade_certificate import Content, check, handmade, older
+from tests.handmade_certificate import Content, check, forbid, handmade, older
 
 
 def network(*units: tuple[str, list[ObjectNode], list[ObjectNode]]) -> Network:
@@ -65,8 +65,9 @@ START_ID, END_ID, SALT_ID, MIDDLE_ID, RARE_ID, OTHER_ID = range(6)
 BOUND: Content = {"claim": "bound", "bound": ["0"]}
 NO_TREE: Content = {"claim": "infeasible", "objective": []}
 POURED: Content = {"tree": [POUR], "costs": [1]}
-NO_POURING: Content = {"forbidden": {"motions": ["pour"], "objects": []}}
+NO_POURING: Content = {"rules": forbid(["pour"])}
 ONE = {"weights": [[0, ["1"]]]}
+ANOTHER_KIND = "a value of a rule is of another kind"
 BOTH = {"weights": [[0, ["1"]], [1, ["1"]]]}
 
 
@@ -111,7 +112,7 @@ def test_an_optimum_by_each_objective(
         "strict",
         3,
         tuple(objective),
-        *((), (), ()),
+        *((), ()),
         tuple(tree),
         tuple(Fraction(cost) for cost in costs),
         len(cuts),
@@ -192,16 +193,16 @@ def test_no_tree_at_all() -> None:
 def test_what_is_forbidden_is_no_member() -> None:
     values: Content = {"tree": [MIX, BAKE], "costs": [2], "cuts": [[END_ID], [END_ID, MIDDLE_ID]]}
     found = accepted(PLAIN, **values, **NO_POURING, proof=BOTH)
-    assert (found.claim, found.motions, found.labels) == ("optimal", ("pour",), ())
+    assert (found.claim, list(found.rules)) == ("optimal", forbid(["pour"]))
     assert refusal(PLAIN, **values, proof=BOTH) == "unit or item 0 carries more than it costs"
-    salty: Content = {"forbidden": {"motions": [], "objects": ["salt"]}}
-    assert accepted(PLAIN, **POURED, cuts=[[END_ID]], proof=ONE, **salty).labels == ("salt",)
-    assert refusal(PLAIN, **values, proof=BOTH, **salty) == "unit 1 of the tree is forbidden"
-    assert refusal(PLAIN, **POURED, **NO_POURING) == "unit 0 of the tree is forbidden"
+    salty: Content = {"rules": forbid([], ["salt"])}
+    assert accepted(PLAIN, **POURED, cuts=[[END_ID]], proof=ONE, **salty).rules == (*forbid([], ["salt"]),)
+    assert refusal(PLAIN, **values, proof=BOTH, **salty) == "the tree has unit 1, which a rule removes"
+    assert refusal(PLAIN, **POURED, **NO_POURING) == "the tree has unit 0, which a rule removes"
     for label in ("middle", "end"):  # an input of one, an output of the other
-        gone: Content = {"forbidden": {"motions": [], "objects": [label]}}
+        gone: Content = {"rules": forbid([], [label])}
         unit = MIX if label == "middle" else BAKE
-        assert refusal(PLAIN, **values, **gone) == f"unit {unit} of the tree is forbidden"
+        assert refusal(PLAIN, **values, **gone) == f"the tree has unit {unit}, which a rule removes"
 
 
 def test_what_is_not_covered_is_passed_on() -> None:
@@ -402,11 +403,11 @@ NO_ID = "expected ids of the network"
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"version": 0}, "expected version 3 of the format"),
-        ({"version": 4}, "expected version 3 of the format"),
-        ({"version": True}, "expected version 3 of the format"),
-        ({"version": 2.0}, "expected version 3 of the format"),
-        ({"version": "2"}, "expected version 3 of the format"),
+        ({"version": 0}, "expected version 4 of the format"),
+        ({"version": 5}, "expected version 4 of the format"),
+        ({"version": True}, "expected version 4 of the format"),
+        ({"version": 2.0}, "expected version 4 of the format"),
+        ({"version": "2"}, "expected version 4 of the format"),
         ({"level": 2}, "not a claim about level 3"),
         ({"level": 3.0}, "not a claim about level 3"),
         ({"level": None}, "not a claim about level 3"),
@@ -437,7 +438,7 @@ NO_ID = "expected ids of the network"
         ({"proof": {"weights": ["ab"]}}, "expected a cut and its weight"),
         ({"proof": {"hopeless": 0}}, "expected the number of a cut"),
         ({"proof": {"hopeless": -1}}, "expected the number of a cut"),
-        ({"proof": {}}, "expected weights, a hopeless cut or a branch"),
+        ({"proof": {}}, "expected weights, a hopeless cut, a broken rule or a branch"),
         ({"objective": ["units", "units"]}, "an objective stands twice"),
         ({"objective": ["unit"]}, "an objective is unknown"),
         ({"objective": []}, "expected objectives"),
@@ -453,9 +454,33 @@ NO_ID = "expected ids of the network"
         ({"costs": [0]}, "costs are given, but no tree"),
         ({"claim": "optimal"}, "expected the tree that is optimal"),
         ({"claim": "infeasible"}, "there cannot be a tree"),
-        ({"forbidden": {"motions": ["b", "a"], "objects": []}}, "expected names in order, each of them once"),
-        ({"forbidden": {"motions": [], "objects": ["a", "a"]}}, "expected names in order, each of them once"),
-        ({"forbidden": {"motions": [1], "objects": []}}, "expected names"),
+        (
+            {"version": 3, "forbidden": {"motions": ["b", "a"], "objects": []}},
+            "expected names in order, each of them once",
+        ),
+        (
+            {"version": 3, "forbidden": {"motions": [], "objects": ["a", "a"]}},
+            "expected names in order, each of them once",
+        ),
+        ({"version": 3, "forbidden": {"motions": [1], "objects": []}}, "expected names"),
+        ({"rules": {}}, "expected a list"),
+        ({"rules": [[]]}, "expected an object"),
+        ({"rules": [{}]}, "a rule is unknown"),
+        ({"rules": [{"rule": ["forbid_motion"]}]}, "a rule is unknown"),
+        ({"rules": [{"rule": "forbid_motion"}]}, "expected the keys rule, forbidden_motion"),
+        ({"rules": forbid(["a", "b"])[::-1]}, "expected rules in order, each of them once"),
+        ({"rules": forbid([], ["a", "a"])}, "expected rules in order, each of them once"),
+        (
+            {"rules": [{"rule": "forbid_motion", "forbidden_motion": 1}]},
+            ANOTHER_KIND,
+        ),
+        ({"rules": [{"rule": "at_most_units", "max_units": "1"}]}, ANOTHER_KIND),
+        (
+            {"rules": [{"rule": "only_sources", "allowed": ["b", "a"]}]},
+            "expected names in order, each of them once",
+        ),
+        ({"rules": [{"rule": "only_sources", "allowed": [1]}]}, "expected names"),
+        ({"rules": forbid([f"sing {number:03}" for number in range(101)])}, "it has more than 100 rules"),
         ({"not_covered": ["a\nb"]}, "a constraint has no printable name"),
         ({"containers": "loose"}, "expected the containers strict or implied"),
         ({"containers": "implied", "version": 1}, verify._VERSION_1),
@@ -668,6 +693,7 @@ def test_digests_are_those_of_canonical_json() -> None:
         "rates": sha('[["mix","3"],["pour","1/2"]]'),
         "utensils": sha('["bowl","cup"]'),
         "prices": sha("null"),
+        "sources": sha("null"),
     }
     unit = FunctionalUnit("mix", (END,), (dish,))
     elsewhere = FunctionalUnit("mix", (END,), (END,))
@@ -734,6 +760,7 @@ def test_steps_of_branches(monkeypatch: pytest.MonkeyPatch) -> None:
     bake = {"branch": {"unit": BAKE}, "without": {"hopeless": 0}, "using": {"weights": [[1, ["1"]]]}}
     dig = {"branch": {"unit": DIG}, "without": bake, "using": bake}
     values: Content = {**BOUND, **NO_POURING, "bound": ["2"], "cuts": [[END_ID], [MIDDLE_ID]], "proof": dig}
+    rule = 10 * (4 + 6)  # units and nodes
     cuts = 3 + 2
     root = 1 + 0 + 1  # a look, those used, those left out
     using = 1 + 1 + 1
@@ -744,7 +771,7 @@ def test_steps_of_branches(monkeypatch: pytest.MonkeyPatch) -> None:
     without_bake = (1 + 0 + 3) + (1 + 1 + 0 + 2)
     using_bake = (1 + 1 + 2) + 5 + (1 + 1 + 1 + 1) + 5 + 10 + 10
     without_dig = without + without_bake + using_bake
-    steps(monkeypatch, cuts + root + with_dig + without_dig, PLAIN, **values)
+    steps(monkeypatch, rule + cuts + root + with_dig + without_dig, PLAIN, **values)
 
 
 def test_steps_of_logarithms(monkeypatch: pytest.MonkeyPatch) -> None:

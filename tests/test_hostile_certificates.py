@@ -18,7 +18,7 @@ from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli
-from tests.handmade_certificate import Content, check, handmade
+from tests.handmade_certificate import Content, check, forbid, handmade
 
 SECONDS = 20  # a refusal takes one or two; the machine may be busy
 
@@ -205,7 +205,7 @@ def test_changes_at_random_are_refused_and_never_crash() -> None:
             except RefusedError as refused:
                 str(refused).encode()
             else:  # a claim that leaves out a motion of no unit is as true as before
-                assert place[0] in ("forbidden", "not_covered"), place
+                assert place[0] in ("rules", "not_covered"), place
                 verified_text(found, data.network, mutant).encode()
 
 
@@ -224,10 +224,14 @@ def test_a_bound_far_below_anything_is_said_without_a_crash() -> None:
 
 
 def test_names_say_nothing_in_a_line_of_their_own() -> None:
-    forbidden = {"motions": ["a\nverified: b"], "objects": ["c\x1b[31m\nd"]}
-    content = handmade(WIDE, **UNITS, claim="bound", bound=["0"], forbidden=forbidden)
+    rules = forbid(["a\nverified: b"], ["c\x1b[31m\nd"])
+    content = handmade(WIDE, **UNITS, claim="bound", bound=["0"], rules=rules)
     lines = verified_text(check(content, WIDE), WIDE.network, content).splitlines()
-    assert "among the trees without the motion a\\u000averified: b, the object c\\u001b[31m\\u000ad" in lines
+    for said in (
+        "forbid_motion (forbidden_motion: a\\u000averified: b)",
+        "forbid_object (forbidden_object: c\\u001b[31m\\u000ad)",
+    ):
+        assert f"among the trees that keep to {said}" in lines
 
 
 def test_limits_are_refusals() -> None:

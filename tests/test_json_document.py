@@ -18,10 +18,10 @@ from foon_asp.cli.verbs import VERBS, verb_command
 from foon_asp.document.schema import SCHEMAS, schema, schema_kinds
 from foon_asp.network import LEVELS, ObjectNode
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.proof import Verdict
+from foon_asp.proof.simulation import Verdict
 from foon_asp.search import Ending
 from foon_asp.text.json_node import node_json, read_node_json
-from foon_asp.text.json_value import json_text, read_json
+from foon_asp.text.json_value import json_text, read_json, schema_name
 from tests.conftest import ROOT, Cli, valid
 
 FORBID = ("--constraint", "forbid_motion", "-c", 'forbidden_motion="crush"')
@@ -141,7 +141,7 @@ def test_every_verb_that_answers_has_a_schema() -> None:
 @pytest.mark.parametrize(("verb", "words"), CASES)
 def test_what_is_printed_is_what_the_schema_says(printed: Any, verb: str, words: tuple[str, ...]) -> None:
     kind = "answer" if verb == "solve" else verb
-    assert printed(verb, *words)["schema"] == f"foon-asp/{kind}/1"
+    assert printed(verb, *words)["schema"] == schema_name(kind)
 
 
 HEAD = ("goals", "containers", "items", "level", "objectives")
@@ -248,7 +248,7 @@ def test_the_words_of_the_schemas_are_ours() -> None:
 
 def test_the_verb_prints_them(cli: Cli) -> None:
     listed = cli("schema").out.splitlines()
-    assert [line.split()[0] for line in listed] == [f"foon-asp/{kind}/1" for kind in schema_kinds()]
+    assert [line.split()[0] for line in listed] == [schema_name(kind) for kind in schema_kinds()]
     assert (
         json.loads(cli("schema", "solve").out) == schema("answer") == json.loads(cli("schema", "answer").out)
     )

@@ -24,7 +24,7 @@ from foon_asp.network import (
     unit_at_level,
 )
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.text.data_folder import find_data, kitchen_nodes, read_data
 from tests.conftest import CORPUS, ROOT, Cli
 from tests.oracle import needed

@@ -17,7 +17,7 @@ from foon_asp.asp import Reporter, Settings, Status, solve
 from foon_asp.deadline import Deadline
 from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.text.writer import write_units
 from tests.hard_problem import hard_problem
 

@@ -13,7 +13,7 @@ from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.exact_optimum import ExactOptimum, exact_optimum
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic
-from foon_asp.bounds.lower_bound import Branch, CheaperError, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Packing, Proof, Prover
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.errors import BugError
 
@@ -62,6 +62,7 @@ def check(
                 bound(proof.using, used | {proof.action}, without),
             )
             return min((side for side in sides if side is not None), default=None)
+        assert not isinstance(proof, Broken)  # there are no rules
         wanted = {*targets, *(o for a in used for o in graph.needs[a])}
         cuts = [proof.cut] if isinstance(proof, Hopeless) else [cut for cut, _ in proof.weights]
         for cut in cuts:

@@ -9,7 +9,7 @@ from foon_asp.compare.comparison import compare
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.proof import Verdict
+from foon_asp.proof.simulation import Verdict
 from foon_asp.search import (
     SEARCHES,
     Count,

@@ -6,7 +6,7 @@ import pytest
 
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source, TaskTree
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.proof import Obstacle, Verdict, simulate, simulate_for
+from foon_asp.proof.simulation import Obstacle, Verdict, simulate, simulate_for
 from tests import oracle
 from tests.random_problems import random_problem
 

@@ -12,7 +12,7 @@ from foon_asp import ObjectNode, Source, UserError, parse_node
 from foon_asp.asp import Status, solve
 from foon_asp.problem import Fate, Objective, UsedUp, levels
 from foon_asp.problem.items import fate
-from foon_asp.proof import replay_for
+from foon_asp.proof.replay import replay_for
 from foon_asp.text.item_list import read_stays, read_stock
 from tests.conftest import Cli
 from tests.used_up_oracle import UTENSILS, key, plans, random_problem, stays

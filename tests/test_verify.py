@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Settings, solve
-from foon_asp.certificate import Certificate, certify, certify_infeasible, certify_outcome
+from foon_asp.certificate import Certificate, Coverage, certify, certify_infeasible, certify_outcome
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.verify import RefusedError, Verified, seal, verify
@@ -20,6 +20,7 @@ from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
 from tests import oracle
+from tests.constraint_oracle import keeps
 from tests.gap_problem import gap_problem
 from tests.random_problems import MOTIONS, random_problem
 
@@ -130,8 +131,10 @@ def subjects() -> list[tuple[Problem, Content]]:
     bounds = 0
     for seed in range(100):
         problem = random_problem(seed, ContainerRule.STRICT)
+        covered = Coverage(not_covered=("mine.lp",))
         settings = Settings((Path("require_motion"),), constants=(f"required_motion={MOTIONS[seed % 6]}",))
-        _, bound = certify_outcome(solve(problem, (), settings), settings)
+        units = solve(problem, (), settings).units
+        bound = None if units is None else certify(problem, (Objective.UNITS,), units, covered)
         if bound is not None and bound.claim == "bound" and bounds < 3:
             bounds += 1
             found.append((problem, bound.content))
@@ -181,15 +184,7 @@ class Judge:
         else:
             self._trees = list(oracle.trees(problem)) if self._trees is None else self._trees
             trees = self._trees
-        trees = [
-            tree
-            for tree in trees
-            if not any(
-                unit.motion in claim.motions
-                or any(node.label in claim.labels for node in (*unit.inputs, *unit.outputs))
-                for unit in tree
-            )
-        ]
+        trees = [tree for tree in trees if all(keeps(problem, tree, rule) for rule in claim.rules)]
         if claim.claim == "infeasible":
             return not trees
         if claim.claim == "bound":
@@ -200,7 +195,7 @@ class Judge:
         tree = tuple(map(problem.network.unit, claim.tree))
         objectives = list(claim.objectives)
         keys = {tuple(oracle.measure(problem, other, o) for o in objectives) for other in trees}
-        return oracle.makes(problem, tree) and min(keys) == tuple(
+        return {*tree} in map(set, trees) and min(keys) == tuple(
             oracle.measure(problem, tree, o) for o in objectives
         )
 
@@ -234,8 +229,7 @@ def test_weights_landmarks_and_digests_cannot_be_changed_even_if_sealed_anew() -
         for path, mutant in mutants(content):
             if path[0] in {"digests", "proof", "costs", "bound", "claim", "format", "version"}:
                 tried += 1
-                same = path == ("version",) and mutant["version"] == 1 and content["containers"] == "strict"
-                assert (accepted(mutant, problem) is not None) is same, path
+                assert accepted(mutant, problem) is None, path
         for number in range(len(content["cuts"])):  # a landmark and its weight, dropped together
             mutant = copy.deepcopy(content)
             del mutant["cuts"][number]

@@ -16,7 +16,7 @@ from foon_asp.asp.solver import Reporter
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
-from foon_asp.proof import replay_for
+from foon_asp.proof.replay import replay_for
 
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""

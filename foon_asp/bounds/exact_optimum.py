@@ -4,18 +4,19 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.bounds.lexicographic import Lexicographic, Vector
+from foon_asp.bounds.lexicographic import Lexicographic, Vector, times
 
 _STEPS = 400  # from a float optimum it takes few; a walk of this length leads nowhere
 _ZERO, _ONE = Fraction(), Fraction(1)
 
 _Matrix = Mapping[int, Mapping[int, Fraction]]
+Limit = tuple[Mapping[int, Fraction], Fraction]
 
 
 class ExactOptimum(NamedTuple):
     """The optimum of a covering problem: the share of each column and the weight of each row, where above 0.
 
-    ``value`` is the sum of the weights, and what the columns cost.
+    ``value`` is the sum of the weights, those of limits times the limit below 0, and what the columns cost.
     """
 
     x: dict[int, Fraction]
@@ -33,23 +34,29 @@ def exact_optimum(
     order: Lexicographic,
     columns: Sequence[int],
     tight: Sequence[int],
+    limits: Sequence[Limit] = (),
 ) -> ExactOptimum | None:
     """Solve a covering problem over ordered costs exactly, from a basis near the optimum.
 
-    ``rows`` list the columns that cover them, ``costs`` are those of the columns, none below 0. The basis is
-    given by its columns and by the rows that are tight in it, as many of them. Each step solves the basis
-    anew, and by Bland's rule none comes back. ``None`` where the basis is singular or its solution not
+    ``rows`` list the columns that cover them, ``costs`` are those of the columns, none below 0. Before these
+    rows come ``limits``: what each column takes of one, and how much there is. The basis is given by its
+    columns and by the rows that are tight in it, as many of them. Each step solves the basis anew, and by
+    Bland's rule none comes back. ``None`` where the basis is singular or its solution not
     feasible, which floats can lead to, or when the walk is too long.
     """
     inside, held = set(columns), set(tight)
+    full = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
+    full += (dict.fromkeys(row, _ONE) for row in rows)
+    least = [-most for _, most in limits] + [_ONE] * len(rows)
     try:
         for _ in range(_STEPS):
-            basis = _Basis(rows, costs, inside, held)
+            basis = _Basis(full, least, costs, inside, held)
             entering = basis.entering(order)
             if entering is None:
                 kept = {row: weight for row, weight in basis.weights.items() if order.sign(weight)}
                 shares = {column: share for column, share in basis.x.items() if share}
-                return ExactOptimum(shares, kept, order.total(kept.values()))
+                value = order.total(times(weight, least[row]) for row, weight in kept.items())
+                return ExactOptimum(shares, kept, value)
             for number, is_row in (entering, basis.leaving(*entering)):
                 (held if is_row else inside).symmetric_difference_update({number})
     except _NowhereError:
@@ -67,17 +74,25 @@ class _Basis:
     """
 
     def __init__(
-        self, rows: Sequence[Sequence[int]], costs: Sequence[Vector], columns: set[int], tight: set[int]
+        self,
+        rows: Sequence[Mapping[int, Fraction]],
+        least: Sequence[Fraction],
+        costs: Sequence[Vector],
+        columns: set[int],
+        tight: set[int],
     ) -> None:
         self._rows, self._costs = rows, costs
-        self._matrix = {r: {c: _ONE for c in rows[r] if c in columns} for r in sorted(tight)}
+        self._matrix = {r: {c: value for c, value in rows[r].items() if c in columns} for r in sorted(tight)}
         transposed: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
         for row, entries in self._matrix.items():
-            for column in entries:
-                transposed[column][row] = _ONE
-        self.x = {c: share for c, (share,) in _solve(self._matrix, dict.fromkeys(tight, (_ONE,))).items()}
+            for column, value in entries.items():
+                transposed[column][row] = value
+        self.x = {c: share for c, (share,) in _solve(self._matrix, {r: (least[r],) for r in tight}).items()}
         self.weights = _solve(transposed, {column: costs[column] for column in columns})
-        self.slack = [sum((self.x[c] for c in row if c in self.x), -_ONE) for row in rows]
+        self.slack = [
+            sum((value * self.x[c] for c, value in row.items() if c in self.x), -least[r])
+            for r, row in enumerate(rows)
+        ]
         if any(value < 0 for value in (*self.x.values(), *self.slack)):
             raise _NowhereError
 
@@ -88,9 +103,9 @@ class _Basis:
         """
         loads: dict[int, list[Vector]] = {}
         for row, weight in self.weights.items():
-            for column in self._rows[row]:
+            for column, value in self._rows[row].items():
                 if column not in self.x:  # those are loaded with just their costs
-                    loads.setdefault(column, []).append(weight)
+                    loads.setdefault(column, []).append(times(weight, value))
         for column in sorted(loads):
             if order.compare(order.total(loads[column]), self._costs[column]) > 0:
                 return column, False
@@ -101,12 +116,12 @@ class _Basis:
         if is_row:
             side = {row: (Fraction(-(row == number)),) for row in self._matrix}
         else:
-            side = {row: (Fraction(number in self._rows[row]),) for row in self._matrix}
+            side = {row: (self._rows[row].get(number, _ZERO),) for row in self._matrix}
         fall = {column: value for column, (value,) in _solve(self._matrix, side).items()}
         limits = [(self.x[c] / f, False, c) for c, f in fall.items() if f > 0]
         for row, space in enumerate(self.slack):
-            lost = sum((fall[c] for c in self._rows[row] if c in fall), _ZERO)
-            lost -= not is_row and number in self._rows[row]
+            lost = sum((value * fall[c] for c, value in self._rows[row].items() if c in fall), _ZERO)
+            lost -= _ZERO if is_row else self._rows[row].get(number, _ZERO)
             if lost > 0:  # never in a tight row
                 limits.append((space / lost, True, row))
         _, leaves_row, leaving = min(limits)  # there is one, as no cost is below 0

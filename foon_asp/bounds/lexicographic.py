@@ -133,6 +133,11 @@ def minus(one: Vector, other: Vector) -> Vector:
     return tuple(a - b for a, b in zip(one, other, strict=True))
 
 
+def times(vector: Vector, factor: Fraction) -> Vector:
+    """Multiply a cost by a rational number."""
+    return vector if factor == 1 else tuple(part * factor for part in vector)
+
+
 @lru_cache(maxsize=4096)
 def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
     """Give ``-log(rate)`` to ``digits`` digits, and its greatest error; the rate is below 1."""

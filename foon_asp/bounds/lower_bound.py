@@ -4,19 +4,23 @@ Weights on landmarks that overload no action (what the landmarks of an action we
 cost) add up to a lower bound on the cost of every derivation. The best such weights solve the dual of the
 linear relaxation of hitting every landmark; landmarks are added as long as one is found that the relaxed
 solution does not hit (Bonet and Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
+
+Where at most so much of something may be used, that is one more row of the relaxation: an action that takes
+of it may carry more weight, and what all that there is carries is taken from the bound.
 """
 
 import math
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
 from functools import cmp_to_key
 from operator import mul
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from foon_asp.bounds.cut import Cut, Cutter
-from foon_asp.bounds.exact_optimum import ExactOptimum, exact_optimum
+from foon_asp.bounds.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus
+from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.bounds.relaxation import Covering
 
 _HIT = 0.999999  # a landmark of a greater share is taken to be hit
@@ -24,16 +28,30 @@ _ORDERS = 3  # in how many orders cuts are grown before the relaxation counts as
 _FINER = 1e-4  # how much less a level counts than the one before, in floats
 
 
+_DEAR = 1000  # times what is to be proved: what it costs a relaxed solution to go beyond a limit
+
+
 class Packing(NamedTuple):
-    """Weighted cuts; with the costs of the actions taken as used, the weights add up to a lower bound."""
+    """Weighted cuts; with the costs of the actions taken as used, the weights add up to a lower bound.
+
+    ``limits`` are the weights of limits, by their place; what is left of a limit, times its weight, is taken
+    from the bound.
+    """
 
     weights: tuple[tuple[Cut, Vector], ...]
+    limits: tuple[tuple[int, Vector], ...] = ()
 
 
 class Hopeless(NamedTuple):
     """A cut without members: under the branches taken, nothing reaches the targets."""
 
     cut: Cut
+
+
+class Broken(NamedTuple):
+    """Under the branches taken, a rule is broken: no derivation that keeps to it has the actions used."""
+
+    rule: int
 
 
 class Branch(NamedTuple):
@@ -44,7 +62,17 @@ class Branch(NamedTuple):
     using: "Proof"
 
 
-Proof = Packing | Hopeless | Branch
+Proof = Packing | Hopeless | Broken | Branch
+
+
+class Rules(Protocol):
+    """Rules that derivations keep to, and that neither targets nor limits say."""
+
+    def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        """Give by rule the actions that are in no derivation with those used and none of the others."""
+
+    def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
+        """Give some actions of a derivation by which it breaks a rule, none where it keeps to all."""
 
 
 class CheaperError(Exception):
@@ -62,8 +90,9 @@ class _TimeUpError(Exception):
 class Prover:
     """Looks for proofs about one hypergraph, its targets and the cost of each action.
 
-    Derivations with an action of ``forbidden`` do not count. ``expired`` says when to give up; it is asked
-    between steps that take milliseconds on thousands of actions.
+    Derivations with an action of ``forbidden`` do not count, nor do those that go beyond one of the
+    ``limits`` or break one of the ``rules``. ``expired`` says when to give up; it is asked between steps that
+    take milliseconds on thousands of actions.
     """
 
     def __init__(
@@ -75,8 +104,10 @@ class Prover:
         forbidden: frozenset[int] = frozenset(),
         expired: Callable[[], bool] = lambda: False,
         known: Iterable[Iterable[int]] = (),
+        limits: Sequence[Limit] = (),
+        rules: Rules | None = None,
     ) -> None:
-        self._known = tuple(known)
+        self._known, self._limits, self._rules = tuple(map(frozenset, known)), limits, rules
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(0)
@@ -104,17 +135,27 @@ class Prover:
         except _TimeUpError:
             return None
 
+    def prove_none(self) -> Proof | None:
+        """Prove that there is no derivation; ``None`` where that takes too long or there is one."""
+        try:
+            return self._prove(frozenset(), None, frozenset(), self._forbidden)
+        except _TimeUpError:
+            return None
+
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Give the weights, and their sum, that the relaxation alone has to offer: a lower bound.
 
         Cuts are grown with a good derivation in mind. ``None`` where there was no time, and where the targets
         are out of reach.
         """
-        cutter = Cutter(self._graph, self._targets, self._forbidden)
+        nothing: frozenset[int] = frozenset()
+        barred = self._bars(nothing, self._forbidden).values()
+        cutter = Cutter(self._graph, self._targets, self._forbidden.union(*barred))
         if cutter.hopeless:
             return None
+        actions = frozenset(derivation)
         try:
-            node = _Node(self, cutter, frozenset(derivation), frozenset())
+            node = _Node(self, cutter, actions, nothing, self._total(actions))
             exact = node.relax(None)
         except _TimeUpError:
             return None
@@ -123,38 +164,54 @@ class Prover:
     def _prove(
         self,
         derivation: frozenset[int],
-        goal: Vector,
+        goal: Vector | None,
         used: frozenset[int],
         forbidden: frozenset[int],
-        known: Iterable[Iterable[int]] = (),
+        known: Iterable[frozenset[int]] = (),
     ) -> Proof:
         """Prove that derivations with the used actions and none of the forbidden cost at least ``goal``.
 
-        Cuts that are ``known`` are tried first.
+        ``None`` as the goal is more than any costs: there is none. Cuts that are ``known`` are tried first.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
-        cutter = Cutter(self._graph, targets, forbidden)
+        bars = self._bars(used, forbidden)
+        for rule, barred in bars.items():
+            if not used.isdisjoint(barred):
+                return Broken(rule)
+        cutter = Cutter(self._graph, targets, forbidden.union(*bars.values()))
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
-        left = minus(goal, self._total(used))
-        packing = self._share_out(map(cutter.widened, known))
-        if self._order.compare(self._order.total(weight for _, weight in packing.weights), left) >= 0:
-            return packing
-        node = _Node(self, cutter, derivation, used)
+        left = None if goal is None else minus(goal, self._total(used))
+        if left is not None:
+            before = set(cutter.targets)
+            packing = self._share_out(cutter.widened(cut) for cut in known if not before.isdisjoint(cut))
+            if self._order.compare(self._order.total(weight for _, weight in packing.weights), left) >= 0:
+                return packing
+        node = _Node(self, cutter, derivation, used, goal)
         exact = node.relax(left)
-        if exact is not None and self._order.compare(exact.value, left) >= 0:
+        if exact is not None and node.suffices(exact.value, left):
             return node.packing(exact)
         action = node.undecided()
         if action is None:
             taken = node.taken()
-            if cutter.reached_by(taken) and self._order.compare(self._total(taken), goal) < 0:
-                raise CheaperError(taken)
-            raise _TimeUpError  # floats led nowhere
+            breaking = [a for a in self._breaking(taken) if a not in used]
+            if not breaking:
+                cheaper = goal is not None and self._order.compare(self._total(taken), goal) < 0
+                if cheaper and cutter.reached_by(taken) and not node.exceeds(taken):
+                    raise CheaperError(taken)
+                raise _TimeUpError  # floats led nowhere
+            action = breaking[0]
         return Branch(
             action,
             self._prove(derivation, goal, used, forbidden | {action}),
             self._prove(derivation, goal, used | {action}, forbidden),
         )
+
+    def _bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        return {} if self._rules is None else self._rules.bars(used, without)
+
+    def _breaking(self, derivation: Iterable[int]) -> Sequence[int]:
+        return () if self._rules is None else self._rules.breaking(frozenset(derivation))
 
     def _share_out(self, cuts: Iterable[Cut]) -> Packing:
         """Give each cut in turn the weight that its members have left of their costs."""
@@ -179,7 +236,12 @@ class _Node:
     """
 
     def __init__(
-        self, prover: Prover, cutter: Cutter, derivation: frozenset[int], used: frozenset[int]
+        self,
+        prover: Prover,
+        cutter: Cutter,
+        derivation: frozenset[int],
+        used: frozenset[int],
+        goal: Vector | None,
     ) -> None:
         self._prover, self._cutter, self._used = prover, cutter, used
         self._derivation = sorted(derivation)
@@ -188,10 +250,35 @@ class _Node:
         self._costs = [prover._costs[action] for action in self._actions]
         floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
         self._floats = [floats[cost] for cost in self._costs]
-        self._covering = Covering(self._floats)
+        self._limits = [self._limited(place, limit) for place, limit in enumerate(prover._limits)]
+        dear = (Fraction(1),) * prover._order.width if goal is None else times(goal, Fraction(_DEAR))
+        self._costs += [dear] * len(self._limits)
+        self._covering = Covering([*self._floats, *[prover.scaled(dear)] * len(self._limits)])
+        for amounts, most in self._limits:
+            self._covering.limit(amounts, most)
         self._cuts: list[Cut] = []
         self._rows: list[list[int]] = []
         self.shares: Sequence[float]
+
+    def _limited(self, place: int, limit: Limit) -> Limit:
+        """Give what is left of a limit for the columns; the last of them, at a price, makes up what lacks."""
+        amounts, most = limit
+        taken = {self._places[a]: amount for a, amount in amounts.items() if a in self._places}
+        left = most - sum(amounts[a] for a in self._used if a in amounts)
+        return {**taken, len(self._actions) + place: Fraction(-1)}, left
+
+    def exceeds(self, actions: Iterable[int]) -> bool:
+        """Whether actions go beyond a limit."""
+        chosen = set(actions)
+        return any(
+            sum(amount for a, amount in amounts.items() if a in chosen) > most
+            for amounts, most in self._prover._limits
+        )
+
+    def suffices(self, value: Vector, enough: Vector | None) -> bool:
+        """Whether a bound is enough; ``None`` is more than nothing."""
+        order = self._prover._order
+        return order.sign(value) > 0 if enough is None else order.compare(value, enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until none is found that the relaxed solution misses, or the bound is enough."""
@@ -204,7 +291,7 @@ class _Node:
             self.shares = relaxed.x
             if relaxed.value < wanted * 0.9999999 and self._separate():
                 continue
-            exact = exact_optimum(self._rows, self._costs, order, relaxed.columns, relaxed.rows)
+            exact = exact_optimum(self._rows, self._costs, order, relaxed.columns, relaxed.rows, self._limits)
             if exact is not None:
                 if enough is not None and order.compare(exact.value, enough) >= 0:
                     return exact
@@ -214,20 +301,26 @@ class _Node:
 
     def packing(self, exact: ExactOptimum) -> Packing:
         """Give the weighted cuts of an exact optimum."""
-        return Packing(tuple((self._cuts[row], weight) for row, weight in sorted(exact.weights.items())))
+        weights = sorted(exact.weights.items())
+        first = len(self._limits)
+        return Packing(
+            tuple((self._cuts[row - first], weight) for row, weight in weights if row >= first),
+            tuple((row, weight) for row, weight in weights if row < first),
+        )
 
     def undecided(self) -> int | None:
         """Give the action that is most nearly half taken, the most expensive of several; else ``None``."""
         halves = [
             (abs(x - 0.5), -self._floats[place], self._actions[place])
-            for place, x in enumerate(self.shares)
+            for place, x in enumerate(self.shares[: len(self._actions)])
             if abs(x - 0.5) < 0.499999
         ]
         return min(halves)[2] if halves else None
 
     def taken(self) -> list[int]:
         """Give the actions that the relaxed solution takes, with those that are used anyway."""
-        return sorted({self._actions[place] for place, x in enumerate(self.shares) if round(x)} | self._used)
+        shares = enumerate(self.shares[: len(self._actions)])
+        return sorted({self._actions[place] for place, x in shares if round(x)} | self._used)
 
     def _separate(self) -> bool:
         """Look for cuts whose landmarks have shares of less than 1; whether there were any."""

@@ -1,6 +1,7 @@
 """The linear relaxation of hitting every landmark, in floats: where exact weights start from."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import Final, NamedTuple
 
 from foon_asp.errors import BugError
@@ -31,7 +32,8 @@ class Relaxed(NamedTuple):
 class Covering:
     """Minimize the sum of ``costs[c] * x[c]``, ``x >= 0``, with ``x`` adding up to 1 or more in every row.
 
-    Solved by HiGHS; rows are added between solutions, each of which starts from the one before.
+    A limit is a row of its own: the sum of ``amounts[c] * x[c]`` is not above it. Solved by HiGHS; rows are
+    added between solutions, each of which starts from the one before.
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
@@ -52,6 +54,12 @@ class Covering:
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
+
+    def limit(self, amounts: Mapping[int, Fraction], most: Fraction) -> None:
+        """Add a row of a limit; what a column takes of it may be less than nothing."""
+        columns = self._array(list(amounts), dtype="int32")
+        takes = self._array([-float(amount) for amount in amounts.values()])
+        self._highs.addRow(-float(most), self._library.kHighsInf, len(amounts), columns, takes)
 
     def solve(self) -> Relaxed:
         """Find a basic optimum of the rows so far."""

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache
 
+from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.certificate.coverage import Coverage
@@ -16,16 +17,19 @@ class Arrays:
 
     Where ``kitchen`` is an objective, nothing is at hand from the start, and each item is given by an
     action of its own that needs nothing and costs 1: the action's number is ``items[k]`` for item ``k``.
-    Elsewhere ``items`` is empty. ``forbidden`` are the units that the covered constraints rule out.
+    Elsewhere ``items`` is empty. What the covered constraints add comes last: nodes, and steps that are
+    actions and cost nothing. ``forbidden`` are the units that they rule out, and ``limits`` what they limit.
+    Without objectives, everything costs nothing.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
         network = problem.network
         self.problem, self.objectives = problem, tuple(objectives)
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
-        self.order = Lexicographic([self.rates if multiplies(o) else None for o in objectives])
-        self.goals = [goal for goal in problem.goals if goal not in problem.kitchen]
-        self.forbidden = covered.forbids(network)
+        self.order = Lexicographic([self.rates if multiplies(o) else None for o in objectives] or [None])
+        self.ruled = covered.ruled(problem)
+        self.goals = [goal for goal in problem.goals if goal not in problem.kitchen] + self.ruled.goals
+        self.forbidden = self.ruled.removed
         cost = cache(self._cost)  # many units cost the same
         self.costs = [cost(*self._measures(unit)) for unit in range(len(network))]
         needs: list[Sequence[int]] = list(problem.needs)
@@ -39,21 +43,61 @@ class Arrays:
             gives += [(o,) for o in kitchen]
             taking = tuple(Fraction(o.row.item) for o in objectives for _ in range(self.parts(o)))
             self.costs += [taking] * len(kitchen)
+        for unit, nodes in self.ruled.needs.items():
+            needs[unit] = (*needs[unit], *nodes)
+        for unit, nodes in self.ruled.gives.items():
+            gives[unit] = (*gives[unit], *nodes)
+        self._steps = {step: len(needs) + place for place, step in enumerate(self.ruled.steps)}
+        for asked, node in self.ruled.steps.values():
+            needs.append(asked)
+            gives.append((node,))
+        self.costs += [self.order.zero] * len(self._steps)
         start = () if self.items else sorted(problem.kitchen)
-        self.graph = Hypergraph(len(network.objects), needs, gives, start)
+        self.graph = Hypergraph(len(network.objects) + len(self.ruled.makers), needs, gives, start)
+
+    @property
+    def limits(self) -> list[Limit]:
+        """What the constraints limit: how much each action takes of it, and how much there is."""
+        return [
+            ({self._steps.get(member, member): amount for member, amount in amounts.items()}, most)
+            for amounts, most in self.ruled.limits.values()
+        ]
+
+    def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
+        """Give by constraint the units that no tree has which uses some actions and none of others."""
+        return self.ruled.bars(self._units(used), without)
+
+    def breaking(self, derivation: frozenset[int]) -> list[int]:
+        """Give as few units of a derivation as break a constraint, first what the others bar."""
+        chosen = self._units(derivation)
+        for barred in self.ruled.barred.values():
+            if broken := chosen & barred(chosen, self.forbidden):
+                for unit in sorted(chosen):
+                    fewer = chosen - {unit}
+                    if found := fewer & barred(fewer, self.forbidden):
+                        chosen, broken = fewer, found
+                return [*broken, *(chosen - broken)]
+        return []
+
+    def _units(self, actions: frozenset[int]) -> frozenset[int]:
+        return frozenset(action for action in actions if action < len(self.problem.network))
 
     def parts(self, objective: Objective) -> int:
         """Give the number of coordinates that an objective has in a cost."""
         return len(self.rates) if multiplies(objective) else 1
 
     def actions(self, units: Iterable[int]) -> list[int]:
-        """Give the actions of a tree: its units, and the taking of the kitchen items that they need."""
+        """Give the actions of a tree: units, the taking of the kitchen items that they need, and steps."""
         units = list(units)
         needed = {o for unit in units for o in self.problem.needs[unit]}
-        return [*units, *(action for o, action in self.items.items() if o in needed)]
+        steps = self.ruled.used(frozenset(units)).difference(units)
+        taking = (action for o, action in self.items.items() if o in needed)
+        return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 
     def stated(self, vector: Sequence[Fraction]) -> list[object]:
         """Write a cost or weight as certificates do, one part an objective; raises like :func:`written`."""
+        if not self.objectives:
+            return [written(vector[0])]
         parts: list[object] = []
         place = 0
         for objective in self.objectives:
@@ -69,6 +113,9 @@ class Arrays:
         """Name an action as certificates do."""
         if action < len(self.problem.network):
             return {"unit": action}
+        first = len(self.graph.needs) - len(self._steps)
+        if action >= first:
+            return {"step": action - first}
         return {"item": sorted(self.items)[action - len(self.problem.network)]}
 
     def _rates(self) -> Iterable[Fraction]:
@@ -89,7 +136,7 @@ class Arrays:
                 cost += [Fraction(r == rate) for r in self.rates]
             else:
                 cost.append(Fraction(next(left)))
-        return tuple(cost)
+        return tuple(cost) or self.order.zero
 
 
 def written(number: Fraction) -> str:

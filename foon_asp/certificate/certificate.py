@@ -6,9 +6,9 @@ docs/proofs.md describes the format. Nothing is given out that ``foon_asp.proof.
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from foon_asp.bounds.cut import Cut, Cutter
+from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.lexicographic import Vector
-from foon_asp.bounds.lower_bound import CheaperError, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import Broken, CheaperError, Hopeless, Packing, Proof, Prover
 from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.errors import BugError
@@ -44,7 +44,8 @@ class Certificate(NamedTuple):
                 shown = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
             elif key == "proof" and isinstance(value, dict) and value.get("weights"):
                 pairs = ",\n".join("  " + json_line(pair) for pair in value["weights"])
-                shown = '{"weights": [\n' + pairs + "\n ]}"
+                limits = f', "limits": {json_line(value["limits"])}' if "limits" in value else ""
+                shown = f'{{"weights": [\n{pairs}\n ]{limits}}}'
             else:
                 shown = json_line(value)
             lines.append(f' "{key}": {shown}')
@@ -69,14 +70,18 @@ def certify(
     the motions, and where nothing is found within the limits of ``verify``, as where products of rates are
     too close to be compared, or too long to be written.
     """
+    if covered.rules and problem.own_rates:
+        return None
     if any(objective.row.needs is Known.RATES for objective in objectives) and (
         problem.own_rates or not all(map(problem.rate, range(len(problem.network))))
     ):
         return None
     guide = tuple(units)
+    # of an answer under rules, a cut can hold what its search added for them
+    known = [[o for o in cut if o < len(problem.network.objects)] for cut in cuts]
     for count in range(len(objectives), 0, -1):
         arrays = Arrays(problem, objectives[:count], covered)
-        prover = _prover(arrays, expired, cuts)
+        prover = _prover(arrays, expired, known)
         try:
             proof = prover.prove(arrays.actions(units))
         except CheaperError as cheaper:
@@ -98,15 +103,28 @@ def certify(
     return _write(arrays, covered, "bound", units, packing, bound)
 
 
-def certify_infeasible(problem: Problem, covered: Coverage = NOTHING) -> Certificate | None:
-    """Prove that there is no tree; ``None`` where only constraints that are not covered leave none."""
+def certify_infeasible(
+    problem: Problem, covered: Coverage = NOTHING, expired: Callable[[], bool] = lambda: False
+) -> Certificate | None:
+    """Prove that there is no tree.
+
+    ``None`` where only constraints that are not covered leave none, and where no proof is found before
+    ``expired`` says so.
+    """
+    if covered.rules and problem.own_rates:
+        return None
     arrays = Arrays(problem, (), covered)
-    cut = Cutter(arrays.graph, arrays.goals, arrays.forbidden).hopeless
-    return None if cut is None else _write(arrays, covered, "infeasible", None, Hopeless(cut))
+    never = min(arrays.ruled.never, default=None)
+    proof = _prover(arrays, expired).prove_none() if never is None else Broken(never)
+    return None if proof is None else _write(arrays, covered, "infeasible", None, proof)
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
-    return Prover(arrays.graph, arrays.goals, arrays.costs, arrays.order, arrays.forbidden, expired, cuts)
+    rules = arrays if arrays.ruled.barred else None
+    return Prover(
+        *(arrays.graph, arrays.goals, arrays.costs, arrays.order, arrays.forbidden),
+        *(expired, cuts, arrays.limits, rules),
+    )
 
 
 def _write(
@@ -119,6 +137,7 @@ def _write(
 ) -> Certificate | None:
     problem = arrays.problem
     cuts: dict[tuple[int, ...], int] = {}
+    places = list(arrays.ruled.limits)
 
     def number(cut: Cut) -> int:
         return cuts.setdefault(cut.objects, len(cuts))
@@ -128,7 +147,11 @@ def _write(
             return {"hopeless": number(proof.cut)}
         if isinstance(proof, Packing):
             weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in proof.weights)
-            return {"weights": [list(pair) for pair in weights]}
+            limits = [[places[row], arrays.stated(weight)] for row, weight in proof.limits]
+            packed: dict[str, object] = {"weights": [list(pair) for pair in weights]}
+            return packed | ({"limits": limits} if limits else {})
+        if isinstance(proof, Broken):
+            return {"broken": proof.rule}
         return {
             "branch": arrays.member(proof.action),
             "without": stated(proof.without),
@@ -154,9 +177,10 @@ def _write(
         "level": problem.network.level,
         "objective": [str(objective) for objective in arrays.objectives],
         "digests": verify.digests(
-            problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
+            *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
+            rules=covered.rules,
         ),
-        "forbidden": {"motions": list(covered.motions), "objects": list(covered.labels)},
+        "rules": [dict(rule) for rule in covered.rules],
         "not_covered": list(covered.not_covered),
         "tree": None if units is None else list(units),
         "costs": costs,

@@ -1,71 +1,153 @@
 """Which of a user's constraints a certificate can speak about."""
 
 import hashlib
+import re
+from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from foon_asp.asp import Settings
-from foon_asp.asp.constraint import RuleText, find_constraint
+from foon_asp.asp.constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.asp.own_encodings import is_own
-from foon_asp.network import Network
+from foon_asp.problem import Problem
+from foon_asp.proof.constraint import LIBRARY, Question, Rule, meaning
+from foon_asp.proof.ruled import Ruled
+from foon_asp.proof.verify import canonical
 
-# Our constraints that rule out units one by one, and the constant that says which.
-_FORBIDDING = {"forbid_motion.lp": "forbidden_motion", "forbid_object.lp": "forbidden_object"}
+# Values that are listed in facts, of a file of the user's as well: the constant that gives the first.
+_LISTED = {"allergen": "forbidden_ingredient", "allowed": "allowed_source"}
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_FACT = re.compile(rf"(\w+)\(({_TEXT.pattern}(?:;{_TEXT.pattern})*)\)\.")
+_UNSET = frozenset(("", '""', "#sup", "#inf"))
 
 
 class Coverage(NamedTuple):
-    """What is forbidden and certified, and what else narrows the trees and is not.
+    """What narrows the trees: the ``rules`` that a certificate speaks of, and what it does not.
 
-    ``motions`` and ``labels`` (of objects) rule out every unit that has one of them. ``not_covered`` names
+    Each rule is one of :data:`foon_asp.proof.constraint.LIBRARY` with its values. ``not_covered`` names
     rules, by their text or by file, with a digest, and the constants that were set.
     """
 
-    motions: tuple[str, ...] = ()
-    labels: tuple[str, ...] = ()
+    rules: tuple[Rule, ...] = ()
     not_covered: tuple[str, ...] = ()
 
-    def forbids(self, network: Network) -> frozenset[int]:
-        """Give the units of a network that are ruled out."""
-        nodes = {o for o, node in enumerate(network.objects) if node.label in self.labels}
-        return frozenset(
-            unit
-            for unit, motion in enumerate(network.motions)
-            if motion in self.motions or not nodes.isdisjoint((*network.inputs[unit], *network.outputs[unit]))
-        )
+    def ruled(self, problem: Problem) -> Ruled:
+        """Give what the rules add to the network of a problem."""
+        asked, nodes = _question(problem), len(problem.network.objects)
+        return Ruled([meaning(rule, asked) for rule in self.rules], nodes, len(problem.network) + nodes)
+
+    def forbids(self, problem: Problem) -> frozenset[int]:
+        """Give the units of a problem that are ruled out one by one."""
+        return self.ruled(problem).removed
+
+    def beyond(self) -> list[str]:
+        """Name the rules that may say more than which units are ruled out."""
+        return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 
 NOTHING = Coverage()  # no constraints at all
 
 
+def _question(problem: Problem) -> Question:
+    """Give what constraints look at of a problem."""
+    seen = problem.as_seen or problem
+    return Question(
+        problem.network,
+        problem.kitchen,
+        problem.goals,
+        problem.utensils,
+        lambda unit: None if seen.rates is None else seen.rate(unit),
+        lambda unit: frozenset(problem.needs[unit]),
+        lambda unit: frozenset(problem.gives[unit]),
+    )
+
+
 def coverage(settings: Settings) -> Coverage:
     """Sort the constraints of a question into those that a certificate covers and the others.
 
-    ``forbid_motion`` and ``forbid_object`` of ours are covered. Other rules only narrow the trees, so a bound
-    without them still holds; a replaced encoding may say anything, and is named, too.
+    Those of ours are covered, with the values that were set. Other rules only narrow the trees, so a bound
+    without them still holds; a replaced encoding may say anything, and is named, too. With it, only what
+    rules units out one by one is covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
-    forbidden: dict[str, set[str]] = {constant: set() for constant in _FORBIDDING.values()}
-    others: list[str] = []
-    plain: set[str] = set()
+    uses: list[tuple[str, Mapping[str, str]]] = []
+    others: list[Constraint] = []
     for each in dict.fromkeys(map(find_constraint, settings.constraints)):
-        if isinstance(each, RuleText):
-            others.append(f"{each.name} {_digest(each.text.encode('utf-8', 'surrogatepass'))} {each.text}")
-            continue
-        file, given = (each, constants) if isinstance(each, Path) else (each.file, each.constants)
-        constant = _FORBIDDING.get(file.name)
-        if constant is not None and is_own(file):
-            if constant in given:
-                from foon_asp.asp.encoding import string_constant  # noqa: PLC0415 - it loads clingo
-
-                forbidden[constant] |= {string_constant(given[constant])} - {""}
-                plain |= {constant} if given is constants else set()
+        file = each.file if isinstance(each, LibraryUse) else each
+        stem = file.stem if isinstance(file, Path) and is_own(file) else ""
+        if stem in LIBRARY and (settings.replaced is None or LIBRARY[stem].removes):
+            uses.append((stem, each.constants if isinstance(each, LibraryUse) else constants))
         else:
-            others.append(f"{each.name} {_digest(file.read_bytes())}")
+            others.append(each)
+    read = {name for stem, _ in uses for name in LIBRARY[stem].values}
+    facts: dict[str, set[str]] = {name: set() for name in _LISTED if name in read}
+    for stem, given in uses:  # what one use lists, the others read
+        for name in facts.keys() & LIBRARY[stem].values.keys():
+            facts[name] |= {_text(given.get(_LISTED[name], ""))} - {""}
+    named: list[str] = []
+    for each in others:
+        listed = _facts(each) if facts else {}
+        if listed and listed.keys() <= facts.keys():
+            for name, found in listed.items():
+                facts[name] |= found
+        else:
+            named.append(_named(each))
+    rules: dict[str, Rule] = {}
+    for stem, given in uses:
+        kinds = LIBRARY[stem].values.items()
+        values = {
+            name: sorted(facts[name]) if kind is list else _value(given.get(name, ""), kind)
+            for name, kind in kinds
+        }
+        if all(value not in (None, "", []) for value in values.values()):
+            rule = {"rule": stem, **values}
+            rules[canonical(rule)] = rule
+    taken = {
+        _LISTED.get(name, name) for stem, given in uses if given is constants for name in LIBRARY[stem].values
+    }
     if settings.replaced is not None:
-        others.append(f"encodings {settings.replaced.name}")
-    others += [f"{name}={value}" for name, value in constants.items() if name not in plain]
-    motions, labels = (tuple(sorted(forbidden[constant])) for constant in _FORBIDDING.values())
-    return Coverage(motions, labels, tuple(sorted(set(map(_printable, others)))))
+        named.append(f"encodings {settings.replaced.name}")
+    named += [f"{name}={value}" for name, value in constants.items() if name not in taken]
+    return Coverage(tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_printable, named)))))
+
+
+def _value(written: str, kind: type) -> Any:
+    """Give a value of a constraint, ``None`` where it is not set."""
+    if kind is int:
+        return None if written in _UNSET else int(written)
+    return _text(written)
+
+
+def _text(written: str) -> str:
+    if not written.startswith('"'):
+        return written
+    from foon_asp.asp.encoding import string_constant  # noqa: PLC0415 - it loads clingo
+
+    return string_constant(written)
+
+
+def _facts(constraint: Constraint) -> dict[str, set[str]]:
+    """Give the values that rules list by predicate; empty where they say anything else."""
+    from foon_asp.asp import encoding, stating  # noqa: PLC0415 - they load clingo
+
+    found: dict[str, set[str]] = {}
+    for line in encoding.read_encoding(stating.loaded((constraint,))[constraint]).text.splitlines():
+        fact = _FACT.fullmatch(line)
+        if fact is not None:
+            found.setdefault(fact[1], set()).update(map(_text, _TEXT.findall(fact[2])))
+        elif line != "#program base." and not line.startswith("% "):
+            return {}
+    return found
+
+
+def _named(constraint: Constraint) -> str:
+    """Name rules by what they are called and their digest; those given as text with it."""
+    if isinstance(constraint, RuleText):
+        return (
+            f"{constraint.name} {_digest(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
+        )
+    file = constraint.file if isinstance(constraint, LibraryUse) else constraint
+    return f"{constraint.name} {_digest(file.read_bytes())}"
 
 
 def _digest(content: bytes) -> str:

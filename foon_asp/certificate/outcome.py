@@ -30,7 +30,7 @@ def certify_outcome(
     covered = coverage(settings)
     found: Certificate | None = None
     if outcome.status is Status.INFEASIBLE:
-        found = certify_infeasible(outcome.problem, covered)
+        found = certify_infeasible(outcome.problem, covered, expired)
     elif outcome.status is Status.OPTIMAL and outcome.units is not None:
         try:
             found = certify(

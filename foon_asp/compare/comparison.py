@@ -8,7 +8,7 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
 from foon_asp.problem import ContainerRule, Objective, Problem, conditions, multiplies
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.search import Ending, Search, SearchSettings
 
 # The objectives whose optima a tree is compared with.

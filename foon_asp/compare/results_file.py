@@ -11,7 +11,7 @@ from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.compare.rows_file import RowsFile
 from foon_asp.document.json_document import figure_json, figures_json, fraction_json
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof import Verdict
+from foon_asp.proof.simulation import Verdict
 from foon_asp.search import Ending, Search, SearchSettings
 from foon_asp.text.json_value import Json, json_line
 

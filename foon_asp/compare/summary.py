@@ -7,7 +7,7 @@ from typing import NamedTuple
 from foon_asp.asp import Status
 from foon_asp.compare.comparison import MEASURED, Comparison
 from foon_asp.problem import Objective, multiplies
-from foon_asp.proof import Verdict
+from foon_asp.proof.simulation import Verdict
 from foon_asp.search import Ending
 
 

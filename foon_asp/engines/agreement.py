@@ -121,7 +121,7 @@ def _engines(
             raise NotCheckedError(f"it knows no rules such as {', '.join(foreign)}")
         if not engine.installed():
             raise NotCheckedError(_EXTRA)
-        forbidden = covered.forbids(outcome.problem.network)
+        forbidden = covered.forbids(outcome.problem)
         answer = engine.solve(outcome.problem, wanted, forbidden, seconds)
         if not forbidden.isdisjoint(answer.units or ()):
             raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
@@ -133,7 +133,8 @@ def _engines(
 
 def _foreign(asked: Asked, covered: Coverage) -> list[str]:
     """Name the rules that only clingo can read."""
-    return [name.partition(" ")[0] for name in covered.not_covered] + [file.name for file in asked.soft]
+    others = [name.partition(" ")[0] for name in covered.not_covered]
+    return [*covered.beyond(), *others, *(file.name for file in asked.soft)]
 
 
 def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:

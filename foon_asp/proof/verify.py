@@ -26,14 +26,18 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import Network, UnitPrices, node_at_level
+from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, looked_at, meaning
+from foon_asp.proof.ruled import Ruled
 
 FORMAT = "foon-asp certificate"
-VERSION = 3
+VERSION = 4
 _WITH_PRICES = 3  # the first version with a digest of them
+_WITH_RULES = 4  # the first version with more rules than motions and objects that are forbidden
+_NOTHING = "nothing"  # what a tree that is not there is measured by
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts", "price")
 
 _KEYS = {
-    *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "forbidden"),
+    *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
     *("not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
 }
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
@@ -46,13 +50,15 @@ _LETTERS = 16_000_000  # of the file
 _BRACKETS = 1_000_000  # lists and objects in it
 _STEPS = 5_000_000  # a look at a unit is one; adding and comparing numbers takes more
 _STEPS_EACH = 200  # more of them for each unit and object node of the network
+_RULES = 100  # that a claim is about
+_STEPS_RULE = 10  # for each unit and object node that a rule is held against
 _DIGITS_READ = 2_000  # of a fraction that is read
 _LONG = 40_000  # bits of a sum of fractions
 _LARGEST = 250_000  # bits of a product of rates
 _WRITTEN = 13_000  # bits of a success rate: Python writes numbers of up to 4,300 digits
 
 # A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
-Amount: TypeAlias = "dict[tuple[int, Fraction | None], Fraction]"
+Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
 
 # Why version 1 is refused under implied containers; under strict ones it says what version 2 does.
 _VERSION_1 = (
@@ -82,8 +88,8 @@ class Verified(NamedTuple):
 
     ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
     ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
-    All trees are meant that use no motion of ``motions`` and no object labelled as one of ``labels``.
-    ``costs`` are those of the tree, one for each objective.
+    All trees are meant that keep to the ``rules``: ready-made constraints, each by its name (``rule``) and
+    its values. ``costs`` are those of the tree, one for each objective.
     """
 
     claim: str
@@ -91,8 +97,7 @@ class Verified(NamedTuple):
     containers: str
     level: int
     objectives: tuple[str, ...]
-    motions: tuple[str, ...]
-    labels: tuple[str, ...]
+    rules: tuple[Rule, ...]
     not_covered: tuple[str, ...]
     tree: tuple[int, ...] | None
     costs: tuple[int | Fraction, ...] | None
@@ -137,14 +142,20 @@ def digests(
     rates: Mapping[str, Fraction] | None,
     utensils: Iterable[str],
     prices: UnitPrices | None = None,
+    rules: Iterable[Rule] = (),
 ) -> dict[str, str]:
-    """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's."""
+    """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's.
+
+    Of the places where units were read, it is those that the rules look at.
+    """
+    places = [found for rule in rules if (found := looked_at(rule, network)) is not None]
     return {
         "network": _digest(_described(network)),
         "kitchen": _digest(sorted(kitchen)),
         "rates": _digest(rates and sorted([motion, str(rate)] for motion, rate in rates.items())),
         "utensils": _digest(sorted(utensils)),
         "prices": _digest(prices and _stated(prices, network.detailed or network)),
+        "sources": _digest(places or None),
     }
 
 
@@ -174,19 +185,24 @@ def verify(
         _require(
             type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format"
         )
-        _require(certificate.keys() == _KEYS, f"expected the keys {', '.join(sorted(_KEYS))}")
+        keys = _KEYS if version >= _WITH_RULES else _KEYS - {"rules"} | {"forbidden"}
+        _require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
         _require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
         _require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
         level = certificate["level"]
         _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
-        found = digests(network, kitchen, rates, utensils, prices)
-        if version < _WITH_PRICES:
-            del found["prices"]
+        rules = (
+            _rules(certificate["rules"]) if version >= _WITH_RULES else _forbidding(certificate["forbidden"])
+        )
+        found = digests(network, kitchen, rates, utensils, prices, rules)
+        for name, since in (("prices", _WITH_PRICES), ("sources", _WITH_RULES)):
+            if version < since:
+                del found[name]
         stated = _object(certificate["digests"], tuple(found))
         for name, digest in found.items():
             _require(stated[name] == digest, f"{name}: not the one that the certificate is about")
         priced = prices if version >= _WITH_PRICES else None
-        return _Check(certificate, network, kitchen, rates, utensils, priced).claim()
+        return _Check(certificate, rules, network, kitchen, rates, utensils, priced).claim()
     except RecursionError:
         raise RefusedError("branches nested too deeply") from None
 
@@ -194,13 +210,15 @@ def verify(
 class _Check:
     """One certificate, checked against its network.
 
-    A *member* is a unit, by its id, or a kitchen item ``k``, by the number of units plus ``k``. Items are
-    members only where the objective ``kitchen`` counts them.
+    A *member* is a unit, by its id, a kitchen item ``k``, by the number of units plus ``k``, or a step of a
+    constraint, numbered from the number of units and nodes on. Items are members only where the objective
+    ``kitchen`` counts them.
     """
 
     def __init__(
         self,
         certificate: dict[str, Any],
+        rules: tuple[Rule, ...],
         network: Network,
         kitchen: frozenset[int],
         rates: Mapping[str, Fraction] | None,
@@ -223,14 +241,20 @@ class _Check:
         self.prices = self._prices(prices) if "price" in self.objectives else []
         self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
         _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
-        forbidden = _object(certificate["forbidden"], ("motions", "objects"))
-        self.motions, self.labels = _names(forbidden["motions"]), _names(forbidden["objects"])
-        self.ruled_out = frozenset(self._ruled_out())
+        self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
+        self.rules = rules
+        rate = [(rates or {}).get(motion) for motion in network.motions]
+        asked = Question(network, kitchen, self.goals, utensils, rate.__getitem__, self.needs, self.gives)
+        self.ruled = Ruled(
+            [self._meaning(rule, asked) for rule in rules],
+            len(network.objects),
+            len(network) + len(network.objects),
+        )
         self.not_covered = _names(certificate["not_covered"])
         # these are nobody's labels, and could say anything in lines of their own
         _require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
-        self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit
-        self.cuts = [frozenset(_numbers(cut, len(network.objects))) for cut in _list(certificate["cuts"])]
+        nodes = len(network.objects) + len(self.ruled.makers)
+        self.cuts = [frozenset(_numbers(cut, nodes)) for cut in _list(certificate["cuts"])]
         self.members = [frozenset(self._members(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
 
@@ -283,7 +307,6 @@ class _Check:
         if claim == "infeasible":
             _require(listed is None and not self.objectives, "there cannot be a tree")
             _require(self.certificate["bound"] is None, "a bound is given where there is nothing to bound")
-            _require(set(_object(proof)) == {"hopeless"}, "expected a cut that nothing crosses")
         elif claim == "optimal":
             _require(listed is not None, "expected the tree that is optimal")
             _require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
@@ -296,7 +319,7 @@ class _Check:
             amount = bound
         else:
             raise RefusedError("expected the claim optimal, bound or infeasible")
-        self._prove(proof, amount)
+        self._prove(proof, None if claim == "infeasible" else amount)
         _require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
         return Verified(
             claim,
@@ -304,8 +327,7 @@ class _Check:
             self.containers,
             self.network.level,
             self.objectives,
-            self.motions,
-            self.labels,
+            self.rules,
             self.not_covered,
             None if listed is None else tuple(listed),
             None if costs is None else tuple(costs),
@@ -316,12 +338,12 @@ class _Check:
         """Execute the tree as listed; give what it costs as an amount and as figures."""
         at_hand: set[int | None] = set(self.kitchen)
         for unit in _numbers(units, len(self.network), ascending=False):
-            _require(unit not in self.ruled_out, f"unit {unit} of the tree is forbidden")
             _require(
                 self.needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input when it is its turn"
             )
             at_hand.update(self.gives(unit))
         _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
+        self._keep(frozenset(units))
         items = {o for unit in units for o in self.kitchen & self.needs(unit)}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
         total = self._sum(map(self._cost, members))
@@ -340,33 +362,77 @@ class _Check:
                 costs.append(figure if objective in {"attempts", "price"} else int(figure))
         return total, costs
 
-    def _prove(self, proof: Any, least: Amount) -> None:
-        """Walk through the branches of a proof that every tree costs at least so much."""
-        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, frozenset(), self.ruled_out)]
+    def _keep(self, units: frozenset[int]) -> None:
+        """Hold a tree against what the rules say of all of it."""
+        self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
+        fault = self.ruled.fault(units, frozenset(range(len(self.network))) - units)
+        _require(fault is None, f"the tree {fault}")
+
+    def _barred(self, place: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+        """Give the units that a rule bars from trees that use some members and have none of others."""
+        self._spend(len(self.network))
+        units = frozenset(member for member in used if member < len(self.network))
+        return self.ruled.barred[place](units, without)
+
+    def _prove(self, proof: Any, least: Amount | None) -> None:
+        """Walk through the branches of a proof that every tree costs at least so much, or that there is none.
+
+        A tree that is not there may be taken to cost nothing. So where weights show that it costs more, there
+        is none.
+        """
+        nobody: frozenset[int] = frozenset()
+        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
         while waiting:
             node, used, without = waiting.pop()
             self._spend(1 + len(used) + len(without))
             keys = set(_object(node))
-            if keys == {"weights"}:
-                bound = self._sum([self._packed(node["weights"], used, without), *map(self._cost, used)])
-                enough = self._sign(self._sum([bound, _negative(least)])) >= 0
-                _require(enough, "the weights do not add up to enough")
-            elif keys == {"hopeless"}:
-                crossing = self._crossing(node["hopeless"], used, without)
-                _require(not crossing, "a cut called hopeless is crossed")
-            else:
-                _require(
-                    keys == {"branch", "without", "using"}, "expected weights, a hopeless cut or a branch"
-                )
+            if keys == {"branch", "without", "using"}:
                 member = self._branch(node["branch"])
                 _require(member not in used | without, "a branch is taken twice")
                 waiting.append((node["without"], used, without | {member}))
                 waiting.append((node["using"], used | {member}, without))
+                continue
+            if keys == {"broken"}:
+                place = node["broken"]
+                _require(type(place) is int, "expected the number of a rule")
+                never, barring = place in self.ruled.never, place in self.ruled.barred
+                broken = never or (barring and not used.isdisjoint(self._barred(place, used, without)))
+                _require(broken, "a rule called broken is kept")
+                continue
+            without = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))
+            if keys == {"hopeless"}:
+                crossing = self._crossing(node["hopeless"], used, without)
+                _require(not crossing, "a cut called hopeless is crossed")
+                continue
+            _require(
+                {"weights"} <= keys <= {"weights", "limits"},
+                "expected weights, a hopeless cut, a broken rule or a branch",
+            )
+            packed = self._packed(node["weights"], node.get("limits", []), used, without)
+            bound = self._sum([packed, *map(self._cost, used)])
+            if least is None:
+                enough = self._sign(bound) > 0
+            else:
+                enough = self._sign(self._sum([bound, _negative(least)])) >= 0
+            _require(enough, "the weights do not add up to enough")
 
-    def _packed(self, weights: Any, used: frozenset[int], without: frozenset[int]) -> Amount:
-        """Add up the weights of cuts after checking that no member is overloaded."""
+    def _packed(self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]) -> Amount:
+        """Add up the weights of cuts after checking that no member is overloaded.
+
+        Where something is limited, what takes of it may carry more: so much for all of it that it takes. What
+        all that is left of the limit carries is then not part of the bound.
+        """
         total: Amount = {}
         loads: dict[int, Amount] = {}
+        carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
+        for place, stated in _pairs(limits):
+            weight = self._read(stated)
+            _require(self._sign(weight) > 0, "a weight of a limit is not above zero")
+            _require(place in self.ruled.limits, "a rule that limits nothing is given a weight")
+            limit = self.ruled.limits[place]
+            self._spend(len(used))
+            self._add(total, self._times(weight, -limit.left(used)))
+            carried.append((weight, limit.amounts))
         for number, stated in _pairs(weights):
             weight = self._read(stated)
             _require(self._sign(weight) > 0, "a weight is not above zero")
@@ -376,6 +442,9 @@ class _Check:
         for member, load in loads.items():
             # a member that is used anyway was paid for, and can carry nothing more
             allowed = {} if member in used else self._cost(member)
+            if carried and member not in used:
+                more = (self._times(w, amounts[member]) for w, amounts in carried if member in amounts)
+                allowed = self._sum([allowed, *more])
             if allowed != load:
                 fits = self._sign(self._sum([allowed, _negative(load)])) >= 0
                 _require(fits, f"unit or item {member} carries more than it costs")
@@ -388,24 +457,37 @@ class _Check:
         self._spend(1 + len(self.goals) + len(used) + len(self.members[place]))
         self.met.add(place)
         cut = self.cuts[place]
-        before = any(goal in cut and goal not in self.kitchen for goal in self.goals) or any(
-            not cut.isdisjoint(self.needs(member)) for member in used if member < len(self.network)
+        before = (
+            any(goal in cut and goal not in self.kitchen for goal in self.goals)
+            or not cut.isdisjoint(self.ruled.goals)
+            or any(not cut.isdisjoint(self._asked(member)) for member in used)
         )
         _require(before, f"cut {number} holds neither a goal nor what a used unit needs")
         return self.members[place] - without
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
         """Give the units that make a node of the cut and need none, and the kitchen items in it."""
-        network = self.network
-        self._spend(sum(1 + len(network.producers[o]) for o in cut))
+        network, own = self.network, self.ruled.makers
+        self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         for o in cut:
             if o in self.kitchen:
                 _require("kitchen" in self.objectives, "a cut holds a kitchen item")
                 yield len(network) + o
-                continue
-            for unit in network.producers[o]:
-                if o in self.gives(unit) and cut.isdisjoint(self.needs(unit)):
-                    yield unit
+            elif o in own:
+                yield from (member for member in own[o] if cut.isdisjoint(self._asked(member)))
+            else:
+                for unit in network.producers[o]:
+                    if o in self.gives(unit) and cut.isdisjoint(self._asked(unit)):
+                        yield unit
+
+    def _asked(self, member: int) -> frozenset[int | None]:
+        """Give the nodes that a unit or a step needs, those of the rules with them; an item needs none."""
+        if member in self.ruled.steps:
+            return frozenset(self.ruled.steps[member][0])
+        if member >= len(self.network):
+            return frozenset()
+        own = self.ruled.needs.get(member)
+        return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
         """Give the inputs that a unit needs; below level 3 what all need that it stands for."""
@@ -452,18 +534,17 @@ class _Check:
         found = (node_at_level(network.detailed.objects[o], network.level) for o in nodes)
         return frozenset(map(network.object_id, found))
 
-    def _ruled_out(self) -> Iterator[int]:
-        """Give the units with a forbidden motion or a node with a forbidden label."""
-        network = self.network
-        yield from (unit for unit, motion in enumerate(network.motions) if motion in self.motions)
-        for o, node in enumerate(network.objects):
-            if node.label in self.labels:
-                yield from (*network.producers[o], *network.consumers[o])
+    def _meaning(self, rule: Rule, question: Question) -> Meaning:
+        """Give what a rule says of the network."""
+        self._spend(_STEPS_RULE * (len(self.network) + len(self.network.objects)))
+        return meaning(rule, question)
 
     def _cost(self, member: int) -> Amount:
         """Give what a unit or an item costs by each objective."""
         network = self.network
         cost: Amount = {}
+        if member in self.ruled.steps:
+            return cost
         item = member >= len(network)
         for level, objective in enumerate(self.objectives):
             if item or objective == "kitchen":
@@ -488,7 +569,7 @@ class _Check:
 
     def _sign(self, amount: Amount) -> Fraction | int:
         """Give a number with the sign of an amount; the first objective that is not 0 decides."""
-        for level, objective in enumerate(self.objectives):
+        for level, objective in enumerate(self.objectives or (_NOTHING,)):
             if objective == "success":
                 sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
             else:
@@ -500,6 +581,11 @@ class _Check:
     def _branch(self, choice: Any) -> int:
         """Give the member that a branch is about."""
         network = self.network
+        if set(_object(choice)) == {"step"}:
+            first = len(network) + len(network.objects)
+            step = choice["step"]
+            _require(type(step) is int and first + step in self.ruled.steps, "expected the number of a step")
+            return first + int(step)
         if set(_object(choice)) == {"item"}:
             _require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
             item = choice["item"]
@@ -513,8 +599,9 @@ class _Check:
         """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
         amount: Amount = {}
         parts = _list(stated)
-        _require(len(parts) == len(self.objectives), "expected one part of a weight for each objective")
-        for level, objective in enumerate(self.objectives):
+        objectives = self.objectives or (_NOTHING,)
+        _require(len(parts) == len(objectives), "expected one part of a weight for each objective")
+        for level, objective in enumerate(objectives):
             if objective == "success":
                 for name, exponent in _object(parts[level]).items():
                     rate = _rational(name)
@@ -576,6 +663,9 @@ class _Check:
             total[key] = total[key] + value if key in total else value
             self._spend_on(_bits(total[key]))
 
+    def _times(self, amount: Amount, factor: Fraction) -> Amount:
+        return self._sum([{key: value * factor for key, value in amount.items()}])
+
     def _sum(self, amounts: Iterable[Amount]) -> Amount:
         total: Amount = {}
         for amount in amounts:
@@ -620,8 +710,12 @@ def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
 
 
 def _digest(value: object) -> str:
-    text = json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
-    return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256(canonical(value).encode()).hexdigest()
+
+
+def canonical(value: object) -> str:
+    """Write plain values as JSON in the one way that digests are of."""
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
 
 
 def _require(holds: bool, otherwise: str) -> None:
@@ -675,6 +769,34 @@ def _goal(value: Any, network: Network) -> int:
     (found,) = _numbers([goal["id"]], len(network.objects))
     _require(str(network.objects[found]) == goal["node"], "a goal is not the node of its id")
     return found
+
+
+def _rules(value: Any) -> tuple[Rule, ...]:
+    """Read the constraints that a claim is about."""
+    rules = [_object(rule) for rule in _list(value)]
+    if len(rules) > _RULES:
+        raise LimitError(f"it has more than {_RULES} rules")
+    for rule in rules:
+        name = rule.get("rule")
+        _require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
+        values = LIBRARY[rule["rule"]].values
+        _object(rule, ("rule", *values))
+        for key, kind in values.items():
+            _require(type(rule[key]) is kind, "a value of a rule is of another kind")
+            _names(rule[key] if kind is list else [rule[key]] if kind is str else [])
+    texts = [canonical(rule) for rule in rules]
+    _require(texts == sorted(set(texts)), "expected rules in order, each of them once")
+    return tuple(rules)
+
+
+def _forbidding(value: Any) -> tuple[Rule, ...]:
+    """Read the motions and labels of objects that were all that a claim could forbid before version 4."""
+    forbidden = _object(value, ("motions", "objects"))
+    rules: list[Rule] = [
+        {"rule": "forbid_motion", "forbidden_motion": motion} for motion in _names(forbidden["motions"])
+    ]
+    rules += ({"rule": "forbid_object", "forbidden_object": label} for label in _names(forbidden["objects"]))
+    return tuple(rules)
 
 
 def _rational(value: Any) -> Fraction:

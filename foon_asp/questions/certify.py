@@ -14,7 +14,7 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.answer_and_more import AnswerAndMore
 from foon_asp.questions.arguments import (
@@ -198,8 +198,10 @@ def _executable(problem: Problem, file: Path, covered: Coverage) -> list[int] | 
         return "a unit of the tree is not in the network, or appears twice"
     if simulation.verdict is Verdict.NEVER:
         return "the tree does not execute; `foon-asp check` says why"
-    if covered.forbids(problem.network) & {*known}:
-        return "a unit of the tree is forbidden by the constraints"
+    chosen = frozenset(known)
+    fault = covered.ruled(problem).fault(chosen, frozenset(range(len(problem.network))) - chosen)
+    if fault is not None:
+        return f"by the constraints, the tree {fault}"
     return [known[position] for position in simulation.order]
 
 

@@ -7,7 +7,8 @@ from os import PathLike
 from foon_asp.document.json_document import costs_json, document
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Problem
-from foon_asp.proof import Replay, Simulation, Verdict, replay_for, simulate_for
+from foon_asp.proof.replay import Replay, replay_for
+from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS
 from foon_asp.questions.result import Ending, Result

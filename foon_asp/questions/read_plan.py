@@ -11,7 +11,7 @@ from foon_asp.planning.name_map import map_of, read_name_map
 from foon_asp.planning.plan_file import read_plan_text
 from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import Problem
-from foon_asp.proof import Verdict, simulate_for
+from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import reading, whole
 from foon_asp.questions.check import Checked
 from foon_asp.questions.contract import Kind, Option, Part, question

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from foon_asp.document.json_document import costs_json, document, nodes_json, steps_json
 from foon_asp.problem import Costs, Problem
-from foon_asp.proof import Simulation, Verdict, simulate_for
+from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS

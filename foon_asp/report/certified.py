@@ -9,6 +9,7 @@ from foon_asp.document.json_document import document, figures_json, goals_json, 
 from foon_asp.escapes import escaped
 from foon_asp.network import Network, counted
 from foon_asp.problem import Objective
+from foon_asp.proof.constraint import Rule
 from foon_asp.proof.verify import Verified
 from foon_asp.text.json_value import Json
 
@@ -75,11 +76,7 @@ def verified_text(verified: Verified, network: Network, content: dict[str, Any])
         lines.append(
             f"verified: no task tree is better by {', then '.join(verified.objectives)} ({rule}): {figures}"
         )
-    if verified.motions or verified.labels:
-        # a line end in a name could say what was verified
-        ruled_out = [*(f"the motion {escaped(motion)}" for motion in verified.motions)]
-        ruled_out += [f"the object {escaped(label)}" for label in verified.labels]
-        lines.append(f"among the trees without {', '.join(ruled_out)}")
+    lines += [f"among the trees that keep to {_rule(rule)}" for rule in verified.rules]
     lines += [f"not covered, so among all trees: {name}" for name in verified.not_covered]
     lines.append(f"proof: {counted(verified.cuts, 'cut')}, checked without a solver")
     return "\n".join(lines) + "\n"
@@ -95,11 +92,18 @@ def verified_json(verified: Verified, network: Network) -> Json:
         verified=True,
         claim=verified.claim,
         costs=None if costs is None else figures_json(costs),
-        forbidden={"motions": list(verified.motions), "objects": list(verified.labels)},
+        rules=list(map(dict, verified.rules)),
         not_covered=list(verified.not_covered),
         tree=None if verified.tree is None else list(verified.tree),
         cuts=verified.cuts,
     )
+
+
+def _rule(rule: Rule) -> str:
+    """Name a rule with its values; a line end in one could say what was verified."""
+    values = {name: value if isinstance(value, list) else [value] for name, value in rule.items()}
+    given = (f"{name}: {', '.join(map(str, value))}" for name, value in values.items() if name != "rule")
+    return escaped(f"{rule['rule']} ({'; '.join(given)})")
 
 
 def _figure(objective: str, cost: int | Fraction) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from foon_asp.compare.comparison import Comparison, Judgement
 from foon_asp.problem import Objective
-from foon_asp.proof import Verdict
+from foon_asp.proof.simulation import Verdict
 from foon_asp.report.bar_chart import Bar, BarChart, BarGroup
 
 _EXECUTES = {Verdict.AS_LISTED: "as listed", Verdict.REORDERED: "reordered", Verdict.NEVER: "never"}

@@ -18,7 +18,7 @@ from foon_asp.document.json_document import fraction_text
 from foon_asp.escapes import escaped
 from foon_asp.network import counted
 from foon_asp.problem import Objective, multiplies
-from foon_asp.proof import Verdict
+from foon_asp.proof.simulation import Verdict
 
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
 _HEADINGS = ("goal", "search", "units", "inputs", "success", "executes")

@@ -90,7 +90,7 @@ def disagreement_files(asked: Asked, found: DisagreementError) -> dict[str, str]
         "platform": platform.platform(),
         "digests": digests(network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
         "kitchen": [str(node) for node in nodes],
-        "forbidden_units": sorted(coverage(settings).forbids(network)),
+        "forbidden_units": sorted(coverage(settings).forbids(problem)),
         "answer": answer_json(outcome) | ({"penalty": asked.penalty} if asked.soft else {}),
         "other": {
             "engine": answer.engine,

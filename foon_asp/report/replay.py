@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from foon_asp.document.json_document import listed_unit_json, named_json
 from foon_asp.problem import Problem
-from foon_asp.proof import Replay, Shortage
+from foon_asp.proof.replay import Replay, Shortage
 from foon_asp.report.answer import costs_text
 from foon_asp.report.verdict import Listed
 from foon_asp.text.json_value import Json

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Sequence
 from foon_asp.asp import Outcome
 from foon_asp.network import Network, ObjectNode, TaskTree, counted
 from foon_asp.problem import ContainerRule, Problem, conditions, given_outputs
-from foon_asp.proof import Verdict, simulate
+from foon_asp.proof.simulation import Verdict, simulate
 from foon_asp.report.answer import headline
 from foon_asp.report.drawing import Drawing, draw_tree
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from foon_asp.document.json_document import listed_unit_json, named_json
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.problem import Problem, given_outputs
-from foon_asp.proof import Obstacle, Simulation, Verdict
+from foon_asp.proof.simulation import Obstacle, Simulation, Verdict
 from foon_asp.report.answer import costs_text
 from foon_asp.text.json_value import Json
 

@@ -8,12 +8,12 @@ Json = dict[str, Any]
 """An object as plain values, in the order in which JSON has them."""
 
 _WIDTH = 95  # of a line of a text, without the key before it
-_VERSION = 1  # of all that is written; what changes the meaning of a key, or takes one away, is another
+_VERSIONS = {"verify": 2}  # 1 of all else; what changes the meaning of a key, or takes one away, is another
 
 
 def schema_name(kind: str) -> str:
     """Give the name of a kind of JSON, ``foon-asp/answer/1``; ``foon-asp schema`` says what is in it."""
-    return f"foon-asp/{kind}/{_VERSION}"
+    return f"foon-asp/{kind}/{_VERSIONS.get(kind, 1)}"
 
 
 def json_text(value: object) -> str:

@@ -48,7 +48,7 @@ class Envelope:
         if not plain:
             from foon_asp.certificate import coverage  # noqa: PLC0415 (for constraints alone)
 
-            self._looser = _without(problem, coverage(how).forbids(problem.network))
+            self._looser = _without(problem, coverage(how).forbids(problem))
         try:
             self._settled = self._unmoved()
         except KeyboardInterrupt:

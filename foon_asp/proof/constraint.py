@@ -1,0 +1,238 @@
+"""What the ready-made constraints say of a tree, read from the plain network.
+
+This is what a certificate is checked by, so nothing of clingo is here: each constraint of
+``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/proofs.md says
+how their meanings enter a proof.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from fractions import Fraction
+from pathlib import PurePath
+from typing import Any, NamedTuple, TypeAlias
+
+from foon_asp.network import Network
+
+# A constraint as a certificate states it: its name as ``rule``, and its values by name.
+Rule: TypeAlias = "Mapping[str, Any]"
+Units = frozenset[int]
+Barred = Callable[[Units, Units], Units]
+
+
+class Question(NamedTuple):
+    """What constraints look at.
+
+    ``rate`` tells the success rate of a unit, ``None`` where it is not known, ``needs`` and ``gives`` the
+    nodes that it needs and makes.
+    """
+
+    network: Network
+    kitchen: frozenset[int]
+    goals: tuple[int, ...]
+    utensils: frozenset[str]
+    rate: Callable[[int], Fraction | None]
+    needs: Callable[[int], frozenset[int | None]]
+    gives: Callable[[int], frozenset[int | None]]
+
+    def with_motion(self, motion: str) -> Units:
+        """Give the units with a motion."""
+        return frozenset(unit for unit, name in enumerate(self.network.motions) if name == motion)
+
+    def touching(self, nodes: Iterable[int]) -> Units:
+        """Give the units that have one of some nodes among their inputs or outputs."""
+        network = self.network
+        return frozenset(unit for o in nodes for unit in (*network.producers[o], *network.consumers[o]))
+
+    def labelled(self, label: str) -> list[int]:
+        """Give the nodes with a label."""
+        return [o for o, node in enumerate(self.network.objects) if node.label == label]
+
+    def made_with(self, names: Collection[str]) -> list[int]:
+        """Give the nodes that are labelled as one of some names, or contain one of them."""
+        return [
+            o
+            for o, node in enumerate(self.network.objects)
+            if node.label in names or not set(names).isdisjoint(node.ingredients)
+        ]
+
+
+class Meaning(NamedTuple):
+    """What a constraint says of the trees that keep to it, all of it together.
+
+    They have no unit of ``removed``. Each of the ``wanted`` lists alternatives, and of one of them a tree
+    has a unit of each set. The ``things`` that it uses come to at most ``most``: a thing is a set of units
+    and how much it counts, not below 0, and is used by a tree that has one of the units. Where ``never`` is
+    true, there is no such tree. A tree with all units of one set and none of another has none of the units
+    that ``barred`` gives for the two.
+    """
+
+    removed: Units = frozenset()
+    wanted: Sequence[Sequence[Sequence[Units]]] = ()
+    things: Sequence[tuple[Units, Fraction]] = ()
+    most: Fraction | None = None
+    never: bool = False
+    barred: Barred | None = None
+
+
+class Constraint(NamedTuple):
+    """A ready-made constraint: what its values are (by name; ``list`` is one of texts), and its meaning.
+
+    ``removes`` says that it does no more than to remove units. ``places`` gives what it looks at of the
+    places where a unit was read, if it does.
+    """
+
+    values: Mapping[str, type]
+    meaning: Callable[..., Meaning]
+    removes: bool = False
+    places: Callable[..., Collection[str]] | None = None
+
+
+def meaning(rule: Rule, question: Question) -> Meaning:
+    """Give what a constraint with its values says."""
+    return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
+
+
+def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
+    """Give what a constraint looks at of the places of each unit; ``None`` where it does not."""
+    places = LIBRARY[rule["rule"]].places
+    if places is None:
+        return None
+    return [sorted(places(network, unit, **_values(rule))) for unit in range(len(network))]
+
+
+def _values(rule: Rule) -> dict[str, Any]:
+    return {name: value for name, value in rule.items() if name != "rule"}
+
+
+def _forbid_motion(question: Question, forbidden_motion: str) -> Meaning:
+    return Meaning(question.with_motion(forbidden_motion))
+
+
+def _forbid_object(question: Question, forbidden_object: str) -> Meaning:
+    return Meaning(question.touching(question.labelled(forbidden_object)))
+
+
+def _forbid_ingredient(question: Question, allergen: list[str]) -> Meaning:
+    tainted = question.made_with(allergen)
+    return Meaning(question.touching(tainted), never=not set(tainted).isdisjoint(question.goals))
+
+
+def _least_rate(question: Question, least_rate: int) -> Meaning:
+    rates = map(question.rate, range(len(question.network)))
+    enough = [rate is not None and rate * 1_000_000 // 1 >= least_rate for rate in rates]
+    return Meaning(frozenset(unit for unit, reliable in enumerate(enough) if not reliable))
+
+
+def _vouching(network: Network, unit: int, allowed: list[str]) -> set[str]:
+    """Give those names that are of a place of the unit: a file, with folders or without, or a video."""
+    return {
+        name
+        for source in network.sources[unit]
+        for name in (source.file, PurePath(source.file).name, *source.videos)
+        for name in [name.encode("utf-8", "backslashreplace").decode()]
+    }.intersection(allowed)
+
+
+def _only_sources(question: Question, allowed: list[str]) -> Meaning:
+    network = question.network
+    return Meaning(frozenset(u for u in range(len(network)) if not _vouching(network, u, allowed)))
+
+
+def _require_motion(question: Question, required_motion: str) -> Meaning:
+    return Meaning(wanted=[[[question.with_motion(required_motion)]]])
+
+
+def _require_object(question: Question, required_object: str) -> Meaning:
+    return Meaning(wanted=[[[question.touching(question.labelled(required_object))]]])
+
+
+def _require_ingredient(question: Question, required_ingredient: str) -> Meaning:
+    return Meaning(wanted=[[[question.touching(question.made_with([required_ingredient]))]]])
+
+
+def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
+    """Of one of the nodes, a tree has a unit that makes and does not have it, and one that needs it."""
+    network = question.network
+    wanted = []
+    for o in question.labelled(required_intermediate):
+        if o not in question.kitchen:
+            makers = frozenset(network.producers[o]).difference(network.consumers[o])
+            sets = [
+                frozenset(unit for unit in makers if o in question.gives(unit)),
+                frozenset(unit for unit in network.consumers[o] if o in question.needs(unit)),
+            ]
+            wanted.append(sets)
+    return Meaning(wanted=[wanted])
+
+
+def _each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
+    """Give units as things of their own that count 1 each."""
+    return [(frozenset({unit}), Fraction(1)) for unit in sorted(units)]
+
+
+def _at_most_units(question: Question, max_units: int) -> Meaning:
+    return Meaning(things=_each(range(len(question.network))), most=Fraction(max_units))
+
+
+def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> Meaning:
+    return Meaning(things=_each(question.with_motion(limited_motion)), most=Fraction(max_uses))
+
+
+def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
+    labels = map(question.labelled, sorted(question.utensils))
+    each = [(units, Fraction(1)) for nodes in labels if (units := question.touching(nodes))]
+    return Meaning(things=each, most=Fraction(max_utensils))
+
+
+def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
+    """No unit with the later motion may run on what is made without the earlier one.
+
+    What the units that a tree has for sure can make without the earlier motion is *early* in it. Else a
+    node can only be other than early if a unit that the tree may have makes it, and has the earlier motion
+    or needs a node that can be other than early: by the order in which the tree executes.
+    """
+    network, needs, gives = question.network, question.needs, question.gives
+    first = question.with_motion(earlier_motion)
+    later = question.with_motion(later_motion) - first
+
+    def early(used: Units) -> set[int | None]:
+        at_hand: set[int | None] = set(question.kitchen)
+        waiting = used - first
+        while runs := {unit for unit in waiting if needs(unit) <= at_hand}:
+            at_hand.update(o for unit in runs for o in gives(unit))
+            waiting -= runs
+        return at_hand
+
+    def barred(used: Units, without: Units) -> Units:
+        at_hand = early(used)
+        found: Units = frozenset()
+        while True:
+            late: set[int | None] = set()
+            stack = list(first - without)
+            for unit in stack:  # grows while it is walked through
+                for o in gives(unit) - at_hand - late:
+                    late.add(o)
+                    takers = network.consumers[o] if o is not None else ()
+                    stack += (u for u in takers if u not in without | found and o in needs(u))
+            more = frozenset(unit for unit in later if late.isdisjoint(needs(unit)))
+            if more == found:
+                return found
+            found = more
+
+    return Meaning(barred=barred)
+
+
+LIBRARY: Mapping[str, Constraint] = {
+    "forbid_motion": Constraint({"forbidden_motion": str}, _forbid_motion, removes=True),
+    "forbid_object": Constraint({"forbidden_object": str}, _forbid_object, removes=True),
+    "forbid_ingredient": Constraint({"allergen": list}, _forbid_ingredient),
+    "least_rate": Constraint({"least_rate": int}, _least_rate, removes=True),
+    "only_sources": Constraint({"allowed": list}, _only_sources, removes=True, places=_vouching),
+    "require_motion": Constraint({"required_motion": str}, _require_motion),
+    "require_object": Constraint({"required_object": str}, _require_object),
+    "require_ingredient": Constraint({"required_ingredient": str}, _require_ingredient),
+    "require_intermediate": Constraint({"required_intermediate": str}, _require_intermediate),
+    "at_most_units": Constraint({"max_units": int}, _at_most_units),
+    "at_most_motion": Constraint({"limited_motion": str, "max_uses": int}, _at_most_motion),
+    "at_most_utensils": Constraint({"max_utensils": int}, _at_most_utensils),
+    "before": Constraint({"earlier_motion": str, "later_motion": str}, _before),
+}

@@ -1,0 +1,109 @@
+"""What constraints add to a network: nodes and steps of their own, and limits, in place of what they say."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.proof.constraint import Barred, Meaning, Units
+
+
+class Limit(NamedTuple):
+    """How much of a limit each unit or step takes, and how much there is."""
+
+    amounts: Mapping[int, Fraction]
+    most: Fraction
+
+    def left(self, used: Iterable[int]) -> Fraction:
+        """Give what is left of the limit where some units and steps are used."""
+        return self.most - sum(self.amounts.get(member, 0) for member in used)
+
+
+class Ruled:
+    """Constraints as nodes, steps and limits, numbered after the nodes and the units of a network.
+
+    A tree that keeps to the constraints has no unit of ``removed``, reaches the nodes ``goals``, and stays
+    within each of the ``limits`` (by the place of their constraint), when units make the nodes in ``gives``
+    and need those in ``needs`` as well. A step (``steps`` maps it to its needs and its node) gives its node
+    once all that it needs is there, and costs nothing; it is used where a unit needs its node, or the node is
+    a goal. ``makers`` are the units and steps that give each node. Where ``never`` is not empty, there is no
+    such tree. ``barred`` tells what else no tree has (:class:`Meaning`).
+    """
+
+    def __init__(self, meanings: Sequence[Meaning], first_node: int, first_step: int) -> None:
+        self.removed: Units = frozenset().union(*(meaning.removed for meaning in meanings))
+        self.never = {place for place, meaning in enumerate(meanings) if meaning.never}
+        self.barred: dict[int, Barred] = {p: m.barred for p, m in enumerate(meanings) if m.barred}
+        self.goals: list[int] = []
+        self.makers: dict[int, list[int]] = {}
+        self.gives: dict[int, list[int]] = {}
+        self.needs: dict[int, list[int]] = {}
+        self.steps: dict[int, tuple[Sequence[int], int]] = {}
+        self.limits: dict[int, Limit] = {}
+        self._first_node, self._first_step = first_node, first_step
+        for place, meaning in enumerate(meanings):
+            for alternatives in meaning.wanted:
+                goal = self._node()
+                self.goals.append(goal)
+                for sets in alternatives:
+                    nodes = [goal] if len(sets) == 1 else [self._node() for _ in sets]
+                    for node, units in zip(nodes, sets, strict=True):
+                        self._make(node, units)
+                    if nodes != [goal]:
+                        self._step(nodes, goal)
+            if meaning.most is not None:
+                amounts: dict[int, Fraction] = {}
+                for units, amount in meaning.things:
+                    thing = self._thing(units)
+                    amounts[thing] = amounts.get(thing, Fraction(0)) + amount
+                self.limits[place] = Limit(amounts, meaning.most)
+
+    def bars(self, used: Units, without: Units) -> dict[int, Units]:
+        """Give by constraint the units that no tree has which has those used and none of the others."""
+        return {place: barred(used, without) for place, barred in self.barred.items()}
+
+    def fault(self, units: Units, others: Units) -> str | None:
+        """Say why a tree of these units, and none of the others, does not keep to the constraints."""
+        members = self.used(units)
+        if removed := self.removed & units:
+            return f"has unit {min(removed)}, which a rule removes"
+        if not all(any(m in members for m in self.makers[goal]) for goal in self.goals):
+            return "lacks what a rule asks for"
+        if any(limit.left(members) < 0 for limit in self.limits.values()):
+            return "exceeds what a rule limits"
+        if self.never or any(units & barred for barred in self.bars(units, others).values()):
+            return "breaks a rule"
+        return None
+
+    def used(self, units: Units) -> Units:
+        """Give a tree's units together with the steps that it uses."""
+        given = {node for unit in units for node in self.gives.get(unit, ())}
+        asked = {node for unit in units for node in self.needs.get(unit, ())}.union(self.goals)
+        steps = (
+            step for step, (needs, node) in self.steps.items() if node in asked and given.issuperset(needs)
+        )
+        return units.union(steps)
+
+    def _node(self) -> int:
+        node = self._first_node + len(self.makers)
+        self.makers[node] = []
+        return node
+
+    def _step(self, needs: Sequence[int], node: int) -> int:
+        step = self._first_step + len(self.steps)
+        self.steps[step] = needs, node
+        self.makers[node].append(step)
+        return step
+
+    def _make(self, node: int, units: Units) -> None:
+        for unit in sorted(units):
+            self.gives.setdefault(unit, []).append(node)
+            self.makers[node].append(unit)
+
+    def _thing(self, units: Units) -> int:
+        """Give what stands for a thing: its only unit, or a step that all of its units need."""
+        if len(units) == 1:
+            return min(units)
+        node = self._node()
+        for unit in units:
+            self.needs.setdefault(unit, []).append(node)
+        return self._step((), node)

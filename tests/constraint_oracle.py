@@ -1,0 +1,122 @@
+"""What the ready-made constraints say of one tree, from their own words. Shares no code with the program."""
+
+import random
+from collections.abc import Mapping
+from pathlib import Path, PurePath
+from typing import Any
+
+from foon_asp.asp import Settings
+from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.problem import Problem
+from tests.oracle import made, needed
+from tests.random_problems import MOTIONS
+
+Tree = tuple[FunctionalUnit, ...]
+
+
+def keeps(problem: Problem, tree: Tree, rule: Mapping[str, Any]) -> bool:
+    """Whether a tree keeps to a constraint, given by name with its values."""
+    values = [value for name, value in rule.items() if name != "rule"]
+    return bool(_KEEPS[rule["rule"]](problem, tree, *values))
+
+
+def touched(tree: Tree) -> list[ObjectNode]:
+    return [node for unit in tree for node in (*unit.inputs, *unit.outputs)]
+
+
+def has(node: ObjectNode, name: str) -> bool:
+    return node.label == name or any(name in contents.ingredients for contents in node.contents)
+
+
+def vouched(problem: Problem, unit: FunctionalUnit, allowed: list[str]) -> bool:
+    number = problem.network.unit_id(unit)
+    assert number is not None
+    return any(
+        source.file in allowed
+        or PurePath(source.file).name in allowed
+        or any(video in allowed for video in source.videos)
+        for source in problem.network.sources[number]
+    )
+
+
+def passes_on(problem: Problem, tree: Tree, label: str) -> bool:
+    rule, utensils = problem.containers, problem.utensils
+    return any(
+        node.label == label and not problem.at_hand(node) and node not in maker.inputs
+        for maker in tree
+        for node in made(maker, rule, utensils)
+        for taker in tree
+        if node in needed(taker, rule, utensils)
+    )
+
+
+def in_order(problem: Problem, tree: Tree, earlier: str, later: str) -> bool:
+    """Run all that runs without the earlier motion: nothing with the later one may be among it."""
+    rule, utensils = problem.containers, problem.utensils
+    at_hand = {problem.network.objects[o] for o in problem.kitchen}
+    left = [unit for unit in tree if unit.motion != earlier]
+    while ready := [unit for unit in left if needed(unit, rule, utensils) <= at_hand]:
+        if any(unit.motion == later for unit in ready):
+            return False
+        at_hand |= {node for unit in ready for node in made(unit, rule, utensils)}
+        left = [unit for unit in left if unit not in ready]
+    return True
+
+
+_KEEPS: Mapping[str, Any] = {
+    "forbid_motion": lambda p, t, motion: all(u.motion != motion for u in t),
+    "forbid_object": lambda p, t, label: all(n.label != label for n in touched(t)),
+    "forbid_ingredient": lambda p, t, names: (
+        not any(has(node, name) for node in (*touched(t), *p.goal_nodes) for name in names)
+    ),
+    "least_rate": lambda p, t, least: all(p.rates[u.motion] * 1_000_000 // 1 >= least for u in t),
+    "only_sources": lambda p, t, allowed: all(vouched(p, u, allowed) for u in t),
+    "require_motion": lambda p, t, motion: any(u.motion == motion for u in t),
+    "require_object": lambda p, t, label: any(n.label == label for n in touched(t)),
+    "require_ingredient": lambda p, t, name: any(has(n, name) for n in touched(t)),
+    "require_intermediate": passes_on,
+    "at_most_units": lambda p, t, most: len(t) <= most,
+    "at_most_motion": lambda p, t, motion, most: sum(u.motion == motion for u in t) <= most,
+    "at_most_utensils": lambda p, t, most: len({n.label for n in touched(t)} & p.utensils) <= most,
+    "before": in_order,
+}
+
+
+_CONSTANTS = {"allergen": "forbidden_ingredient", "allowed": "allowed_source"}
+
+
+def settings_of(rules: list[dict[str, Any]]) -> Settings:
+    """Ask for constraints with their values, of which those that are lists have one."""
+    constants = []
+    for rule in rules:
+        for name, value in rule.items():
+            if name != "rule":
+                one = value[0] if isinstance(value, list) else value
+                written = one if isinstance(one, int) else f'"{one}"'
+                constants.append(f"{_CONSTANTS.get(name, name)}={written}")
+    return Settings(tuple(Path(rule["rule"]) for rule in rules), constants=tuple(constants))
+
+
+def random_rule(rng: random.Random, problem: Problem) -> dict[str, Any]:
+    """Draw a constraint with values that mean something for a problem, mostly."""
+    nodes = problem.network.objects
+    labels = [node.label for node in nodes]
+    names = [*labels, *(name for node in nodes for name in node.ingredients)]
+    files = [source.file for sources in problem.network.sources for source in sources]
+    values: dict[str, dict[str, Any]] = {
+        "forbid_motion": {"forbidden_motion": rng.choice(MOTIONS)},
+        "forbid_object": {"forbidden_object": rng.choice(labels)},
+        "forbid_ingredient": {"allergen": [rng.choice(names)]},
+        "least_rate": {"least_rate": rng.choice([90_000, 100_000, 300_000, 900_000])},
+        "only_sources": {"allowed": [rng.choice(files)]},
+        "require_motion": {"required_motion": rng.choice(MOTIONS)},
+        "require_object": {"required_object": rng.choice(labels)},
+        "require_ingredient": {"required_ingredient": rng.choice(names)},
+        "require_intermediate": {"required_intermediate": rng.choice(labels)},
+        "at_most_units": {"max_units": rng.randrange(1, 6)},
+        "at_most_motion": {"limited_motion": rng.choice(MOTIONS), "max_uses": rng.randrange(3)},
+        "at_most_utensils": {"max_utensils": rng.randrange(3)},
+        "before": {"earlier_motion": rng.choice(MOTIONS), "later_motion": rng.choice(MOTIONS)},
+    }
+    name = rng.choice(sorted(values))
+    return {"rule": name, **values[name]}
