@@ -1,13 +1,16 @@
 """What the ready-made constraints say of one tree, from their own words. Shares no code with the program."""
 
 import random
+import re
 from collections.abc import Mapping
+from fractions import Fraction
 from pathlib import Path, PurePath
 from typing import Any
 
 from foon_asp.asp import Settings
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
+from foon_asp.resources import encodings_folder
 from tests.oracle import made, needed
 from tests.random_problems import MOTIONS
 
@@ -37,6 +40,17 @@ def vouched(problem: Problem, unit: FunctionalUnit, allowed: list[str]) -> bool:
         or any(video in allowed for video in source.videos)
         for source in problem.network.sources[number]
     )
+
+
+def videos(problem: Problem, unit: FunctionalUnit) -> set[str]:
+    number = problem.network.unit_id(unit)
+    assert number is not None
+    return {video for source in problem.network.sources[number] for video in source.videos}
+
+
+def price(problem: Problem, unit: FunctionalUnit) -> Fraction:
+    assert problem.unit_prices is not None
+    return problem.unit_prices.units.get(unit, problem.unit_prices.motions.get(unit.motion, Fraction()))
 
 
 def passes_on(problem: Problem, tree: Tree, label: str) -> bool:
@@ -71,6 +85,20 @@ _KEEPS: Mapping[str, Any] = {
     ),
     "least_rate": lambda p, t, least: all(p.rates[u.motion] * 1_000_000 // 1 >= least for u in t),
     "only_sources": lambda p, t, allowed: all(vouched(p, u, allowed) for u in t),
+    "at_least_videos": lambda p, t, least: all(len(videos(p, u)) >= least for u in t),
+    "motion_only_with": lambda p, t, motion, label: all(
+        label in {n.label for n in touched((u,))} for u in t if u.motion == motion
+    ),
+    "never_heated": lambda p, t, name, heats: (
+        not any(has(node, name) for u in t if u.motion in heats for node in u.inputs)
+    ),
+    "at_most_utensil_uses": lambda p, t, label, most: (
+        sum(label in {n.label for n in touched((u,))} for u in t) <= most
+    ),
+    "at_most_price": lambda p, t, most: sum(price(p, u) for u in t) * 100 <= most,
+    "not_both_motions": lambda p, t, one, other: (
+        not any(u.motion == one and v.motion == other for u in t for v in t)
+    ),
     "require_motion": lambda p, t, motion: any(u.motion == motion for u in t),
     "require_object": lambda p, t, label: any(n.label == label for n in touched(t)),
     "require_ingredient": lambda p, t, name: any(has(n, name) for n in touched(t)),
@@ -82,6 +110,12 @@ _KEEPS: Mapping[str, Any] = {
 }
 
 
+HEATS = sorted(
+    motion
+    for line in (encodings_folder() / "constraints" / "never_heated.lp").read_text().splitlines()
+    if not line.startswith("%")
+    for motion in re.findall(r'heats\("([^"]+)"\)', line)
+)
 _CONSTANTS = {"allergen": "forbidden_ingredient", "allowed": "allowed_source"}
 
 
@@ -90,7 +124,7 @@ def settings_of(rules: list[dict[str, Any]]) -> Settings:
     constants = []
     for rule in rules:
         for name, value in rule.items():
-            if name != "rule":
+            if name not in ("rule", "heats"):
                 one = value[0] if isinstance(value, list) else value
                 written = one if isinstance(one, int) else f'"{one}"'
                 constants.append(f"{_CONSTANTS.get(name, name)}={written}")
@@ -116,7 +150,15 @@ def random_rule(rng: random.Random, problem: Problem) -> dict[str, Any]:
         "at_most_units": {"max_units": rng.randrange(1, 6)},
         "at_most_motion": {"limited_motion": rng.choice(MOTIONS), "max_uses": rng.randrange(3)},
         "at_most_utensils": {"max_utensils": rng.randrange(3)},
+        "at_least_videos": {"least_videos": rng.randrange(3)},
+        "motion_only_with": {"tied_motion": rng.choice(MOTIONS), "tied_utensil": rng.choice(labels)},
+        "never_heated": {"unheated_ingredient": rng.choice(names), "heats": HEATS},
+        "at_most_utensil_uses": {"limited_utensil": rng.choice(labels), "max_utensil_uses": rng.randrange(3)},
+        "not_both_motions": {"one_motion": rng.choice(MOTIONS), "other_motion": rng.choice(MOTIONS)},
         "before": {"earlier_motion": rng.choice(MOTIONS), "later_motion": rng.choice(MOTIONS)},
     }
+    prices = problem.prices
+    if None not in prices and all(p is not None and p < 1000 and (p * 100).denominator == 1 for p in prices):
+        values["at_most_price"] = {"max_price": rng.choice([0, 30, 100, 250])}
     name = rng.choice(sorted(values))
     return {"rule": name, **values[name]}

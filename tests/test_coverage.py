@@ -14,6 +14,7 @@ from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Problem
 from foon_asp.proof.constraint import LIBRARY, Rule
 from foon_asp.resources import encodings_folder
+from tests.constraint_oracle import HEATS
 from tests.handmade_certificate import forbid
 
 POUR: Rule = {"rule": "forbid_motion", "forbidden_motion": "pour"}
@@ -103,6 +104,16 @@ def test_uses_with_constants_of_their_own_are_covered_each() -> None:
     ]
 
 
+def test_motions_that_heat_are_those_of_ours_and_those_that_are_listed() -> None:
+    given = map(given_constraint, ("never_heated", 'heats("flambe").'))
+    (rule,) = coverage(Settings((*given,), constants=("unheated_ingredient=egg",))).rules
+    assert rule == {
+        "rule": "never_heated",
+        "unheated_ingredient": "egg",
+        "heats": sorted([*HEATS, "flambe"]),
+    }
+
+
 def test_values_that_files_list_as_facts_are_covered(tmp_path: Path) -> None:
     mine, more = tmp_path / "mine.lp", tmp_path / "more.lp"
     mine.write_text('% mine\nallergen("milk"). allergen("eg\\"g";"nut").\n')
@@ -178,6 +189,13 @@ def test_which_units_are_ruled_out() -> None:
     for name in ("far/small.txt", "small.txt", "https://a.b"):
         assert gone({"rule": "only_sources", "allowed": [name]}) == {0, 1}
     assert gone({"rule": "require_motion", "required_motion": "mix"}) == frozenset()
+    assert gone({"rule": "at_least_videos", "least_videos": 1}) == {0, 1}
+    assert gone({"rule": "at_least_videos", "least_videos": 2}) == {0, 1, 2}
+    assert gone({"rule": "motion_only_with", "tied_motion": "pour", "tied_utensil": "salt"}) == frozenset()
+    assert gone({"rule": "motion_only_with", "tied_motion": "mix", "tied_utensil": "salt"}) == {2}
+    assert gone({"rule": "never_heated", "unheated_ingredient": "tea", "heats": ["mix", "pour"]}) == {1, 2}
+    assert gone({"rule": "never_heated", "unheated_ingredient": "tea", "heats": ["mix"]}) == {2}
+    assert gone({"rule": "at_most_price", "max_price": 100}) == {0, 1, 2}  # no price is known
     unknown = Problem(network, frozenset({0}), (goal,), None, frozenset())
     assert Coverage(({"rule": "least_rate", "least_rate": -1},)).forbids(unknown) == {0, 1, 2}
     assert Coverage((POUR, {"rule": "before", "earlier_motion": "a", "later_motion": "b"})).beyond() == [

@@ -2,18 +2,21 @@
 
 import random
 from collections import Counter
+from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
 from foon_asp.asp import Proof, Status, solve
 from foon_asp.certificate import Certificate, certify_outcome, coverage
+from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof.constraint import LIBRARY
 from foon_asp.proof.verify import read_certificate, verify
 from tests import oracle
 from tests.constraint_oracle import keeps, random_rule, settings_of
 from tests.gap_problem import gap_problem
-from tests.random_problems import random_problem
+from tests.random_problems import MOTIONS, random_problem
 
 
 def leaves(proof: object) -> Counter[str]:
@@ -54,6 +57,9 @@ def test_every_answer_under_random_constraints(part: int) -> None:
     met: Counter[str] = Counter()
     for seed in range(0, 1200, part):
         problem = random_problem(seed, list(ContainerRule)[seed % 2])
+        if seed % 3 == 0:
+            prices = {motion: Fraction(place * place, 10) for place, motion in enumerate(MOTIONS)}
+            problem = replace(problem, unit_prices=UnitPrices(prices, {}))
         found = asked(seed, problem, list(Objective)[seed % len(Objective)])
         met[found.claim] += 1
         met.update(rule["rule"] for rule in found.content["rules"])

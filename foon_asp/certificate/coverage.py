@@ -14,8 +14,8 @@ from foon_asp.proof.constraint import LIBRARY, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.proof.verify import canonical
 
-# Values that are listed in facts, of a file of the user's as well: the constant that gives the first.
-_LISTED = {"allergen": "forbidden_ingredient", "allowed": "allowed_source"}
+# Values that are listed in facts, of a file of the user's as well: the constant that gives one, if one does.
+_LISTED = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _FACT = re.compile(rf"(\w+)\(({_TEXT.pattern}(?:;{_TEXT.pattern})*)\)\.")
 _UNSET = frozenset(("", '""', "#sup", "#inf"))
@@ -57,6 +57,7 @@ def _question(problem: Problem) -> Question:
         problem.goals,
         problem.utensils,
         lambda unit: None if seen.rates is None else seen.rate(unit),
+        problem.prices.__getitem__,
         lambda unit: frozenset(problem.needs[unit]),
         lambda unit: frozenset(problem.gives[unit]),
     )
@@ -84,6 +85,8 @@ def coverage(settings: Settings) -> Coverage:
     for stem, given in uses:  # what one use lists, the others read
         for name in facts.keys() & LIBRARY[stem].values.keys():
             facts[name] |= {_text(given.get(_LISTED[name], ""))} - {""}
+    if "heats" in facts:  # which begins with motions of ours
+        facts["heats"] |= _facts(find_constraint(Path("never_heated")), among_others=True)["heats"]
     named: list[str] = []
     for each in others:
         listed = _facts(each) if facts else {}
@@ -126,8 +129,8 @@ def _text(written: str) -> str:
     return string_constant(written)
 
 
-def _facts(constraint: Constraint) -> dict[str, set[str]]:
-    """Give the values that rules list by predicate; empty where they say anything else."""
+def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
+    """Give the values that rules list by predicate; empty where they say anything else, unless they may."""
     from foon_asp.asp import encoding, stating  # noqa: PLC0415 - they load clingo
 
     found: dict[str, set[str]] = {}
@@ -135,7 +138,7 @@ def _facts(constraint: Constraint) -> dict[str, set[str]]:
         fact = _FACT.fullmatch(line)
         if fact is not None:
             found.setdefault(fact[1], set()).update(map(_text, _TEXT.findall(fact[2])))
-        elif line != "#program base." and not line.startswith("% "):
+        elif not among_others and line != "#program base." and not line.startswith("% "):
             return {}
     return found
 

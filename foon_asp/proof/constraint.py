@@ -21,8 +21,8 @@ Barred = Callable[[Units, Units], Units]
 class Question(NamedTuple):
     """What constraints look at.
 
-    ``rate`` tells the success rate of a unit, ``None`` where it is not known, ``needs`` and ``gives`` the
-    nodes that it needs and makes.
+    ``rate`` and ``price`` tell the success rate and the price of a unit, ``None`` where it is not known,
+    ``needs`` and ``gives`` the nodes that it needs and makes.
     """
 
     network: Network
@@ -30,6 +30,7 @@ class Question(NamedTuple):
     goals: tuple[int, ...]
     utensils: frozenset[str]
     rate: Callable[[int], Fraction | None]
+    price: Callable[[int], Fraction | None]
     needs: Callable[[int], frozenset[int | None]]
     gives: Callable[[int], frozenset[int | None]]
 
@@ -137,6 +138,26 @@ def _only_sources(question: Question, allowed: list[str]) -> Meaning:
     return Meaning(frozenset(u for u in range(len(network)) if not _vouching(network, u, allowed)))
 
 
+def _videos(network: Network, unit: int, least_videos: int) -> set[str]:
+    return {video for source in network.sources[unit] for video in source.videos}
+
+
+def _at_least_videos(question: Question, least_videos: int) -> Meaning:
+    network = question.network
+    seen = [len(_videos(network, unit, least_videos)) for unit in range(len(network))]
+    return Meaning(frozenset(unit for unit, videos in enumerate(seen) if videos < least_videos))
+
+
+def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
+    return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
+
+
+def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]) -> Meaning:
+    network = question.network
+    takers = {unit for o in question.made_with([unheated_ingredient]) for unit in network.consumers[o]}
+    return Meaning(frozenset(unit for unit in takers if network.motions[unit] in heats))
+
+
 def _require_motion(question: Question, required_motion: str) -> Meaning:
     return Meaning(wanted=[[[question.with_motion(required_motion)]]])
 
@@ -183,6 +204,24 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
     return Meaning(things=each, most=Fraction(max_utensils))
 
 
+def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
+    units = question.touching(question.labelled(limited_utensil))
+    return Meaning(things=_each(units), most=Fraction(max_utensil_uses))
+
+
+def _at_most_price(question: Question, max_price: int) -> Meaning:
+    """Prices are limited in hundredths, and a unit without one is not used."""
+    prices = {unit: question.price(unit) for unit in range(len(question.network))}
+    unknown = frozenset(unit for unit, price in prices.items() if price is None)
+    things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
+    return Meaning(unknown, things=things, most=Fraction(max_price))
+
+
+def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
+    motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
+    return Meaning(things=[(units, Fraction(1)) for units in motions], most=Fraction(1))
+
+
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
     """No unit with the later motion may run on what is made without the earlier one.
 
@@ -227,6 +266,11 @@ LIBRARY: Mapping[str, Constraint] = {
     "forbid_ingredient": Constraint({"allergen": list}, _forbid_ingredient),
     "least_rate": Constraint({"least_rate": int}, _least_rate, removes=True),
     "only_sources": Constraint({"allowed": list}, _only_sources, removes=True, places=_vouching),
+    "at_least_videos": Constraint({"least_videos": int}, _at_least_videos, removes=True, places=_videos),
+    "motion_only_with": Constraint(
+        {"tied_motion": str, "tied_utensil": str}, _motion_only_with, removes=True
+    ),
+    "never_heated": Constraint({"unheated_ingredient": str, "heats": list}, _never_heated, removes=True),
     "require_motion": Constraint({"required_motion": str}, _require_motion),
     "require_object": Constraint({"required_object": str}, _require_object),
     "require_ingredient": Constraint({"required_ingredient": str}, _require_ingredient),
@@ -234,5 +278,10 @@ LIBRARY: Mapping[str, Constraint] = {
     "at_most_units": Constraint({"max_units": int}, _at_most_units),
     "at_most_motion": Constraint({"limited_motion": str, "max_uses": int}, _at_most_motion),
     "at_most_utensils": Constraint({"max_utensils": int}, _at_most_utensils),
+    "at_most_utensil_uses": Constraint(
+        {"limited_utensil": str, "max_utensil_uses": int}, _at_most_utensil_uses
+    ),
+    "at_most_price": Constraint({"max_price": int}, _at_most_price),
+    "not_both_motions": Constraint({"one_motion": str, "other_motion": str}, _not_both_motions),
     "before": Constraint({"earlier_motion": str, "later_motion": str}, _before),
 }

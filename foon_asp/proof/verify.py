@@ -244,7 +244,8 @@ class _Check:
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.rules = rules
         rate = [(rates or {}).get(motion) for motion in network.motions]
-        asked = Question(network, kitchen, self.goals, utensils, rate.__getitem__, self.needs, self.gives)
+        known = (rate.__getitem__, self._each_price(prices).__getitem__)
+        asked = Question(network, kitchen, self.goals, utensils, *known, self.needs, self.gives)
         self.ruled = Ruled(
             [self._meaning(rule, asked) for rule in rules],
             len(network.objects),
@@ -270,10 +271,14 @@ class _Check:
         return found
 
     def _prices(self, given: UnitPrices | None) -> list[Fraction]:
-        """Give the price of each unit, its own or its motion's; below level 3 it is the least."""
-        if given is None:
-            return self._known(None, "prices")
+        """Give the price of each unit."""
+        return self._known(None if given is None else self._each_price(given), "prices")
+
+    def _each_price(self, given: UnitPrices | None) -> Sequence[Fraction | None]:
+        """Give the prices of units, their own or those of their motions; below level 3 it is the least."""
         network = self.network
+        if given is None:
+            return [None] * len(network)
         whole = network.detailed or network
         own = {whole.unit_id(unit): price for unit, price in given.units.items()}
         prices = [own.get(unit, given.motions.get(motion)) for unit, motion in enumerate(whole.motions)]
@@ -281,7 +286,7 @@ class _Check:
             each = [[prices[detail] for detail in details] for details in network.stands_for]
             known = [[price for price in found if price is not None] for found in each]
             prices = [min(k) if len(k) == len(e) else None for k, e in zip(known, each, strict=True)]
-        return self._known(prices, "prices")
+        return prices
 
     def _known(self, values: Sequence[Fraction | None] | None, what: str) -> list[Fraction]:
         """Give values of all units, by what they are and where all are there."""
