@@ -83,7 +83,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         multiple=option.many,
         default=option.default,
         show_default=option.default is not None,
-        metavar=option.metavar,
+        metavar=option.metavar or ("FILE" if option.kind is Kind.FILE else None),
         expose_value=option.part is not Part.MORE,
         is_eager=option.part is Part.MORE,  # to be there when the other is read
         callback=_weights if option.kind is Kind.WEIGHTS else _STANDING.get(option.name),

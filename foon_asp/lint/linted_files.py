@@ -116,8 +116,7 @@ class LintedFiles:
         return entries
 
     def _add(self, unit: ListedUnit, index: int) -> None:
-        inputs, outputs = ([block.node for block in side] for side in (unit.inputs, unit.outputs))
-        self._add_nodes(unit.motion.motion, inputs, outputs, index)
+        self._add_nodes(unit.motion.motion, *unit.sides, index)
 
     def _add_nodes(
         self, motion: str, inputs: list[ObjectNode], outputs: list[ObjectNode], index: int

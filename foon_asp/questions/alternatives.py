@@ -1,6 +1,6 @@
 """Other trees: all optimal ones, the next best, those that differ most, and what all have in common."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import NamedTuple
@@ -26,7 +26,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, goal_lines, unit_lines
@@ -131,17 +131,13 @@ class Alternatives(Result):
         """Give what the picture of the first tree shows."""
         return self.task_trees[0].drawing() if self.trees else None
 
-    def _repr_mimebundle_(
-        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
-    ) -> dict[str, str]:
-        """Give what a notebook shows: the text, and the pictures of the first trees."""
+    def _in_notebook(self) -> dict[str, str]:
+        """Give what a notebook shows by media type: the text, and the pictures of the first trees."""
         return page_bundle(self, (tree.drawing() for tree in self.task_trees[:_PICTURES]))
 
 
 @question(
-    GOALS,
-    OBJECTIVES,
-    CONTAINERS,
+    *TREE,
     Option("best", "Find this many of the best trees, in order.", Kind.WHOLE, metavar="K", least=1),
     Option(
         "different",
@@ -161,8 +157,7 @@ class Alternatives(Result):
     Option(
         "limit", "The greatest number of trees to look at.", Kind.WHOLE, default=100, metavar="N", least=1
     ),
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp alternatives --goal macaroni             every optimal tree, and what all of them have

@@ -1,6 +1,6 @@
 """The best tree for a problem, and what is proved of it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
@@ -74,14 +74,22 @@ class Answer(Result, Outcome):
 
         return None if self.units is None else solved_tree(self, self.units)
 
-    def _repr_mimebundle_(
-        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
-    ) -> dict[str, str]:
-        """Give what a notebook shows: the picture, whose caption says what is proved, or the text."""
+    def _in_notebook(self) -> dict[str, str]:
+        """Give what a notebook shows by media type: the picture with its claim, or the text."""
         from foon_asp.report.notebook import picture_bundle  # noqa: PLC0415
 
         drawing = self.drawing()
-        return super()._repr_mimebundle_() if drawing is None else picture_bundle(self, drawing)
+        return super()._in_notebook() if drawing is None else picture_bundle(self, drawing)
+
+
+class WithOutcome(Result):
+    """What comes with an ``outcome``: the best tree, which its picture shows, or ``None`` without one."""
+
+    outcome: Answer | None
+
+    def drawing(self) -> "Drawing | None":
+        """Give what the picture of the tree shows."""
+        return None if self.outcome is None else self.outcome.drawing()
 
 
 def answered(

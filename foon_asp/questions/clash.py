@@ -17,7 +17,7 @@ from foon_asp.document.json_document import document
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
@@ -28,15 +28,14 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.options import HOW, TREE
+from foon_asp.questions.result import Ending
 from foon_asp.report.answer import goal_lines, headline
-from foon_asp.report.drawing import Drawing
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
 
 
 @dataclass(frozen=True, repr=False)
-class Clash(Result):
+class Clash(WithOutcome):
     """Whether some constraints leave a tree, and if not, why.
 
     ``problem`` and ``objectives`` are those asked about. ``constraints`` are all constraints, each with its
@@ -148,15 +147,9 @@ class Clash(Result):
             answer=None if self.outcome is None else self.outcome.json_dict(),
         )
 
-    def drawing(self) -> Drawing | None:
-        """Give what the picture of the tree shows."""
-        return None if self.outcome is None else self.outcome.drawing()
-
 
 @question(
-    GOALS,
-    OBJECTIVES,
-    CONTAINERS,
+    *TREE,
     Option(
         "weights",
         "What it costs to drop a constraint of a file, 1 if not given.",
@@ -165,8 +158,7 @@ class Clash(Result):
         many=True,
         metavar="FILE.lp=WEIGHT",
     ),
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp clash --goal omelet --constraint mine.lp --constraint yours.lp

@@ -128,10 +128,8 @@ class Compared(Result):
     def __repr__(self) -> str:
         return f"<Compared: {', '.join(comparison.goal for comparison in self.comparisons)}>"
 
-    def _repr_mimebundle_(
-        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
-    ) -> dict[str, str]:
-        """Give what a notebook shows: the table."""
+    def _in_notebook(self) -> dict[str, str]:
+        """Give what a notebook shows by media type: the table."""
         return {"text/plain": repr(self), "text/markdown": str(self)}
 
 
@@ -208,7 +206,6 @@ def _hold_readable(problem: Problem) -> None:
         "results",
         "A file to which results are added, as JSON Lines; goals that it already has are not searched again.",
         Kind.FILE,
-        metavar="FILE",
     ),
     Option(
         "charts",
@@ -217,7 +214,6 @@ def _hold_readable(problem: Problem) -> None:
         Part.CHART | Part.PROBLEM,
         flags=("--chart",),
         many=True,
-        metavar="FILE",
     ),
     help_="""
     \b

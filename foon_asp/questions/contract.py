@@ -55,7 +55,8 @@ class Option(NamedTuple):
     underscores. A ``positional`` option has no flag and must be given, unless it is ``many``: such an option
     may be repeated. ``help`` describes the option on the command line and in Python; ``python`` adds what
     only Python accepts. ``choices`` are the values allowed, or a function that lists them, if other packages
-    may add some. ``least`` is the smallest number allowed, ``metavar`` the word for the value in help.
+    may add some. ``least`` is the smallest number allowed, ``metavar`` the word for the
+    value in help, by default that of its type, and ``FILE`` for a file.
     """
 
     name: str

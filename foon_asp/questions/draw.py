@@ -118,11 +118,9 @@ class Drawn(Result):
     def __repr__(self) -> str:
         return f"<Drawn: {self.remark('text') if self.picture is None else self.picture.caption[0]}>"
 
-    def _repr_mimebundle_(
-        self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
-    ) -> dict[str, str]:
-        """Give what a notebook shows: the picture."""
-        return super()._repr_mimebundle_() if self.picture is None else picture_bundle(self, self.picture)
+    def _in_notebook(self) -> dict[str, str]:
+        """Give what a notebook shows by media type: the picture."""
+        return super()._in_notebook() if self.picture is None else picture_bundle(self, self.picture)
 
 
 def _posed(

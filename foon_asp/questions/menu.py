@@ -15,7 +15,7 @@ from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import headline, steps, success_text
 from foon_asp.report.drawing import Drawing
@@ -93,11 +93,8 @@ class Menu(Result):
 
 
 @question(
-    GOALS,
-    OBJECTIVES,
-    CONTAINERS,
-    *RULES,
-    *LIMITS,
+    *TREE,
+    *HOW,
     help_="""
     \b
     foon-asp menu --goal macaroni --goal omelet

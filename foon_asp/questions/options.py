@@ -89,6 +89,8 @@ CONSTANTS = Option(
     python="Values by name, or texts NAME=VALUE.",
 )
 RULES = (CONSTRAINTS, RULE, ENCODINGS, CONSTANTS)
+TREE = (GOALS, OBJECTIVES, CONTAINERS)
+"""What the best tree is asked for by."""
 SOFT = Option(
     "soft",
     "Constraints that may be broken, each way at this price; the lowest sum comes before all objectives.",
@@ -114,6 +116,8 @@ LIMITS = (
         python="A number counts bytes.",
     ),
 )
+HOW = (*RULES, *LIMITS)
+"""What it is asked for under."""
 EACH_LIMITS = tuple(limit._replace(part=Part.QUESTION) for limit in LIMITS)
 """The limits of each of many answers, none of which holds for the whole command."""
 JOBS = Option("jobs", "How many processes to use.", Kind.WHOLE, default=1, least=1)

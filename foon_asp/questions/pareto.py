@@ -19,7 +19,7 @@ from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.options import CONTAINERS, GOALS, HOW, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import (
@@ -165,10 +165,8 @@ class Front(Result):
         Part.CHART,
         flags=("--chart",),
         many=True,
-        metavar="FILE",
     ),
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp pareto --goal macaroni                                  units against success

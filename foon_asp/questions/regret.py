@@ -13,14 +13,13 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import costs_json, document, figures_json, mention_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.options import HOW, TREE
+from foon_asp.questions.result import Ending
 from foon_asp.report.answer import costs_text, goal_lines, headline, success_text
-from foon_asp.report.drawing import Drawing
 
 
 class Part(StrEnum):
@@ -56,7 +55,7 @@ class Regret(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Regrets(Result):
+class Regrets(WithOutcome):
     """An optimal tree as the ``outcome``, and what its parts are worth, the greatest loss first.
 
     Each of ``regrets`` has ``part`` (``unit`` or ``item``), the ``id`` of that unit or object node in the
@@ -93,15 +92,9 @@ class Regrets(Result):
         regrets = [_json(best, regret) for regret in self.regrets]
         return document("regret", best.problem, best.objectives, answer=best.json_dict(), regrets=regrets)
 
-    def drawing(self) -> Drawing | None:
-        """Give what the picture of the best tree shows."""
-        return self.outcome.drawing()
-
 
 @question(
-    GOALS,
-    OBJECTIVES,
-    CONTAINERS,
+    *TREE,
     Option(
         "units",
         "The id of a unit to ask about as well.",
@@ -110,8 +103,7 @@ class Regrets(Result):
         many=True,
         metavar="ID",
     ),
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp regret --goal macaroni

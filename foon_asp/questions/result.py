@@ -139,7 +139,11 @@ class Result:
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Give what a notebook shows: the text, and below it the picture where there is one."""
+        """Give what a notebook shows."""
+        return self._in_notebook()
+
+    def _in_notebook(self) -> dict[str, str]:
+        """Give what a notebook shows by media type: the text, and below it the picture if there is one."""
         from foon_asp.report.notebook import page_bundle  # noqa: PLC0415
 
         pictures = [] if (drawing := self.drawing()) is None else [drawing]

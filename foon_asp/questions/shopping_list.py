@@ -21,14 +21,13 @@ from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Number, Objective, Problem, exact
 from foon_asp.problem.dead_ends import Cause, dead_ends
 from foon_asp.problem.shop import Shop
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, at_least, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.options import HOW, TREE
+from foon_asp.questions.result import Ending
 from foon_asp.report.answer import answer_json, goal_lines, headline, steps
-from foon_asp.report.drawing import Drawing
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.price_list import Price, read_prices
 
@@ -69,7 +68,7 @@ _REMARKS = {
 
 
 @dataclass(frozen=True, repr=False)
-class Shopping(Result):
+class Shopping(WithOutcome):
     """Lists of things to add to the kitchen, in order of cost, and the best tree with the first list.
 
     ``problem`` and ``objectives`` are those asked about. Each of ``lists`` has its ``items`` by id, its
@@ -157,24 +156,16 @@ class Shopping(Result):
             answer=None if answer is None else answer_json(answer, bought),
         )
 
-    def drawing(self) -> Drawing | None:
-        """Give what the picture of the tree shows."""
-        return None if self.outcome is None else self.outcome.drawing()
-
 
 @question(
-    GOALS,
-    OBJECTIVES,
-    CONTAINERS,
+    *TREE,
     Option(
         "prices",
         "A price list: lines of an object node, a tab and a price; only what has a price can be bought.",
         Kind.FILE,
-        metavar="FILE",
     ),
     Option("lists", "How many lists to find, at most.", Kind.WHOLE, default=3, least=1),
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp shopping-list --goal 'hot cocoa'

@@ -104,7 +104,6 @@ def solve_and_more(
         "Also write a proof of the answer that `foon-asp verify` checks without a solver.",
         Kind.FILE,
         flags=("--certificate",),
-        metavar="FILE",
     ),
     Option(
         "cross_check",

@@ -10,7 +10,7 @@ from foon_asp.asp.soft import solve_soft as find
 from foon_asp.dataset.paths import File, Files
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
@@ -22,15 +22,14 @@ from foon_asp.questions.arguments import (
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import described
 from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Ending
 from foon_asp.report.answer import headline, outcome_text
-from foon_asp.report.drawing import Drawing
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
 from foon_asp.text.json_value import Json
 
 
 @dataclass(frozen=True, repr=False)
-class SoftAnswer(Result):
+class SoftAnswer(WithOutcome):
     """The answer under constraints that may be broken at a price.
 
     ``outcome`` is the best tree among those with the lowest ``penalty``, which is the sum of weight times
@@ -91,10 +90,6 @@ class SoftAnswer(Result):
         if format_ == "foon":
             return "\n".join([headline(self.outcome), *self._lines()])
         return ""
-
-    def drawing(self) -> Drawing | None:
-        """Give what the picture shows."""
-        return self.outcome.drawing()
 
 
 def softly_answered(

@@ -13,7 +13,7 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Blocked, Cause, NearName, Root, dead_ends
 from foon_asp.questions.arguments import Constants, settings, whole
 from foon_asp.questions.contract import question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
+from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import goal_lines
 from foon_asp.text.object_list import ListedObject
@@ -119,8 +119,7 @@ class Explanation(Result):
 @question(
     GOALS,
     CONTAINERS,
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp why-not --goal 'apple pie'

@@ -45,6 +45,11 @@ class ListedUnit(NamedTuple):
     motion_source: Source
     price: str = ""
 
+    @property
+    def sides(self) -> tuple[list[ObjectNode], list[ObjectNode]]:
+        """The input and the output nodes, in the order listed."""
+        return [block.node for block in self.inputs], [block.node for block in self.outputs]
+
 
 def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:
     """Build the node of a label and what the state lines under it say."""

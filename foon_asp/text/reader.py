@@ -170,7 +170,8 @@ class FoonReader:
 
         for unit in read_json_units(text, file, self.diagnostics, self.lenient):
             if unit.price:
-                self.prices.add(_of(unit), read_price(unit.price), unit.motion_source)
+                copy = FunctionalUnit.of(unit.motion.motion, *unit.sides)
+                self.prices.add(copy, read_price(unit.price), unit.motion_source)
             yield unit
 
     def parse_new(self, lines: Iterable[str]) -> None:
@@ -212,14 +213,8 @@ class FoonReader:
         return parsed
 
 
-def _of(unit: ListedUnit) -> FunctionalUnit:
-    inputs, outputs = ([block.node for block in side] for side in (unit.inputs, unit.outputs))
-    return FunctionalUnit.of(unit.motion.motion, inputs, outputs)
-
-
 def _identity(unit: ListedUnit) -> ReadUnit:
-    inputs, outputs = ([block.node for block in side] for side in (unit.inputs, unit.outputs))
-    return ReadUnit(unit.motion.motion, inputs, outputs, unit.sources)
+    return ReadUnit(unit.motion.motion, *unit.sides, unit.sources)
 
 
 class _FileReading:

@@ -15,7 +15,7 @@ from foon_asp.questions.arguments import Constants, asked_with, at_least, settin
 from foon_asp.questions.assist.assistant import Assistant, Assisted
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
+from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, goal_lines, steps, success_text
@@ -121,10 +121,8 @@ class Assistance(Result):
         "person",
         "A file with success rates of what the person can do; without it, everything, never failing.",
         Kind.FILE,
-        metavar="FILE",
     ),
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp assist --goal macaroni               for every number that makes a difference

@@ -13,16 +13,15 @@ from foon_asp.document.json_document import costs_json, document, fraction_json,
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, Root, success_rate
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, asked_with, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, RULES
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.options import CONTAINERS, GOALS, HOW
+from foon_asp.questions.result import Ending
 from foon_asp.questions.sensitivity.envelope import Envelope
 from foon_asp.questions.sensitivity.interval import End, Flip, Interval
 from foon_asp.report.answer import changes_text, goal_lines, headline, success_text
-from foon_asp.report.drawing import Drawing
 
 _SUCCESS = (Objective.SUCCESS,)
 _SHORT = Fraction(1, 10**9)  # from which on a number is written without an exponent
@@ -32,7 +31,7 @@ _WIDTH = 60  # columns
 
 
 @dataclass(frozen=True, repr=False)
-class Sensitivity(Result):
+class Sensitivity(WithOutcome):
     """How wrong each success rate may be before another tree is the best.
 
     ``outcome`` is the best tree by ``success``. ``intervals`` has one for each motion that a tree for the
@@ -79,16 +78,11 @@ class Sensitivity(Result):
             first=side,
         )
 
-    def drawing(self) -> Drawing | None:
-        """Give what the picture of the best tree shows."""
-        return self.outcome.drawing()
-
 
 @question(
     GOALS,
     CONTAINERS,
-    *RULES,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp sensitivity --goal macaroni
