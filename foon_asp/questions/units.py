@@ -92,7 +92,7 @@ class Units(Result):
     foon-asp units --explain-items
     foon-asp units --explain-items --unit 12 --unit 30 --stays mine.txt
 
-    docs/plans.md has the rule.
+    docs/plans.md has the rule. Exits with 0.
     """,
     pose=the_data,
 )
