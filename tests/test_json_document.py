@@ -28,6 +28,7 @@ FORBID = ("--constraint", "forbid_motion", "-c", 'forbidden_motion="crush"')
 SOFT = ("--soft", "forbid_motion=3", "-c", 'forbidden_motion="crush"')
 # By verb: what is asked of the bundled kitchen, each to give another branch of the document. The first is
 # asked by default. What is in capitals is a file.
+RULE = ("--rule", ":- use(U), motion(U,M), #count { V : motion(V,M) } = 1.")
 ASKED: dict[str, list[tuple[str, ...]]] = {
     "solve": [
         ("--goal", "ice", *SOFT),
@@ -72,7 +73,7 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
     "units": [("--unit", "3", "--explain-items"), ("--unit", "3")],
     "stats": [()],
     "facts": [("--goal", "ice"), ("--goal", "ice", *SOFT[:2])],
-    "constraints": [()],
+    "constraints": [(), ("--explain", "before", *RULE), ("--explain", "require_motion:required_motion=cut")],
     "lint": [("LINTED",)],
 }
 # Verbs without documents: certificates, pictures, schemas and files have forms of their own.

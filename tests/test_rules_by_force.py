@@ -5,14 +5,15 @@ from functools import cache
 
 import pytest
 from clingo import Control
-from clingo.ast import AST, parse_string
 
+from foon_asp.asp.encoding import read_encoding
 from foon_asp.asp.facts import write_facts
 from foon_asp.asp.lifted_program import stands_alone
 from foon_asp.asp.rule_kind import Kind
 from foon_asp.asp.rules import Contradiction, Rules
 from foon_asp.asp.scales import Scales
 from foon_asp.deadline import Deadline
+from foon_asp.grounding.stated import Stated
 from foon_asp.problem import ContainerRule, Problem, reach
 from foon_asp.resources import encodings_folder
 from tests.random_problems import random_problem, random_steps
@@ -45,10 +46,8 @@ def kept(problem: Problem, rules: str, units: Iterable[int]) -> set[Tree] | None
     return found
 
 
-def parsed(text: str) -> list[AST]:
-    statements: list[AST] = []
-    parse_string(text, statements.append)
-    return statements
+def understood(text: str) -> Rules:
+    return Rules([read_encoding(Stated("rule 1", text))], (), endless=False)
 
 
 def parts(text: str) -> Iterator[str]:
@@ -67,7 +66,7 @@ def check(problem: Problem, text: str) -> None:
     trees = kept(problem, text, everything)
     if trees is None:
         return
-    rules = Rules(parsed(text), (), endless=False)
+    rules = understood(text)
     kinds = {rule.kind for rule in rules.rules}
     free = kept(problem, "", everything)
     assert free is not None

@@ -104,8 +104,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         if extra and not encodings and relaxed is None:
             from foon_asp.asp import rules as user_rules  # noqa: PLC0415
 
-            statements = [statement for each in extra for statement in each.statements]
-            understood = user_rules.Rules(statements, constants[1::2], endless)
+            understood = user_rules.Rules(extra, constants[1::2], endless)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # looked at now, since clingo may have nothing to do
         from foon_asp.asp.search import check  # noqa: PLC0415

@@ -27,7 +27,6 @@ from foon_asp.asp.clause import (
     constant_values,
     place,
     value,
-    written,
 )
 from foon_asp.asp.dependence import AVAILABLE, USE, Dependence, Depends, Doubt
 from foon_asp.asp.locality import Locality
@@ -73,7 +72,6 @@ class Rule(NamedTuple):
     for one unit of a set, or of each of several sets.
     """
 
-    text: str
     source: Source
     kind: Kind
     reason: str = ""
@@ -86,6 +84,11 @@ class Rule(NamedTuple):
     def local(self) -> bool:
         """Whether it sees no further than the tree."""
         return not self.further
+
+    @property
+    def without_effect(self) -> bool:
+        """Whether it says nothing of any tree, since a condition in it never holds."""
+        return bool(self.reason) and self.kind is not Kind.OTHER
 
 
 class Analysis:
@@ -218,14 +221,14 @@ class Analysis:
         return Doubt("more units may break it, and others may mend it", clause.source)
 
     def _rule(self, statement: AST, live: Sequence[Clause]) -> Rule:
-        source, text = place(statement), written(statement)
+        source = place(statement)
         if statement.ast_type != ASTType.Rule:
-            reason = f"{text.split(maxsplit=1)[0]} is nothing that is looked into"
-            return Rule(text, source, Kind.OTHER, reason, source, reason, source)
+            reason = f"{str(statement).split(maxsplit=1)[0]} is nothing that is looked into"
+            return Rule(source, Kind.OTHER, reason, source, reason, source)
         if not live:
             off = "a condition in it never holds, so it has no effect"
             helper = any(clause.constraint for clause in clauses(statement, 0, self.constants))
-            return Rule(text, source, Kind.FACT if helper else Kind.HELPER, off, source)
+            return Rule(source, Kind.FACT if helper else Kind.HELPER, off, source)
         found = [self.kind(clause) for clause in live]
         kind = _together(kind for kind, _ in found)
         doubt = next((doubt for _, doubt in found if doubt), None)
@@ -235,7 +238,6 @@ class Analysis:
         for clause in live if kind is not Kind.HELPER else ():
             further = further or self._locality.further(clause)
         return Rule(
-            text,
             source,
             kind,
             doubt.reason if doubt else "",

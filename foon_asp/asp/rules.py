@@ -3,12 +3,14 @@
 from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from enum import StrEnum
 from functools import cached_property
 from typing import NamedTuple
 
-from clingo.ast import AST
+from clingo.ast import AST, ASTType
 
-from foon_asp.asp.clause import Clause, Signature
+from foon_asp.asp.clause import Clause, Signature, written
+from foon_asp.asp.encoding import Encoding, read_encoding
 from foon_asp.asp.facts import write_facts_read
 from foon_asp.asp.flat_answers import FlatAnswers
 from foon_asp.asp.flat_body import Asking, FlatBodies, NotFlatError, Way
@@ -17,6 +19,8 @@ from foon_asp.asp.rule_kind import Analysis, Kind, Rule
 from foon_asp.asp.search import run
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
+from foon_asp.grounding.stated import Stated
+from foon_asp.network import Source
 from foon_asp.problem import Problem, Restriction, reach
 
 _DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}
@@ -25,6 +29,35 @@ _SHRINKING = _DELETING | {Kind.SHRINKING}
 
 class Contradiction(NamedTuple):
     """That no tree keeps to the rules, found before any search."""
+
+
+class Told(NamedTuple):
+    """A rule for people: its text, and places in files.
+
+    ``use`` says how a ready-made constraint was asked for that has constants of its own.
+    """
+
+    rule: Rule
+    text: str
+    source: Source
+    use: str
+    reason_source: Source | None
+    further_source: Source | None
+
+
+class Together(StrEnum):
+    """What stays of the reductions under some rules.
+
+    ``REDUCED``: all of them, since the rules only remove units. ``REQUIRED``: all of them, with what is
+    required as more goals. ``CUT``: what cannot matter for the goals is left out, and what bounds exclude.
+    ``BOUNDED``: only the latter. ``PLAIN``: nothing is left out.
+    """
+
+    REDUCED = "reduced"
+    REQUIRED = "required"
+    CUT = "cut"
+    BOUNDED = "bounded"
+    PLAIN = "plain"
 
 
 class _Flat(NamedTuple):
@@ -44,24 +77,55 @@ class Rules:
 
     def __init__(
         self,
-        statements: Sequence[AST],
+        encodings: Sequence[Encoding],
         constants: Sequence[str],
         endless: bool = True,
         varied: Collection[Signature] = (),
     ) -> None:
-        """Look at parsed statements, under constants that are set as ``name=value`` for clingo.
+        """Look at what was read, under constants that are set as ``name=value`` for clingo.
 
         ``endless`` says that nobody knows whether grounding them comes to an end.
         """
-        self._statements, self._constants, self._endless = tuple(statements), tuple(constants), endless
-        self._analysis = Analysis(self._statements, self._constants, varied)
+        self._encodings, self._constants, self._endless = tuple(encodings), tuple(constants), endless
+        statements = [statement for each in encodings for statement in each.statements]
+        self._analysis = Analysis(statements, self._constants, varied)
         self.rules: tuple[Rule, ...] = self._analysis.rules
         self._live = self._analysis.of_rule
         self._bodies = FlatBodies(self._analysis)
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
         """Give the same rules for a question that derives or varies some predicates of facts."""
-        return Rules(self._statements, self._constants, self._endless, varied)
+        return Rules(self._encodings, self._constants, self._endless, varied)
+
+    @cached_property
+    def told(self) -> tuple["Told", ...]:
+        """The rules for people: of a ready-made constraint with constants of its own, as in its file."""
+        texts: dict[int, str] = {}
+        uses: dict[str, Stated] = {}
+        for encoding in self._encodings:
+            rules = encoding.rules
+            file, originals = rules, encoding.statements
+            if isinstance(rules, Stated) and rules.file is not None:
+                uses[rules.place] = rules
+                file, originals = rules.file, read_encoding(rules.file).statements
+            pairs = zip(_saying(encoding.statements), _saying(originals), strict=True)
+            texts.update((id(statement), written(original, file)) for statement, original in pairs)
+
+        def found(source: Source | None) -> Source | None:
+            use = None if source is None else uses.get(source.file)
+            return source if source is None or use is None else source._replace(file=str(use.file))
+
+        return tuple(
+            Told(
+                rule,
+                texts[id(statement)],
+                found(rule.source) or rule.source,
+                uses[rule.source.file].written if rule.source.file in uses else "",
+                found(rule.reason_source),
+                found(rule.further_source),
+            )
+            for rule, statement in zip(self.rules, self._analysis.statements, strict=True)
+        )
 
     @property
     def all_deleting(self) -> bool:
@@ -81,6 +145,17 @@ class Rules:
         see further, too, since it looks at all units that can be made.
         """
         return all(rule.local for rule in self.rules)
+
+    @property
+    def together(self) -> Together:
+        """What stays of the reductions under these rules."""
+        if self.all_deleting:
+            return Together.REDUCED
+        if not self.rest:
+            return Together.REQUIRED
+        if not self.local:
+            return Together.PLAIN
+        return Together.CUT if all(rule.kind is Kind.SHRINKING for rule in self.rest) else Together.BOUNDED
 
     @cached_property
     def rest(self) -> tuple[Rule, ...]:
@@ -183,3 +258,8 @@ def _ids(problem: Problem, numbers: Iterable[int]) -> frozenset[int]:
     """Give units by id that are known by their numbers in the whole network."""
     found = map(problem.network.unit_of_number, numbers)
     return frozenset(unit for unit in found if unit is not None)
+
+
+def _saying(statements: Iterable[AST]) -> list[AST]:
+    """Give the statements that are in a ready-made constraint whatever its constants are called."""
+    return [each for each in statements if each.ast_type not in {ASTType.Program, ASTType.Comment}]

@@ -1,25 +1,69 @@
-"""``foon-asp constraints``: the ready-made constraints and their parameters."""
+"""``foon-asp constraints``: the ready-made constraints and their parameters, and what any rules do."""
 
 import click
 
+from foon_asp.asp import Settings
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.constraint import Constraint, RuleText
 from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.cli import options
+from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.held import held
+from foon_asp.errors import UserError
+from foon_asp.questions.contract import Part
+from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
 from foon_asp.report.constraint_list import constraints_json, constraints_text
 from foon_asp.text.json_value import json_text
 
+_EXPLAIN = CONSTRAINTS._replace(
+    name="explained",
+    flags=("--explain",),
+    help="Say what the rules of a file or of a ready-made constraint do, and how fast that is.",
+)
+_RULE = RULE._replace(name="stated", part=Part.COMMAND, help="A rule to explain, by itself or beside files.")
+_CONSTANTS = CONSTANTS._replace(name="given", help="The value of a #const in what is explained.")
+
 
 @click.command("constraints")
+@click_options(_EXPLAIN, _RULE, _CONSTANTS)
 @options.format_option("text", "json")
 @options.debug_option
-def command(format_: str) -> ExitCode:
+def command(
+    explained: tuple[Constraint, ...], stated: tuple[str, ...], given: tuple[str, ...], format_: str
+) -> ExitCode:
     """List the ready-made constraints: what each demands, and how to use it.
 
     Add the last line of an entry to solve, why-not, shopping-list or clash. A constraint is a file of a few
     lines; the docs (writing-constraints.md) teach writing one of your own.
+
+    With --explain or --rule, say of each rule what it does to trees, and whether it looks at more than the
+    tree: that decides how much can be left out before the search. Name all that you use together, since a
+    rule may depend on others.
     """
+    asked = (*explained, *map(RuleText, stated))
+    if asked:
+        return _explain(asked, given, format_)
+    if given:
+        raise UserError("-c sets a constant of what is explained: name that with --explain")
     listed = library_constraints()
     click.echo(
         json_text(constraints_json(listed)) if format_ == "json" else constraints_text(listed), nl=False
     )
+    return ExitCode.DONE
+
+
+def _explain(asked: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
+    """Say what rules do; in a session they are looked at beside those that stand."""
+    from foon_asp.report.rule_list import rules_json, rules_text
+
+    here = held()
+    if here is not None:
+        asked, constants = (*here.constraints, *asked), (*here.constants, *constants)
+    rules = assemble(
+        Settings(asked, constants=constants), lambda message: click.echo(message, err=True)
+    ).understood
+    if rules is None:
+        raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
+    click.echo(json_text(rules_json(rules)) if format_ == "json" else rules_text(rules), nl=False)
     return ExitCode.DONE
