@@ -65,7 +65,7 @@ def write_facts(
     """
     name = problem.network.object_number
     nodes = described(problem, units)
-    prices = None if looked_at is None else _hundredths(problem, units, looked_at)
+    prices = None if looked_at is None else hundredths(problem, units, looked_at)
     lines = []
     for unit in units:
         atoms = _unit_atoms(problem, unit, scales, prices)
@@ -92,7 +92,7 @@ def write_facts_read(problem: Problem, units: Sequence[int], read: Collection[tu
     name = problem.network.object_number
     nodes = described(problem, units)
     lines: list[str] = []
-    prices = _hundredths(problem, units, read) if _OF_RULES & {*read} else None
+    prices = hundredths(problem, units, read) if _OF_RULES & {*read} else None
 
     def add(subject: str, atoms: Iterable[_Atom]) -> None:
         wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
@@ -132,7 +132,7 @@ def write_open_facts(
     name = problem.network.object_number
     lines = []
     units = [id_ for kind, id_ in {*closed, *left_open} if kind == "unit"]
-    prices = _hundredths(problem, units, looked_at)
+    prices = hundredths(problem, units, looked_at)
 
     def add(subject: str, is_open: bool, atoms: Iterable[_Atom]) -> None:
         lines.append(f"#external {subject}." if is_open else f"{subject}.")
@@ -197,7 +197,7 @@ def _unit_atoms(
     return atoms
 
 
-def _hundredths(
+def hundredths(
     problem: Problem, units: Iterable[int], looked_at: Collection[tuple[str, int]]
 ) -> dict[int, int]:
     """Give the price of each unit that has one, in hundredths.
@@ -213,9 +213,10 @@ def _hundredths(
             )
         return {}
     prices = [(unit, price) for unit in units if (price := problem.prices[unit]) is not None]
-    broken = next((each for each in prices if (each[1] * 100).denominator != 1), None)
-    if broken is None and sum(price for _, price in prices) * 100 <= LARGEST:
-        return {unit: int(price * 100) for unit, price in prices}
+    found = {unit: price.numerator * 100 // price.denominator for unit, price in prices}
+    broken = next((each for each in prices if each[1].numerator * 100 % each[1].denominator), None)
+    if broken is None and sum(found.values()) <= LARGEST:
+        return found
     if _PRICE not in looked_at:
         return {}
     if broken is None:

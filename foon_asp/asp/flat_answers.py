@@ -13,6 +13,7 @@ from foon_asp.asp.flat_body import (
     Asking,
     Compare,
     Constant,
+    Counted,
     Fact,
     Item,
     Listed,
@@ -23,6 +24,7 @@ from foon_asp.asp.flat_body import (
     Way,
     bound_by,
 )
+from foon_asp.escapes import encodable
 from foon_asp.problem import Problem
 
 _Values = list[Any]  # of variables, by number: ids, texts, numbers, symbols
@@ -33,10 +35,19 @@ _Row = tuple[Any, ...]
 class FlatAnswers:
     """Answers flat bodies for a problem."""
 
-    def __init__(self, problem: Problem, tables: Mapping[Signature, Table], size: int) -> None:
-        """Look at a problem, with the tables that bodies look at and the number of their variables."""
+    def __init__(
+        self,
+        problem: Problem,
+        tables: Mapping[Signature, Table],
+        size: int,
+        prices: Mapping[int, int],
+    ) -> None:
+        """Look at a problem, with the tables that bodies look at and the number of their variables.
+
+        ``prices`` are those of units, in hundredths.
+        """
         self._problem = problem
-        self._said = _said(problem)
+        self._said = _said(problem, prices)
         self._values: _Values = [None] * size
         self._tables: dict[Signature, frozenset[_Row]] = {}
         for signature, table in tables.items():
@@ -124,13 +135,7 @@ class FlatAnswers:
     def _table(self, table: Table) -> set[_Row]:
         found: set[_Row] = set()
         for way, head in table.rows:
-            reads = list(map(self._read, head))
-
-            def note(values: _Values, reads: Sequence[Callable[[_Values], Any]] = reads) -> bool:
-                found.add(tuple(read(values) for read in reads))
-                return False
-
-            self._step(way.items, (), note)(self._values)
+            self._step(way.items, (), self._noting(head, found))(self._values)
         return found
 
     def _step(self, items: Sequence[Item], bound: Iterable[Variable], then: _Step) -> _Step:
@@ -158,11 +163,38 @@ class FlatAnswers:
         if isinstance(item, Never):
             inner = [self._step(way.items, item.given, _yes) for way in item.ways]
             return lambda values: not any(each(values) for each in inner) and then(values)
+        if isinstance(item, Counted):
+            return self._counted(item, then)
         if isinstance(item, Compare):
             return self._compare(item, bound, then)
         if isinstance(item, Listed):
             return self._match(item.terms, bound, self._tables[item.signature], then)
         return self._fact(item, bound, then)
+
+    def _counted(self, item: Counted, then: _Step) -> _Step:
+        seen: set[_Row] = set()
+        steps = [self._step(way.items, item.given, self._noting(terms, seen)) for way, terms in item.rows]
+        guards = [(operator, self._read(term)) for operator, term in item.guards]
+
+        def step(values: _Values) -> bool:
+            seen.clear()
+            for each in steps:
+                each(values)
+            number = Number(len(seen))
+            holds = all(compared(number, operator, _symbol(read(values))) for operator, read in guards)
+            return holds is not item.negated and then(values)
+
+        return step
+
+    def _noting(self, terms: Sequence[Term], found: set[_Row]) -> _Step:
+        """Make a function that notes the values of terms, and goes on."""
+        reads = list(map(self._read, terms))
+
+        def note(values: _Values) -> bool:
+            found.add(tuple(read(values) for read in reads))
+            return False
+
+        return note
 
     def _compare(self, item: Compare, bound: frozenset[Variable], then: _Step) -> _Step:
         for one, other in ((item.left, item.right), (item.right, item.left)):
@@ -258,7 +290,7 @@ class _Said(NamedTuple):
     tests: dict[str, Callable[[Any], bool]]
 
 
-def _said(problem: Problem) -> _Said:
+def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
     network, kitchen, utensils = problem.network, problem.kitchen, problem.utensils
     objects, inputs = network.objects, network.inputs
     seen = problem.as_seen or problem
@@ -277,7 +309,9 @@ def _said(problem: Problem) -> _Said:
         "ingredient": lambda o: [item for each in objects[o].contents for item in each.ingredients],
         "located": lambda o: [tuple(each) for each in objects[o].relations],
         "source": lambda unit: source_names(network.sources[unit]),
+        "video": lambda unit: [encodable(each) for s in network.sources[unit] for each in s.videos],
         "rate": lambda _: (),
+        "price": lambda unit: (prices[unit],) if unit in prices else (),
     }
     if problem.rates is not None:
         once["rate"] = lambda unit: millionths(seen.rate(unit))
@@ -303,7 +337,7 @@ def _each(variable: Variable, read: Callable[[_Values], Iterable[Any]], then: _S
 
 def _is_apart(items: Sequence[Item], known: Collection[Variable]) -> bool:
     """Whether items, one at least, are about no variable that is known before them."""
-    used = bound_by(items).union(*(item.given for item in items if isinstance(item, Never)))
+    used = bound_by(items).union(*(item.given for item in items if isinstance(item, Never | Counted)))
     return bool(items) and used.isdisjoint(known)
 
 

@@ -11,7 +11,7 @@ from copy import copy
 from itertools import product
 from typing import NamedTuple
 
-from clingo.ast import AST, ASTType, ComparisonOperator
+from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
 from clingo.symbol import Symbol, SymbolType
 
 from foon_asp.asp.clause import (
@@ -30,8 +30,8 @@ from foon_asp.asp.dependence import AVAILABLE, USE
 from foon_asp.asp.fact_subject import SUBJECTS, Subject
 from foon_asp.asp.rule_kind import Analysis
 
-_OFTEN = {"input", "output", "needs", "gives", "state", "ingredient", "located", "source"}
-_READ = _OFTEN | {"motion", "label", "inputs", "ingredients", "rate"}
+_OFTEN = {"input", "output", "needs", "gives", "state", "ingredient", "located", "source", "video"}
+_READ = _OFTEN | {"motion", "label", "inputs", "ingredients", "rate", "price"}
 _READ |= {"unit", "object", "kitchen", "utensil", "goal"}
 _MOST = 256  # ways in which a body can hold that are followed
 
@@ -82,7 +82,16 @@ class Never(NamedTuple):
     given: frozenset[Variable]
 
 
-Item = Fact | Listed | Compare | Never
+class Counted(NamedTuple):
+    """That as many rows as some ways give to their terms compare with all of some terms, or do not."""
+
+    rows: "tuple[tuple[Way, tuple[Term, ...]], ...]"
+    guards: tuple[tuple[ComparisonOperator, Term], ...]
+    negated: bool
+    given: frozenset[Variable]
+
+
+Item = Fact | Listed | Compare | Never | Counted
 
 
 class Way(NamedTuple):
@@ -232,6 +241,9 @@ class FlatBodies:
             if isinstance(item, Never):
                 inner = (self._sorted(each, item.given, dict(subjects)) for each in item.ways)
                 item = item._replace(ways=tuple(inner))
+            elif isinstance(item, Counted):
+                rows = ((self._sorted(each, item.given, dict(subjects)), row) for each, row in item.rows)
+                item = item._replace(rows=tuple(rows))
             else:
                 bound.update(_variables(_terms(item)))
             items.append(item)
@@ -239,7 +251,7 @@ class FlatBodies:
 
     def _cost(self, item: Item, bound: set[Variable]) -> int:
         """Say how soon an item should be looked at, negative where values that it needs are not there yet."""
-        if isinstance(item, Never):
+        if isinstance(item, Never | Counted):
             return 3 if item.given <= bound else -1
         free = [variable not in bound for variable in _variables(_terms(item))]
         if isinstance(item, Compare):
@@ -289,10 +301,7 @@ class _Scope:
         self._named: dict[str, Term] = {}
         # those that a rule has as a whole; others are of their condition alone
         self._whole = {
-            name
-            for part in (clause.head, *clause.body)
-            if isinstance(part, Literal | Test)
-            for name in _names(part)
+            name for part in (clause.head, *clause.body) if part is not None for name in _names(part)
         }
         if not self._is_safe(clause.body):
             raise NotFlatError  # clingo says which variable nothing binds
@@ -308,15 +317,20 @@ class _Scope:
             for part in body:
                 if isinstance(part, Test) and (names := _equal(part)) and len(names - bound) == 1:
                     bound |= names
+        inner: list[tuple[Iterable[str], tuple[Part, ...]]] = []  # names that conditions have to bind
+        for part in body:
+            if isinstance(part, Conditional):
+                inner.append((_names(part.literal), part.condition))
+            elif isinstance(part, Aggregate):
+                inner += [(_in_terms(element.terms), element.condition) for element in part.elements]
         return bound >= self._whole and all(
             self._whole.union(
                 name
-                for each in part.condition
+                for each in condition
                 if isinstance(each, Literal) and each.positive
                 for name in _names(each)
-            ).issuperset(name for each in (part.literal, *part.condition) for name in _names(each))
-            for part in body
-            if isinstance(part, Conditional)
+            ).issuperset((*names, *(name for each in condition for name in _names(each))))
+            for names, condition in inner
         )
 
     def called(self, terms: Sequence[Term], head: Sequence[AST]) -> list[Item]:
@@ -388,7 +402,22 @@ class _Scope:
                 if one.unit is None and other.unit is None
             ]
             return [_never(inner, self._given((part.literal, *part.condition)))]
+        if isinstance(part, Aggregate) and part.function is AggregateFunction.Count:
+            return [Way((self._counted(part),))]
         raise NotFlatError
+
+    def _counted(self, part: Aggregate) -> Counted:
+        rows = []
+        for element in part.elements:
+            within = self._within()
+            terms = tuple(map(within.term, element.terms))
+            for way in within.ways(element.condition):
+                if way.unit is not None or not terms:  # without terms it counts atoms
+                    raise NotFlatError
+                rows.append((way, terms))
+        guards = tuple((guard.comparison, self.term(guard.term)) for guard in part.guards)
+        given = self._given((part, *(each for element in part.elements for each in element.condition)))
+        return Counted(tuple(rows), guards, part.negations == 1, given)
 
     def _atom(self, literal: Literal) -> list[Way]:
         if literal.signature[0].startswith("-"):
@@ -429,8 +458,16 @@ def bound_by(items: Iterable[Item]) -> set[Variable]:
 
 
 def _names(part: Part) -> Iterator[str]:
-    nodes = part.arguments if isinstance(part, Literal) else (part.ast,) if isinstance(part, Test) else ()
-    return (name for node in nodes for name in variables(node) if name != "_")
+    """Give the variables of a part that the rule has as a whole; those in conditions may be of their own."""
+    if isinstance(part, Literal):
+        return _in_terms(part.arguments)
+    if isinstance(part, Test):
+        return _in_terms((part.ast,))
+    return _in_terms(guard.term for guard in part.guards) if isinstance(part, Aggregate) else iter(())
+
+
+def _in_terms(terms: Iterable[AST]) -> Iterator[str]:
+    return (name for term in terms for name in variables(term) if name != "_")
 
 
 def _equal(test: Test) -> set[str]:

@@ -25,6 +25,7 @@ from foon_asp.asp.clause import (
     clauses,
     compared,
     constant_values,
+    literals,
     place,
     value,
 )
@@ -146,6 +147,10 @@ class Analysis:
         }
         kind = kinds[dependence.of_parts(clause.body)]
         return kind, self._why_both(clause) if kind is Kind.OTHER else None
+
+    def reads(self, signature: Signature) -> bool:
+        """Whether some rule looks at a predicate."""
+        return any(each.signature == signature for clause in self.live for each in literals(clause.body))
 
     def is_closed(self, signature: Signature) -> bool:
         """Whether a helper has the same atoms for every tree, and whatever is beyond it."""

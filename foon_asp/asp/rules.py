@@ -11,7 +11,7 @@ from clingo.ast import AST, ASTType
 
 from foon_asp.asp.clause import Clause, Signature, written
 from foon_asp.asp.encoding import Encoding, read_encoding
-from foon_asp.asp.facts import write_facts_read
+from foon_asp.asp.facts import hundredths, write_facts_read
 from foon_asp.asp.flat_answers import FlatAnswers
 from foon_asp.asp.flat_body import Asking, FlatBodies, NotFlatError, Way
 from foon_asp.asp.lifted_program import NOBODY, LiftedProgram, stands_alone
@@ -201,7 +201,7 @@ class Rules:
         A tree keeps to these if and only if it has no removed unit, and a unit of each required set. What
         rules see are all units that can be made without any rule. ``None`` says that the rules could not be
         settled so: the program as a whole then shows what is wrong with them. Raises ``KeyboardInterrupt`` at
-        a limit and at ctrl-C.
+        a limit and at ctrl-C, and :class:`UserError` for prices that rules look at and cannot be told.
         """
         if problem.restriction is not None:
             problem = replace(problem, restriction=None)
@@ -217,7 +217,8 @@ class Rules:
 
     def _by_hand(self, numbers: Sequence[int], problem: Problem) -> Restriction | Contradiction:
         """Find what rules remove and require without clingo; what they remove is found when it is asked."""
-        answers = FlatAnswers(problem, self._bodies.tables, self._bodies.size)
+        prices = self._prices(problem) if self._analysis.reads(("price", 2)) else {}
+        answers = FlatAnswers(problem, self._bodies.tables, self._bodies.size, prices)
         ways = [way for number in numbers for way in self._flat[number].ways]
         if answers.any_holds(way for way in ways if way.unit is None):
             return Contradiction()
@@ -226,6 +227,14 @@ class Rules:
         if not all(required):
             return Contradiction()
         return Restriction(answers.removed(ways), tuple(required))
+
+    def _prices(self, problem: Problem) -> dict[int, int]:
+        """Give the prices of units as rules see them; raises where those that can be made have none such."""
+        read = [("price", 2)]
+        try:
+            return hundredths(problem, range(len(problem.network)), read)
+        except UserError:
+            return hundredths(problem, reach(problem).units, read)
 
     def _by_clingo(
         self, numbers: Sequence[int], problem: Problem, deadline: Deadline

@@ -1,7 +1,8 @@
 """What rules do, one by one, and what that means together: for people and for programs."""
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
 
 from foon_asp.asp.rule_kind import Kind
 from foon_asp.asp.rules import Rules, Together, Told
@@ -34,17 +35,31 @@ _TOGETHER = {
 
 def rules_text(rules: Rules) -> str:
     """Give of each rule its text, its place, what it does and how far it sees, and then what follows."""
-    blocks = ["\n".join(_rule_lines(told)) for told in rules.told]
+    blocks = ["\n".join(_rule_lines(told, more)) for told, more in _without_facts_alike(rules.told)]
     blocks.append("\n".join(_wrapped(f"together: {_together(rules)}")))
     return "\n\n".join(blocks) + "\n"
 
 
-def _rule_lines(told: Told) -> Iterator[str]:
+def _without_facts_alike(rules: Iterable[Told]) -> Iterator[tuple[Told, int]]:
+    """Give rules without those facts that follow one of the same predicate, and how many each stands for."""
+    for (alike, _), group in groupby(rules, _likeness):
+        together = list(group)
+        yield from [(together[0], len(together) - 1)] if alike else [(told, 0) for told in together]
+
+
+def _likeness(told: Told) -> tuple[bool, str]:
+    is_fact = told.rule.kind is Kind.HELPER and ":-" not in told.text
+    return is_fact, f"{told.source.file} {told.text.partition('(')[0]}" if is_fact else ""
+
+
+def _rule_lines(told: Told, more: int) -> Iterator[str]:
     rule = told.rule
     yield str(told.source)
     if told.use:
         yield f"  {told.use}"
     yield from _wrapped(told.text, "    ")
+    if more:
+        yield f"    ... and {more} more of these facts"
     says = _ASKS_FOR_ONE if rule.one_of else rule.reason or _KINDS[rule.kind]
     yield from _wrapped(f"{rule.kind}: {says}{_elsewhere(told, told.reason_source)}", "  ")
     if rule.kind is Kind.HELPER or rule.without_effect:
