@@ -77,7 +77,7 @@ class RandomRules:
         helpers = [name for name, of in self._helpers if of == sort]
         if sort == "U":
             near = [variable for variable in bound if variable[0] == "O"]
-            ways = ["use({})"] * 12 + ["unit({})", f"motion({{}},{self._name('motion')})"]
+            ways = ["use({})"] * 12 + ["times({},_)"] + ["unit({})", f"motion({{}},{self._name('motion')})"]
             ways += [f"{rng.choice(('input', 'gives'))}({{}},{rng.choice(near)})"] if near else []
         elif sort == "O":
             unit = self._known("U", bound, parts) if rng.random() < 0.95 else "_"

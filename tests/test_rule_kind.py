@@ -1,9 +1,14 @@
 """What is claimed of rules: their kinds, and how far they see."""
 
+from pathlib import Path
+
 import pytest
 
+from foon_asp.asp import Settings
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.constraint import RuleText
 from foon_asp.asp.constraint_library import library_constraints
-from foon_asp.asp.encoding import read_encoding
+from foon_asp.asp.encoding import PUBLIC, read_encoding
 from foon_asp.asp.fact_subject import SUBJECTS
 from foon_asp.asp.facts import FACT_PREDICATES
 from foon_asp.asp.rule_kind import Analysis, Kind, Rule
@@ -42,6 +47,9 @@ WRITTEN = [
     (':- use(U), motion(U,"fry").', Kind.DELETING, LOCAL),
     (':- use(U), motion(U,("fry";"bake")).', Kind.DELETING, LOCAL),
     (":- use(17).", Kind.DELETING, LOCAL),
+    (':- times(U,N), N > 0, motion(U,"fry").', Kind.DELETING, LOCAL),
+    (":- #sum { N,U : times(U,N) } > 3.", Kind.SHRINKING, LOCAL),
+    (":- not times(U,1) : inputs(U,3).", Kind.REQUIRING, LOCAL),
     (":- use(U), kitchen(O) : needs(U,O).", Kind.DELETING, LOCAL),
     (":- use(U), #count { O : input(U,O) } > 3.", Kind.DELETING, LOCAL),
     (":- use(U), N = #count { O : input(U,O) }, N > 3.", Kind.DELETING, LOCAL),
@@ -194,4 +202,23 @@ def test_kinds_of_ready_made_constraints(name: str) -> None:
 
 
 def test_facts_are_known_or_unsure() -> None:
-    assert FACT_PREDICATES.items() - SUBJECTS.keys() == {("risk", 2), ("cost", 3), ("optimize", 2)}
+    unsure = {("risk", 2), ("cost", 3), ("optimize", 2)}
+    used_up = {("stays", 2), ("uses_up", 2), ("stock", 2)}
+    assert FACT_PREDICATES.items() - SUBJECTS.keys() == unsure | used_up
+    for name, arity in FACT_PREDICATES.items() - SUBJECTS.keys():
+        (rule,) = rules(Stated("rule 1", f":- {name}({','.join('XYZ'[:arity])})."))
+        assert (rule.kind, rule.local) == (Kind.OTHER, FAR)
+
+
+def test_every_predicate_that_a_rule_may_look_at_is_known_or_in_doubt() -> None:
+    for name, arity in PUBLIC:
+        (rule,) = rules(Stated("rule 1", f":- {name}({','.join('XYZ'[:arity])}), not missing."))
+        assert rule.kind is not Kind.FACT or (name, arity) in SUBJECTS
+
+
+def test_plans_in_which_items_are_used_up_have_rules_of_their_own() -> None:
+    settings = Settings((RuleText(':- use(U), motion(U,"fry").'),))
+    assert assemble(settings, lambda _: None).understood is not None
+    assert assemble(settings, lambda _: None, used_up=True).understood is None
+    by_need = settings._replace(encodings=Path("by_need"))
+    assert assemble(by_need, lambda _: None).understood is None

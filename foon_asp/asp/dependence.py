@@ -25,8 +25,8 @@ from foon_asp.asp.clause import (
     literals,
     value,
 )
+from foon_asp.asp.encoding import PUBLIC
 from foon_asp.asp.fact_subject import SUBJECTS
-from foon_asp.asp.facts import FACT_PREDICATES
 from foon_asp.network import Source
 
 USE, AVAILABLE = ("use", 1), ("available", 1)
@@ -133,7 +133,7 @@ class Dependence:
             return Doubt(f"of {name}/{arity}, {_UNSURE[signature]}")
         if name.startswith("_") and signature not in self._defined:
             return Doubt(f"{name}/{arity} belongs to a question, and not to its facts")
-        if FACT_PREDICATES.get(name) == arity and signature not in SUBJECTS:
+        if signature in PUBLIC - {USE, AVAILABLE} - SUBJECTS.keys() - self._defined:
             return Doubt(f"nothing is known here of {name}/{arity}")
         return None
 

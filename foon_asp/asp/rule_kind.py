@@ -7,10 +7,11 @@ anything is in doubt, a rule is ``OTHER``; docs/writing-constraints.md says what
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Sequence
 from enum import StrEnum
+from functools import cache
 from typing import NamedTuple
 
 from clingo import Number
-from clingo.ast import AST, AggregateFunction, ASTType
+from clingo.ast import AST, AggregateFunction, ASTType, parse_string
 from clingo.symbol import SymbolType
 
 from foon_asp.asp.clause import (
@@ -60,6 +61,10 @@ _WITHOUT_EFFECT = {
     ASTType.Program,
     ASTType.ShowSignature,
 }
+
+
+# What our encoding of a tree says of a predicate that rules may look at, where items do not run out.
+_IMPLIED = "times(U,1) :- use(U)."
 
 
 class Rule(NamedTuple):
@@ -116,7 +121,7 @@ class Analysis:
             for number, each in enumerate(self.statements)
         ]
         self.of_rule = [[clause for clause in each if not _never(clause.body)] for each in taken]
-        self.live = [clause for each in self.of_rule for clause in each]
+        self.live = [clause for each in (*self.of_rule, _implied()) for clause in each]
         self.dependence = Dependence(self.live, self.constants, varied)
         self.lifted = self._find_lifted()
         self._locality = Locality(self.live, self.dependence)
@@ -267,3 +272,11 @@ def _together(kinds: Iterable[Kind]) -> Kind:
 def _never(body: Iterable[Part]) -> bool:
     """Whether a body cannot hold, whatever the facts are."""
     return any(isinstance(part, Test | Aggregate) and part.holds is False for part in body)
+
+
+@cache
+def _implied() -> list[Clause]:
+    """Give the rules of our encoding that a user's rules can look at."""
+    statements: list[AST] = []
+    parse_string(_IMPLIED, statements.append)
+    return list(clauses(statements[-1], -1, {}))
