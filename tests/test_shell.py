@@ -366,6 +366,14 @@ def session() -> ShellSession:
             ("forbidden_motion=crack", "forbidden_motion=crank", "forbidden_motion=crumble"),
         ),
         ("constraint forbid_object forbidden_object=mudd", 25, ("forbidden_object=muddler",)),
+        ("constraint forbid_motion:", 11, ("forbid_motion:forbidden_motion=",)),
+        ("constraint forbid_motion:forbidden_motion=cran", 11, ("forbid_motion:forbidden_motion=crank",)),
+        (
+            "solve --constraint before:earlier_motion=a,later_motion=cran",
+            19,
+            ("before:earlier_motion=a,later_motion=crank",),
+        ),
+        ("rule ", 5, ()),
         ("drop ", 5, ("at_most_units",)),
         ("help sh", 5, ("show", "shopping-list")),
         ("alternatives --b", 13, ("--best",)),
@@ -602,3 +610,43 @@ def test_encodings_that_stand_are_not_replaced_by_a_line(nuts: Cli, tmp_path: Pa
     assert ran.code == 2
     assert "this session uses the encodings of mine" in ran.err
     assert nuts("solve", "solve --encodings mine", words=("--encodings", "mine")).code == 0
+
+
+def test_rules_stand_in_a_session(shell: Cli) -> None:
+    rule = """':- use(U), motion(U,"crush").'"""
+    ran = shell(
+        "goal ice",
+        f"rule {rule}",
+        "constraint forbid_motion:forbidden_motion=pound",
+        "show",
+        "solve",
+        f"drop {rule} forbid_motion:forbidden_motion=pound",
+        f"solve --rule {rule}",
+        f"solve --constraint forbid_motion:forbidden_motion=crush --rule {rule}",
+        f"rule {rule}",
+        "solve --rule ':- use(U), motoin(U,1).'",
+    )
+    assert (
+        'rule: :- use(U), motion(U,"crush").\nconstraint: forbid_motion:forbidden_motion=pound\n' in ran.out
+    )
+    assert ran.out.count("infeasible") == 1
+    assert ran.out.count("3 units, 9 inputs") == 3
+    assert "rule 2:1:12: warning: no rule or fact defines motoin/2" in ran.err
+    assert ran.code == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("rule", "expected rule 'RULE', with the rule in quotes"),
+        ("rule :- use(U), motion(U,1).", "expected rule 'RULE', with the rule in quotes"),
+        ("rule ''", "rule 1: found '', expected a rule such as"),
+        ("rule ':- use(U)'", "rule 1:1:10: error: syntax error, unexpected EOF; a rule ends in a full stop"),
+        ("drop ':- use(1).'", "this session has no constraint ':- use(1).'"),
+        ("constraint forbid_motion:x=1", "forbid_motion has no constant 'x'"),
+    ],
+)
+def test_rules_that_are_none_change_nothing(shell: Cli, line: str, message: str) -> None:
+    ran = shell("goal ice", line)
+    assert ran.code == 2
+    assert message in ran.err

@@ -5,6 +5,7 @@ import random
 import shlex
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +15,15 @@ import foon_asp
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.constraint import LibraryUse, RuleText, given_constraint, named_constraint
 from foon_asp.asp.encoding import EXTENDED, PUBLIC, read_encoding
+from foon_asp.asp.integrity import relax
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.stating import loaded
 from foon_asp.certificate import coverage
-from foon_asp.errors import UserError
+from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import FunctionalUnit
-from foon_asp.problem import ContainerRule, parse_objectives
+from foon_asp.problem import ContainerRule, Objective, parse_objectives
+from foon_asp.report.disagreement import _Rules
 from foon_asp.resources import encodings_folder
 from tests import oracle
 from tests.conftest import ROOT, Cli
@@ -373,6 +377,30 @@ def test_the_second_opinion_is_asked_under_rules(cli: Cli) -> None:
     )
     assert ran.code == 0
     assert "clingo" in ran.out + ran.err
+
+
+def test_a_bug_report_can_be_pasted() -> None:
+    """What was asked is said with rules as rules, whether they are rewritten or not."""
+    problem = random_problem(0, ContainerRule.STRICT)
+    use = given_constraint("forbid_motion:forbidden_motion=fry")
+    _, relaxed = relax([RuleText(POUND), use], (), soft=True, before=[RuleText(CRUSH)])
+    settings = Settings((RuleText(CRUSH), use), relaxed=relaxed)
+    checks = Postconditions(problem, (Objective.UNITS,), settings, own=False)
+    with pytest.raises(BugError) as bug:
+        checks.require(False, lambda: "wrong")
+    words = shlex.split(next(line for line in str(bug.value).split("\n") if "foon-asp facts" in line))
+    given = [(flag, word) for flag, word in pairwise(words) if flag in {"--rule", "--constraint"}]
+    assert given == [("--rule", CRUSH), ("--constraint", str(use)), ("--rule", POUND)]
+    assert "Stated(" not in str(bug.value)
+
+
+def test_a_disagreement_names_rules_as_they_are_given(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.lp"
+    mine.write_text(POUND)
+    rules = _Rules()
+    given = [RuleText(CRUSH), given_constraint("forbid_motion:forbidden_motion=fry"), mine]
+    assert [rules.copy(each) for each in given] == [*map(str, given[:2]), "rules-1-mine.lp"]
+    assert list(rules.files) == ["rules-1-mine.lp"]
 
 
 def test_certificates_name_rules_by_their_text() -> None:

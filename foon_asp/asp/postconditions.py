@@ -6,6 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import partial
 
+from foon_asp.asp.constraint import RuleText
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.settings import Settings
 from foon_asp.errors import BugError, UserError
@@ -212,16 +213,16 @@ class Postconditions:
             words += ["--goal", str(problem.network.objects[goal])]
         words += ["--objective", ",".join(self.levels), "--containers", str(problem.containers)]
         words += ["--level", str(problem.network.level)]
-        constraints = [*how.constraints, *(how.relaxed.files if how.relaxed else ())]
-        for file in constraints:
-            words += ["--constraint", str(file)]
+        relaxed = how.relaxed.constraints if how.relaxed else ()
+        for each in dict.fromkeys((*how.constraints, *relaxed)):
+            words += ["--rule" if isinstance(each, RuleText) else "--constraint", str(each)]
         if how.replaced is not None:
             words += ["--encodings", str(how.replaced)]
         others = {
             "constants": ", ".join(how.constants),
             "reductions": ", ".join(sorted(how.reductions)) or "none",
             "options of clingo": " ".join(how.clingo_options),
-            "soft constraints or dropped ones": ", ".join(map(str, how.relaxed.files)) if how.relaxed else "",
+            "soft constraints or dropped ones": ", ".join(map(str, relaxed)),
             "bounds": f"{how.bounded.rules} {how.bounded.below or ''}".replace("\n", " ").strip()
             if how.bounded
             else "",

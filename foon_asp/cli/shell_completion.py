@@ -57,7 +57,7 @@ def _words(before: list[str], fragment: str, session: ShellSession) -> Iterable[
         "lack": lambda: _nodes(fragment, kitchen.names_at_hand),
         "objective": lambda: _list(fragment),
         "containers": lambda: _beginning(ContainerRule, fragment),
-        "constraint": lambda: _beginning((each.name for each in library_constraints()), fragment),
+        "constraint": lambda: _constraints(fragment, session),
         "drop": lambda: _beginning(map(str, session.constraints), fragment),
         "time-limit": lambda: _beginning(["none"], fragment),
         "help": lambda: _beginning([*WORDS, *QUESTIONS], fragment),
@@ -77,7 +77,7 @@ def _options(verb: str, last: str, fragment: str, session: ShellSession) -> Iter
     if option.name == "objectives":
         return _list(fragment)
     if option.name == "constraints":
-        return _beginning((constraint.name for constraint in library_constraints()), fragment)
+        return _constraints(fragment, session)
     if isinstance(option.type, click.Choice):
         return _beginning(map(str, option.type.choices), fragment)
     return ()
@@ -98,6 +98,15 @@ def _list(fragment: str) -> Iterable[str]:
     done, comma, last = fragment.rpartition(",")
     left = [objective for objective in Objective if objective not in done.split(",")]
     return (f"{done}{comma}{objective}" for objective in _beginning(left, last))
+
+
+def _constraints(fragment: str, session: ShellSession) -> Iterable[str]:
+    """Give the names of ready-made constraints, or what may follow behind one."""
+    name, colon, settings = fragment.partition(":")
+    if not colon:
+        return _beginning((each.name for each in library_constraints()), fragment)
+    done, comma, last = settings.rpartition(",")
+    return (f"{name}:{done}{comma}{each}" for each in _constants(name, last, session))
 
 
 def _constants(constraint: str, fragment: str, session: ShellSession) -> Iterable[str]:
