@@ -6,6 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Self
 
+from foon_asp.asp.measure import read_measures
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.items import Stays, Stock, items_of
 from foon_asp.dataset.names import in_python
@@ -26,6 +27,7 @@ def load(
     utensils: File | None = None,
     goals: File | None = None,
     unit_prices: File | None = None,
+    measures: Files = (),
     level: int = 3,
     lenient: bool = False,
 ) -> "Foon":
@@ -43,6 +45,7 @@ def load(
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
         unit_prices: The file with the prices of units, instead of that of the folder.
+        measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
@@ -66,9 +69,12 @@ def load(
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
-    dataset = read_dataset(find_data(folder, () if folder else paths, *beside), lenient, level)
+    known = read_measures(measures)
+    dataset = read_dataset(find_data(folder, () if folder else paths, *beside), lenient, level).measured(
+        known
+    )
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
-    foon = Foon(dataset, name)
+    foon = Foon(dataset.measured(known), name)
     for remark in foon.warnings:
         warn(remark)
     return foon
@@ -81,6 +87,7 @@ def build(
     rates: Mapping[str, Number] | None = None,
     utensils: Iterable[str] = (),
     unit_prices: UnitPricesNamed | None = None,
+    measures: Files = (),
 ) -> "Foon":
     """Combine a network that was built in Python with a kitchen, rates and the rest.
 
@@ -90,6 +97,7 @@ def build(
         rates: The success rates of all motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
+        measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
 
     Returns:
         The data, from which problems are made.
@@ -105,7 +113,8 @@ def build(
         <Answer: optimal by units (strict containers): 1 unit, 1 input>
     """
     data = Data(network, frozenset(), (), (), None, frozenset(utensils), (), 0)
-    return Foon(Dataset(data, 0.0).vary(Changes(kitchen, rates=rates, unit_prices=unit_prices)), "a network")
+    dataset = Dataset(data, 0.0).measured(read_measures(measures))
+    return Foon(dataset.vary(Changes(kitchen, rates=rates, unit_prices=unit_prices)), "a network")
 
 
 class Foon:
@@ -142,7 +151,7 @@ class Foon:
         data = Data(
             problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0, problem.unit_prices
         )
-        return cls(Dataset(data, 0.0), "a problem")
+        return cls(Dataset(data, 0.0).measured(problem.measures), "a problem")
 
     def close(self) -> None:
         """Close the store, for all that vary these data too; data that were read whole stay.
@@ -190,8 +199,9 @@ class Foon:
         without: Names = (),
         rates: Mapping[str, Number] | None = None,
         unit_prices: UnitPricesNamed | None = None,
+        measures: Files | None = None,
     ) -> "Foon":
-        """Give the same data with another kitchen, other success rates or other prices.
+        """Give the same data with another kitchen, other success rates, other prices or other measures.
 
         Parameters:
             kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
@@ -201,11 +211,12 @@ class Foon:
             rates: New success rates of some motions, above 0 and at most 1.
             unit_prices: New prices, from 0, of motions by name and of single units; the price of a single
                 unit stays when that of its motion changes.
+            measures: All measures of your own: files with rules for what units cost, or the rules themselves.
 
         Raises:
             UserError: for a name that means no object node or several, or a rate or price out of range.
         """
-        varied = self._dataset.vary(Changes(kitchen, adding, without, rates, unit_prices))
+        varied = self._dataset.vary(Changes(kitchen, adding, without, rates, unit_prices, measures))
         return self if varied is self._dataset else Foon(varied, self._name)
 
     @property

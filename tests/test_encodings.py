@@ -140,7 +140,7 @@ def test_files_of_the_users_are_held_against_what_the_headers_say() -> None:
     public = {each for each in in_headers("Facts", "Input", "Output") if not each[0].startswith("_")}
     assert public == encoding.PUBLIC | encoding.EXTENDED
     assert not encoding.PUBLIC & encoding.EXTENDED
-    assert {name for name, _ in public} | {each.row.term for each in Objective} == encoding._PUBLIC_NAMES
+    assert {name for name, _ in public} | {each.row.term for each in Objective} == encoding.PUBLIC_NAMES
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -46,9 +46,7 @@ RULES = list(ContainerRule)
 
 def made_up(row: Row) -> Objective:
     """Make an objective that is a row, and nothing else: no room has heard of its name."""
-    objective = str.__new__(Objective, row.term)
-    objective._name_, objective._value_, objective.row = row.term.upper(), row.term, row
-    return objective
+    return Objective.of_row(row.term, row)
 
 
 NEW = {

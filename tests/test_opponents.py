@@ -62,7 +62,7 @@ def optima() -> list[float | None]:
     for problem in asked():
         trees = list(oracle.trees(problem))
         for objective in opponents.OBJECTIVES:
-            best = min((oracle.measure(problem, tree, objective.value) for tree in trees), default=None)
+            best = min((oracle.measure(problem, tree, str(objective)) for tree in trees), default=None)
             found.append(None if best is None else float(best))
     return found
 

@@ -15,6 +15,7 @@ PAGES = (
     "README.md",
     pytest.param("docs/questions.md", marks=pytest.mark.slow),
     "docs/writing-constraints.md",
+    "docs/writing-objectives.md",
     "docs/json.md",
     "docs/pddl.md",
     "docs/plans.md",

@@ -67,7 +67,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         rules += bounded.rules
     constants: list[str] = []
     looked_at: frozenset[tuple[str, int]] = frozenset()
-    text, is_open = "", False
+    text, is_open, named = "", False, frozenset[str]()
     understood: Rules | None = None
     replaced = not all(map(is_own, base))
     endless = replaced or not all(map(_is_own, added))
@@ -93,6 +93,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
         theirs = [*extra, *parsed] if encodings else extra
         looked_at = frozenset(signature for each in theirs for signature in each.used)
+        named = frozenset(name for each in (*parsed, *extra) for name in each.constants)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))
         is_open = (
             encodings is None
@@ -126,6 +127,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         encodings=encodings,
         ours=(*base, *questions),
         understood=understood,
+        named=named,
     )
 
 

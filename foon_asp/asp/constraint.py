@@ -80,7 +80,7 @@ def given_constraint(given: str | PathLike[str] | Constraint) -> Constraint:
     if not isinstance(given, str):
         return Path(given)
     named = named_constraint(given)
-    if isinstance(named, Path) and not _exists(named) and (":-" in given or given.rstrip().endswith(".")):
+    if isinstance(named, Path) and not exists(named) and (":-" in given or given.rstrip().endswith(".")):
         return RuleText(given)
     return named
 
@@ -88,7 +88,7 @@ def given_constraint(given: str | PathLike[str] | Constraint) -> Constraint:
 def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
     """Read a path, or the name of a ready-made constraint, perhaps with constants of its own."""
     name, colon, _ = text.partition(":")
-    if colon and not _exists(Path(text)):
+    if colon and not exists(Path(text)):
         file = _bundled(Path(name))
         if file is not None:
             return LibraryUse(file, text)
@@ -102,13 +102,13 @@ def find_constraint(constraint: Constraint) -> Constraint:
     """
     if not isinstance(constraint, Path):
         return constraint
-    if _exists(constraint) and constraint.is_file():
+    if exists(constraint) and constraint.is_file():
         return constraint
     bundled = _bundled(constraint)
     if bundled is not None:
         return bundled
     name = str(constraint).partition(":")[0]
-    if name != str(constraint) and _exists(Path(name)) and Path(name).is_file():
+    if name != str(constraint) and exists(Path(name)) and Path(name).is_file():
         raise UserError(
             f"{constraint}: constants can follow the name of a ready-made constraint only; set those of a "
             "file with -c CONSTANT=VALUE"
@@ -129,10 +129,10 @@ def _bundled(path: Path) -> Path | None:
     if path.name != str(path):
         return None
     file = _library() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)
-    return file if _exists(file) else None
+    return file if exists(file) else None
 
 
-def _exists(path: Path) -> bool:
+def exists(path: Path) -> bool:
     """Whether a path exists; a text that can be none does not."""
     try:
         return path.exists()

@@ -31,7 +31,7 @@ EXTENDED = frozenset(
 )  # to which files of the user's add facts
 _LOOKED_AT = frozenset((("_by_person", 1),))  # by constraints, under a question that has it
 _TERMS = frozenset(objective.row.term for objective in Objective)
-_PUBLIC_NAMES = frozenset(name for name, _ in (*PUBLIC, *EXTENDED)) | _TERMS
+PUBLIC_NAMES = frozenset(name for name, _ in (*PUBLIC, *EXTENDED)) | _TERMS
 
 _THEORY = "no theory is part of the program, so it would have no meaning; #sum and #count add up and count"
 _REFUSED = {
@@ -264,7 +264,7 @@ def check_encodings(
     if errors:
         raise InputError(errors)
     return [
-        encoding.remark(Severity.WARNING, "undefined-atom", _undefined(signature, known), source)
+        encoding.remark(Severity.WARNING, "undefined-atom", undefined(signature, known), source)
         for encoding in added
         for signature, source in encoding.used.items()
         if signature not in known
@@ -351,7 +351,7 @@ def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
             source,
         )
         for name, source in encoding.constant_sources.items()
-        if _is_reserved(name) or name in _PUBLIC_NAMES or name in names
+        if _is_reserved(name) or name in PUBLIC_NAMES or name in names
     ]
 
 
@@ -359,7 +359,8 @@ def _is_reserved(name: str) -> bool:
     return name.lstrip("-").startswith(_PREFIX)
 
 
-def _undefined(signature: Signature, known: set[Signature]) -> str:
+def undefined(signature: Signature, known: set[Signature]) -> str:
+    """Say that no rule or fact defines a predicate, and which one may be meant."""
     name, arity = signature
     message = f"no rule or fact defines {name}/{arity}, so it never holds"
     same_name = sorted(n for other, n in known if other == name)

@@ -1,14 +1,15 @@
 """The facts handed to clingo, as text."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from pathlib import PurePath
 
 from foon_asp.asp.encoding_file import LARGEST
 from foon_asp.asp.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
-from foon_asp.network import Source
+from foon_asp.network import ObjectNode, Source
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.text.exact_price import decimal_text
 
@@ -42,6 +43,8 @@ FACT_PREDICATES = {
     "uses_up": 2,
     "stock": 2,
 }
+
+OBJECT_FACTS = frozenset(("object", "label", "state", "ingredient", "located"))  # each about one object node
 
 _Atom = tuple[str, str]  # the name of the predicate, and the arguments as text
 
@@ -113,6 +116,35 @@ def write_facts_read(problem: Problem, units: Sequence[int], read: Collection[tu
     lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
     lines += [f"goal({name(o)})." for o in problem.goals]
     return "\n".join(lines) + "\n"
+
+
+def write_worlds(
+    problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
+) -> Iterator[str]:
+    """Describe units and their object nodes by some predicates, each unit in a world of its own.
+
+    So the facts about one unit are no facts about another; ``world`` is the predicate of worlds.
+    """
+    network = problem.network
+    sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
+    prices: dict[int, int] | None = {} if {"source", "video"} & set(predicates) else None
+
+    @cache
+    def of_object(o: int) -> list[_Atom]:
+        number = network.object_number(o)
+        atoms = [(name, f"{number},{said}") for name, said in object_facts(network.objects[o], predicates)]
+        return [*atoms, ("object", f"{_check(number)}")] if "object" in predicates else atoms
+
+    for unit in units:
+        number = network.unit_number(unit)
+        atoms = [("unit", f"{_check(number)}"), *_unit_atoms(problem, unit, None, prices)]
+        atoms = [atom for atom in atoms if atom[0] in predicates]
+        if "rate" in predicates:
+            atoms.append(("rate", f"{number},{millionths((problem.as_seen or problem).rate(unit))}"))
+        if sees_nodes:
+            for o in dict.fromkeys((*network.inputs[unit], *network.outputs[unit])):
+                atoms += of_object(o)
+        yield f"{world}({number})." + "".join([f"_{name}({number},{said})." for name, said in atoms])
 
 
 def write_open_facts(
@@ -239,11 +271,19 @@ def _object_atom(problem: Problem, o: int) -> str:
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
     """Give the facts about an object node, except that it is one and whether it is at hand."""
-    node, i = problem.network.objects[o], problem.network.object_number(o)
-    atoms = [("label", f"{i},{quote(node.label)}")]
-    atoms += [("state", f"{i},{quote(state)}") for state in sorted(node.states)]
-    atoms += [("located", f"{i},{quote(word)},{quote(related)}") for word, related in sorted(node.relations)]
-    atoms += [("ingredient", f"{i},{quote(item)}") for item in dict.fromkeys(node.ingredients)]
+    number = problem.network.object_number(o)
+    return [(name, f"{number},{said}") for name, said in object_facts(problem.network.objects[o])]
+
+
+def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -> list[_Atom]:
+    """Give what facts of some predicates say of an object node, without the node."""
+    atoms = [("label", quote(node.label))] if "label" in predicates else []
+    if "state" in predicates:
+        atoms += [("state", quote(state)) for state in sorted(node.states)]
+    if "located" in predicates:
+        atoms += [("located", f"{quote(word)},{quote(related)}") for word, related in sorted(node.relations)]
+    if "ingredient" in predicates:
+        atoms += [("ingredient", quote(item)) for item in dict.fromkeys(node.ingredients)]
     return atoms
 
 

@@ -158,9 +158,17 @@ def prepare(
         raise UserError("this question is not built for items that are used up")
     asked = levels(tuple(objectives))
     problem.require_known_for(asked)
+    for objective in program.named.intersection(asked):
+        raise UserError(
+            f"found #const {objective} in a constraint or an encoding, but that is the name of a measure: "
+            "give one of them another name"
+        )
     deadline = settings.begun
     first = Prepared(problem, asked, settings, deadline, program)
     try:
+        if problem.measures:
+            with deadline.watched("measuring units"):
+                problem.apply_measures(deadline)
         spare = False
         if program.understood and settings.reductions and not for_sale:
             first, spare = _applied(first, program.understood)

@@ -24,7 +24,7 @@ class Program(NamedTuple):
     its grounding comes to an end. ``encodings`` is the folder whose encodings are used in place of ours.
     ``ours`` are the files but for those that the user added. ``understood`` are the rules that are added,
     looked into: ``None`` where there are none, where encodings are replaced, and where some of the rules may
-    be broken or dropped.
+    be broken or dropped. ``named`` are the names of constants that files define.
     """
 
     files: tuple[Loaded, ...]
@@ -42,6 +42,7 @@ class Program(NamedTuple):
     encodings: Path | None = None
     ours: tuple[Path, ...] = ()
     understood: "Rules | None" = None
+    named: frozenset[str] = frozenset()
 
     @property
     def settled(self) -> "Program":

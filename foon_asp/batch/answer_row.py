@@ -24,7 +24,8 @@ def answer_row(asker: Asker, asked: Asked, memory_limit: int | None = None) -> R
         with deadline.watched("reading", late=True):
             problem = asker.problem(asked)
         settings = Settings(deadline=deadline)
-        row = _answered(asked, solve(problem, parse_objectives([asked.objective]), settings))
+        objectives = parse_objectives([asked.objective], problem.measures)
+        row = _answered(asked, solve(problem, objectives, settings))
     except LimitError as limit:
         row = {**failed_row(asked, f"stopped at {limit.stopped}"), "status": "unknown"}
     except UserError as error:

@@ -2,7 +2,7 @@
 
 import itertools
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,8 +33,12 @@ class QuestionLine(NamedTuple):
     time_limit: float | None
 
 
-def read_questions(file: Path, time_limit: float | None) -> list[QuestionLine]:
+def read_questions(
+    file: Path, time_limit: float | None, measures: Collection[str] = ()
+) -> list[QuestionLine]:
     """Read questions; ``time_limit`` is for those that do not say theirs, and kitchens are beside the file.
+
+    ``measures`` are objectives of the user's own, by name.
 
     Raises :class:`InputError` naming every line that is not one object with the keys that are known.
     """
@@ -44,7 +48,7 @@ def read_questions(file: Path, time_limit: float | None) -> list[QuestionLine]:
         if not text.strip():
             continue
         try:
-            lines.append(_line(read_json(text), file.parent, time_limit))
+            lines.append(_line(read_json(text), file.parent, time_limit, measures))
         except json.JSONDecodeError as problem:
             fault = json_fault(problem)
             place = Source(str(file), number, fault.column)
@@ -76,7 +80,7 @@ def each_question(lines: Iterable[QuestionLine], asker: Asker) -> Iterator[Asked
                     yield asked
 
 
-def _line(value: object, folder: Path, time_limit: float | None) -> QuestionLine:
+def _line(value: object, folder: Path, time_limit: float | None, measures: Collection[str]) -> QuestionLine:
     if not isinstance(value, dict) or "goal" not in value:
         raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')
     if unknown := sorted(value.keys() - set(_KEYS)):
@@ -84,7 +88,7 @@ def _line(value: object, folder: Path, time_limit: float | None) -> QuestionLine
     goals = tuple(_goal(name) for name in _several(value["goal"]))
     objectives = tuple(_name(o, "objective") for o in _several(value.get("objective", "units")))
     for objective in objectives:
-        parse_objectives([objective])
+        parse_objectives([objective], measures)
     rules = tuple(_name(rule, "containers") for rule in _several(value.get("containers", "strict")))
     for rule in rules:
         if rule not in {str(known) for known in ContainerRule}:

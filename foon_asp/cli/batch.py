@@ -14,7 +14,7 @@ from foon_asp.batch.results import open_results
 from foon_asp.batch.tally import Tally
 from foon_asp.batch.workers import Work, answer_all
 from foon_asp.cli import options
-from foon_asp.cli.batch_data import Opening, digest
+from foon_asp.cli.batch_data import Opening, digest, measured
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
@@ -73,7 +73,7 @@ def command(
     with 3 when a limit stopped some, or ctrl-C the run.
     """
     check_outputs()
-    lines = read_questions(questions, time_limit)
+    lines = read_questions(questions, time_limit, measured(data))
     kitchens = [kitchen for line in lines for kitchen in line.kitchens if kitchen]
     opening = Opening(tuple(data.items()), digest(data, kitchens))
     asked = list(each_question(lines, opening(quiet=False)))

@@ -3,7 +3,7 @@
 import contextlib
 import hashlib
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -67,12 +67,23 @@ class BatchData:
         return dataset
 
 
+def measured(named: dict[str, Any]) -> Collection[str]:
+    """Give the names of the measures in the files that the options name."""
+    files = named["measures"]
+    if not files:
+        return ()
+    from foon_asp.asp.measure import read_measures
+
+    return read_measures(files)
+
+
 def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
     """Give a digest of all files that the options name, and of the kitchens."""
-    named = {key: value for key, value in named.items() if key not in {"level", "lenient"}}
+    measures = named["measures"]
+    named = {key: value for key, value in named.items() if key not in {"level", "lenient", "measures"}}
     files = find_data(**named)
     found = hashlib.sha256()
-    for file in (*files.network, *filter(None, files[1:]), *sorted(set(kitchens))):
+    for file in (*files.network, *filter(None, files[1:]), *sorted(set(kitchens)), *measures):
         if not file.is_file():
             raise UserError(f"{file}: expected a file, since every process reads it again")
         with file.open("rb") as opened:

@@ -47,8 +47,8 @@ def command(
     foon-asp facts --goal ice --soft mine.lp=3 > facts.lp
     python -m clingo encodings/*.lp encodings/questions/soft.lp facts.lp
     """
-    chosen = parse_objectives(objectives)
     dataset = options.read_dataset(**data)  # type: ignore[arg-type]
+    chosen = parse_objectives(objectives, dataset.measures)
     problem = dataset.problem(
         dataset.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
     )

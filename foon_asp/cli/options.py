@@ -46,6 +46,15 @@ _DATA_OPTIONS = (
     lenient_option,
 )
 
+_MEASURE_OPTION = click.option(
+    "--measure",
+    "measures",
+    type=_PATH,
+    multiple=True,
+    metavar="FILE.lp",
+    help="Rules for objectives of yours, cost(NAME,U,N); docs/writing-objectives.md.",
+)
+
 _LEVEL_OPTION = click.option(
     "--level",
     type=click.IntRange(1, 3),
@@ -84,8 +93,8 @@ def network_options(command: Command) -> Command:
 
 
 def data_options(command: Command) -> Command:
-    """Add the options that name the data, and the level."""
-    return network_options(_LEVEL_OPTION(command))
+    """Add the options that name the data, the measures and the level."""
+    return network_options(_MEASURE_OPTION(_LEVEL_OPTION(command)))
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
@@ -134,12 +143,13 @@ def read_dataset(
     unit_prices: Path | None,
     lenient: bool,
     level: int,
+    measures: Sequence[Path] = (),
     kitchen_expected: bool = True,
 ) -> Dataset:
     """Read the data that the options name; warnings go to stderr. A session has it already."""
     here = held()
     if here:
-        named = (folder, network, kitchen, rates, utensils, goals, unit_prices)
+        named = (folder, network, kitchen, rates, utensils, goals, unit_prices, measures)
         if any(named) or (lenient, level) != here[1:3]:
             raise UserError(
                 "a session keeps the data it was started with; to take another kitchen: kitchen FILE"
@@ -148,6 +158,10 @@ def read_dataset(
     with reading():
         files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
         dataset = read_data(files, lenient, level)
+        if measures:
+            from foon_asp.asp.measure import read_measures
+
+            dataset = dataset.measured(read_measures(measures))
     context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
     if context:
         context.call_on_close(dataset.close)

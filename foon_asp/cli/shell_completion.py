@@ -55,7 +55,7 @@ def _words(before: list[str], fragment: str, session: ShellSession) -> Iterable[
         "goal": lambda: _goals(fragment, session),
         "have": lambda: _nodes(fragment, kitchen.names),
         "lack": lambda: _nodes(fragment, kitchen.names_at_hand),
-        "objective": lambda: _list(fragment),
+        "objective": lambda: _list(fragment, session),
         "containers": lambda: _beginning(ContainerRule, fragment),
         "constraint": lambda: _constraints(fragment, session),
         "drop": lambda: _beginning(map(str, session.constraints), fragment),
@@ -75,7 +75,7 @@ def _options(verb: str, last: str, fragment: str, session: ShellSession) -> Iter
     if option.name == "goals_named":
         return _goals(fragment, session)
     if option.name == "objectives":
-        return _list(fragment)
+        return _list(fragment, session)
     if option.name == "constraints":
         return _constraints(fragment, session)
     if isinstance(option.type, click.Choice):
@@ -93,10 +93,10 @@ def _nodes(fragment: str, names: NodeNames) -> Iterable[str]:
     return (notation(names.node(o)) for o in nodes_beginning(fragment, names, _MOST))
 
 
-def _list(fragment: str) -> Iterable[str]:
+def _list(fragment: str, session: ShellSession) -> Iterable[str]:
     """Complete a list of objectives."""
     done, comma, last = fragment.rpartition(",")
-    left = [objective for objective in Objective if objective not in done.split(",")]
+    left = [name for name in (*Objective, *session.kitchen.dataset.measures) if name not in done.split(",")]
     return (f"{done}{comma}{objective}" for objective in _beginning(left, last))
 
 

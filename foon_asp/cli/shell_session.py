@@ -171,7 +171,7 @@ class ShellSession:
 
     def _objectives_for(self, verb: str) -> tuple[str, ...]:
         """Give the objectives of the session, or nothing if the verb cannot use them and has its own."""
-        alone = len(parse_objectives(self.objectives)) == 1
+        alone = len(self._chosen(self.objectives)) == 1
         return () if verb == "optima" or (verb == "pareto" and alone) else self.objectives
 
     # --- The words.
@@ -206,13 +206,17 @@ class ShellSession:
 
     def _objective(self, lists: list[str]) -> None:
         if not lists:
-            raise UserError(f"expected {WORDS['objective'].usage}, of {', '.join(Objective)}")
+            known = ", ".join((*Objective, *self.kitchen.dataset.measures))
+            raise UserError(f"expected {WORDS['objective'].usage}, of {known}")
         self.choose(lists)
-        _say(f"objective: {', '.join(parse_objectives(self.objectives))}")
+        _say(f"objective: {', '.join(self._chosen(self.objectives))}")
 
     def choose(self, objectives: Sequence[str]) -> None:
         """Choose what is best, as ``--objective`` does."""
-        self.objectives = (",".join(parse_objectives(objectives)),)
+        self.objectives = (",".join(self._chosen(objectives)),)
+
+    def _chosen(self, objectives: Sequence[str]) -> tuple[Objective, ...]:
+        return parse_objectives(objectives, self.kitchen.dataset.measures)
 
     def _constraint(self, words: list[str]) -> None:
         if not words:
@@ -281,7 +285,7 @@ class ShellSession:
         _none(words, "show")
         for goal in self.goals or ("(none)",):
             click.echo(f"goal: {goal}")
-        click.echo(f"objective: {', '.join(parse_objectives(self.objectives or ('units',)))}")
+        click.echo(f"objective: {', '.join(self._chosen(self.objectives or ('units',)))}")
         click.echo(f"containers: {self.containers}")
         for path, has in self.constraints.items():
             constants = [f"{n}={v}" for n, v in self.constants.items() if n in has]

@@ -1,18 +1,21 @@
 """Data that was read, and the problems that are posed of it."""
 
+import copy
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from types import MappingProxyType
 
+from foon_asp.asp.measure import read_measures
 from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_ids
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, UnitPrices, counted, pattern_at_level
 from foon_asp.problem import (
     Changes,
+    Measure,
     Names,
     Number,
-    Origin,
     Problem,
     UnitPricesNamed,
     Unpriced,
@@ -27,13 +30,9 @@ from foon_asp.warning import warn
 
 
 def ask(
-    data: Data,
-    goals: Sequence[int],
-    containers: str,
-    origin: Origin | None = None,
-    items: UsedUp | None = None,
+    data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
-    """Ask for goals of the network under a container rule."""
+    """Ask for goals of the network under a container rule, of data that belong to others."""
     return Problem(
         data.network,
         data.kitchen,
@@ -43,6 +42,7 @@ def ask(
         container_rule(containers),
         origin=origin,
         unit_prices=data.unit_prices,
+        measures=origin.measures,
         items=items,
     )
 
@@ -54,8 +54,10 @@ class Dataset:
     it. ``listed`` are the entries of the goals file, ``names`` what goals are looked up in, ``rates`` the
     success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
     rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words; ``has_kitchen`` says
-    that a kitchen was given, even an empty one.
+    that a kitchen was given, even an empty one. ``measures`` are the user's own, by name.
     """
+
+    measures: Mapping[str, Measure] = MappingProxyType({})
 
     def __init__(
         self, data: Data, read_seconds: float, remarks: tuple[str, ...] = (), has_kitchen: bool = True
@@ -114,8 +116,16 @@ class Dataset:
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Give the same data with the kitchen of another file."""
         kitchen = kitchen_nodes(self.data.network, items)
-        data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items))
-        return Dataset(data, self.read_seconds)
+        return self._varied(self.data._replace(kitchen=kitchen, kitchen_items=tuple(items)))
+
+    def _varied(self, data: Data) -> "Dataset":
+        return Dataset(data, self.read_seconds).measured(self.measures)
+
+    def measured(self, measures: Mapping[str, Measure]) -> "Dataset":
+        """Give the same data with other measures of the user's."""
+        other = copy.copy(self)
+        other.measures = measures
+        return other
 
     def varied(
         self,
@@ -130,7 +140,7 @@ class Dataset:
         kitchen = self._data.kitchen if only is None else only
         items = self._data.kitchen_items if only is None else ()
         at_hand = frozenset(kitchen).union(more).difference(less)
-        return Dataset(self._data._replace(kitchen=at_hand, kitchen_items=items), self.read_seconds)
+        return self._varied(self._data._replace(kitchen=at_hand, kitchen_items=items))
 
     def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
         """Give the same data with some success rates and some prices changed."""
@@ -140,12 +150,14 @@ class Dataset:
         changed = changed_rates(self._data.rates, rates)
         prices = changed_prices(self._data.unit_prices, unit_prices, self.motions, network)
         data = self._data._replace(rates=None if changed is None else dict(changed), unit_prices=prices)
-        return Dataset(data, self.read_seconds)
+        return self._varied(data)
 
     def vary(self, changes: Changes) -> "Dataset":
         """Give the same data with another kitchen, other rates or prices."""
-        kitchen, adding, without, rates, unit_prices = changes
+        kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.valued(rates, unit_prices)
+        if measures is not None:
+            dataset = dataset.measured(read_measures(measures))
         if kitchen is None and not adding and not without:
             return dataset
         only = None

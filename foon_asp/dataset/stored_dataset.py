@@ -115,7 +115,8 @@ class StoredDataset(Dataset):
     def with_kitchen(self, items: Sequence[ListedObject]) -> Dataset:
         """Give the same store with the kitchen of another file."""
         began = time.perf_counter()
-        return StoredDataset(self._store, items, self.listed, self.rates, self.utensils, self._prices, began)
+        beside = self.listed, self.rates, self.utensils, self._prices
+        return StoredDataset(self._store, items, *beside, began).measured(self.measures)
 
     def varied(
         self,

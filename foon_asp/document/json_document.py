@@ -194,7 +194,7 @@ def costs_json(costs: Costs | None) -> Json | None:
     """Give all measures of a tree by objective, ``None`` where nothing is known, and its ingredients."""
     if costs is None:
         return None
-    figures = figures_json({each: costs.measures.get(each) for each in Objective})
+    figures = figures_json({**dict.fromkeys(Objective), **costs.measures})
     return figures | {"ingredients": costs.ingredients}
 
 

@@ -14,6 +14,7 @@ from io import FileIO
 from typing import Any
 
 from foon_asp.errors import UserError
+from foon_asp.grounding.derived import derive
 from foon_asp.grounding.ground_program import GroundProgram
 from foon_asp.grounding.run import OUT_OF_MEMORY, ProgramError
 from foon_asp.pipe import receive, send
@@ -41,6 +42,10 @@ def serve() -> None:
         if command == "forget":
             program = None
             return None
+        if command == "derive":
+            *described, memory = given
+            _bound_memory(memory)
+            return derive(*described)
         assert program is not None
         if command == "add":
             program.add(*given)

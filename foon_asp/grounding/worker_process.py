@@ -17,6 +17,7 @@ from typing import Any
 
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
+from foon_asp.grounding.derived import Value
 from foon_asp.grounding.run import OUT_OF_MEMORY, Heard, ProgramError
 from foon_asp.grounding.stated import Stated
 from foon_asp.pipe import receive, send
@@ -40,10 +41,7 @@ class WorkerProgram:
     ) -> None:
         self._worker = _take()
         self._give_back = weakref.finalize(self, _give_back, self._worker)
-        memory = None
-        if deadline.memory is not None:
-            memory = max(1, deadline.memory - deadline.memory_in_use())
-        command = "ground", _folder(), list(files), text, list(arguments), products, memory
+        command = "ground", _folder(), list(files), text, list(arguments), products, _memory(deadline)
         self.deadline = deadline
         self._worker.ask(deadline, *command)
 
@@ -70,6 +68,21 @@ class WorkerProgram:
     def close(self) -> None:
         """Let the process have another program."""
         self._give_back()
+
+
+def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
+    """Do what :func:`foon_asp.grounding.derived.derive` does in another process, which ends at the limits."""
+    worker = _take()
+    try:
+        found: list[tuple[Value, ...]] = worker.ask(deadline, "derive", text, name, arity, _memory(deadline))
+        return found
+    finally:
+        _give_back(worker)
+
+
+def _memory(deadline: Deadline) -> int | None:
+    """Give how many bytes another process may use."""
+    return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
 
 
 def _folder() -> str | None:

@@ -24,6 +24,7 @@ from foon_asp.problem.objective import multiplies as multiplies
 from foon_asp.problem.objective import parse_objectives as parse_objectives
 from foon_asp.problem.order import executable_order as executable_order
 from foon_asp.problem.problem import Changes as Changes
+from foon_asp.problem.problem import Measure as Measure
 from foon_asp.problem.problem import Names as Names
 from foon_asp.problem.problem import Origin as Origin
 from foon_asp.problem.problem import Problem as Problem

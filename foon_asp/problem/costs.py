@@ -1,7 +1,7 @@
 """What a tree costs, computed exactly from its units."""
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -82,10 +82,15 @@ class Costs:
         )
 
 
-def tree_costs(units: Collection[Measured], items: int, known: Collection[Known]) -> Costs:
-    """Measure units that need a number of distinct kitchen items, by what is known of all of them."""
+def tree_costs(
+    units: Collection[Measured], items: int, known: Collection[Known], more: Iterable[Objective] = ()
+) -> Costs:
+    """Measure units that need a number of distinct kitchen items, by what is known of all of them.
+
+    ``more`` are objectives that are not built in.
+    """
     measures: dict[Objective, int | Fraction] = {}
-    for objective in _MEASURED:
+    for objective in (*_MEASURED, *more):
         row = objective.row
         if row.needs is not None and row.needs not in known:
             continue

@@ -1,9 +1,10 @@
 """What is best: one row for each objective, and lexicographic lists of them."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from enum import StrEnum
 from fractions import Fraction
-from typing import NamedTuple, Protocol, Self
+from functools import cache, partial
+from typing import ClassVar, NamedTuple, Protocol
 
 from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
@@ -14,6 +15,7 @@ class Known(StrEnum):
 
     RATES = "rates"
     PRICES = "prices"
+    MEASURES = "measures"
 
 
 class Measured(Protocol):
@@ -30,6 +32,9 @@ class Measured(Protocol):
     @property
     def price(self) -> Fraction:
         """Its price, from 0; raises ``ValueError`` where it is not known."""
+
+    def measure(self, name: str) -> int | Fraction:
+        """What it costs by a measure of the user's, from 0; raises ``ValueError`` for one not known."""
 
 
 class Row(NamedTuple):
@@ -53,14 +58,30 @@ class Row(NamedTuple):
     whole: bool = True
 
 
-class Objective(StrEnum):
-    """What makes a tree the best.
+class _Listed(type):
+    """Makes the class of objectives list those built in."""
+
+    def __iter__(cls) -> Iterator["Objective"]:
+        return iter(_BUILT_IN.values())
+
+    def __len__(cls) -> int:
+        return len(_BUILT_IN)
+
+    def __contains__(cls, name: object) -> bool:
+        return name in _BUILT_IN
+
+
+class Objective(str, metaclass=_Listed):
+    """What makes a tree the best: a name, with the row that says how it is measured.
 
     ``UNITS``: fewest functional units. ``INPUTS``: fewest input object nodes, summed over the units.
     ``INPUTS_AND_INGREDIENTS``: the same plus the ingredients of these nodes (the measure of a published
     heuristic). ``SUCCESS``: greatest product of success rates. ``KITCHEN``: fewest distinct kitchen items
     among the inputs needed. ``ATTEMPTS``: fewest expected executions of units, if a failed unit is repeated
     until it succeeds. ``PRICE``: least sum of the prices of units.
+
+    These are the objectives that are built in; the class lists them. :meth:`of_measure` gives that of a
+    measure of your own. There is one object for each.
 
     Example:
         >>> [str(objective) for objective in foon_asp.Objective][:3]
@@ -69,50 +90,105 @@ class Objective(StrEnum):
 
     row: Row
 
-    def __new__(cls, name: str, row: Row | None = None) -> Self:
-        """Make an objective of its name and its row."""
-        assert row is not None
+    UNITS: ClassVar["Objective"]
+    INPUTS: ClassVar["Objective"]
+    INPUTS_AND_INGREDIENTS: ClassVar["Objective"]
+    SUCCESS: ClassVar["Objective"]
+    KITCHEN: ClassVar["Objective"]
+    ATTEMPTS: ClassVar["Objective"]
+    PRICE: ClassVar["Objective"]
+
+    def __new__(cls, name: str) -> "Objective":
+        """Give the objective of a name that is built in; raises ``ValueError`` for others."""
+        if name not in _BUILT_IN:
+            raise ValueError(f"{name!r} is no objective")
+        return _BUILT_IN[name]
+
+    @classmethod
+    def of_row(cls, name: str, row: Row) -> "Objective":
+        """Make an objective of a name and a row.
+
+        Parameters:
+            name: The name.
+            row: How it is measured.
+        """
         objective = str.__new__(cls, name)
-        objective._value_, objective.row = name, row
+        objective.__dict__["row"] = row
         return objective
 
-    UNITS = "units", Row("units", "functional units", lambda _: 1)
-    INPUTS = "inputs", Row("inputs", "input object nodes", lambda unit: sum(1 for _ in unit.inputs))
-    INPUTS_AND_INGREDIENTS = (
-        "inputs+ingredients",
-        Row(
-            "inputs_and_ingredients",
-            "input object nodes and ingredients",
-            lambda unit: sum(1 + len(node.ingredients) for node in unit.inputs),
+    @staticmethod
+    @cache
+    def of_measure(name: str) -> "Objective":
+        """Give the objective of a measure of the user's own: the least sum of what it says of the units.
+
+        Parameters:
+            name: The name of the measure.
+        """
+        row = Row(name, name, partial(_measure, name), needs=Known.MEASURES, is_fact=True, whole=False)
+        return Objective.of_row(name, row)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Raise ``AttributeError``: objectives do not change."""
+        raise AttributeError(f"an objective does not change, and cannot be given {name!r}")
+
+    def __reduce__(self) -> tuple[Callable[[str], "Objective"], tuple[str]]:
+        """Pickle the name: another process has the same objectives."""
+        return Objective.of_measure if self.row.needs is Known.MEASURES else Objective, (str(self),)
+
+    def __repr__(self) -> str:
+        return f"<Objective: {str(self)!r}>"
+
+
+def _measure(name: str, unit: Measured) -> int | Fraction:
+    return unit.measure(name)
+
+
+_BUILT_IN = {
+    str(objective): objective
+    for objective in (
+        Objective.of_row("units", Row("units", "functional units", lambda _: 1)),
+        Objective.of_row(
+            "inputs", Row("inputs", "input object nodes", lambda unit: sum(1 for _ in unit.inputs))
         ),
-    )
-    SUCCESS = (
-        "success",
-        Row(
+        Objective.of_row(
+            "inputs+ingredients",
+            Row(
+                "inputs_and_ingredients",
+                "input object nodes and ingredients",
+                lambda unit: sum(1 + len(node.ingredients) for node in unit.inputs),
+            ),
+        ),
+        Objective.of_row(
             "success",
-            "success rate",
-            lambda unit: unit.rate,
-            multiplies=True,
-            needs=Known.RATES,
-            whole=False,
+            Row(
+                "success",
+                "success rate",
+                lambda unit: unit.rate,
+                multiplies=True,
+                needs=Known.RATES,
+                whole=False,
+            ),
         ),
-    )
-    KITCHEN = "kitchen", Row("kitchen", "kitchen items", lambda _: 0, item=1)
-    ATTEMPTS = (
-        "attempts",
-        Row(
+        Objective.of_row("kitchen", Row("kitchen", "kitchen items", lambda _: 0, item=1)),
+        Objective.of_row(
             "attempts",
-            "expected executions of units",
-            lambda unit: 1 / unit.rate,
-            needs=Known.RATES,
-            is_fact=True,
-            whole=False,
+            Row(
+                "attempts",
+                "expected executions of units",
+                lambda unit: 1 / unit.rate,
+                needs=Known.RATES,
+                is_fact=True,
+                whole=False,
+            ),
+        ),
+        Objective.of_row(
+            "price",
+            Row("price", "price", lambda unit: unit.price, needs=Known.PRICES, is_fact=True, whole=False),
         ),
     )
-    PRICE = (
-        "price",
-        Row("price", "price", lambda unit: unit.price, needs=Known.PRICES, is_fact=True, whole=False),
-    )
+}
+for _objective in _BUILT_IN.values():
+    setattr(Objective, _objective.row.term.upper(), _objective)
 
 
 def multiplies(objective: Objective) -> bool:
@@ -120,17 +196,17 @@ def multiplies(objective: Objective) -> bool:
     return objective.row.multiplies
 
 
-def parse_objectives(names: Iterable[str]) -> tuple[Objective, ...]:
+def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tuple[Objective, ...]:
     """Read a lexicographic list, first the most important; raises :class:`UserError` for unknown names.
 
-    Each name may itself be a comma-separated list.
+    Each name may itself be a comma-separated list. ``measures`` are the names of the user's own.
     """
     objectives: list[Objective] = []
     for name in (part.strip() for item in names for part in item.split(",")):
-        try:
-            objective = Objective(name)
-        except ValueError:
-            raise UserError(f"found the objective {name!r}, expected one of {', '.join(Objective)}") from None
+        if name not in _BUILT_IN and name not in measures:
+            known = ", ".join((*_BUILT_IN, *measures))
+            raise UserError(f"found the objective {name!r}, expected one of {known}")
+        objective = Objective.of_measure(name) if name in measures else Objective(name)
         if objective in objectives:
             raise UserError(f"the objective {name!r} is listed twice")
         objectives.append(objective)

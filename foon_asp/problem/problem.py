@@ -4,9 +4,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
+from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, TaskTree, UnitPrices
 from foon_asp.problem.containers import (
@@ -36,6 +38,20 @@ class Unpriced(NamedTuple):
     source: Source
 
 
+class Measure(Protocol):
+    """A measure of the user's own: rules that say what each unit costs."""
+
+    @property
+    def text(self) -> str:
+        """The rules."""
+
+    def costs(self, problem: "Problem", deadline: Deadline | None = None) -> Sequence[int | Fraction]:
+        """Give what each unit of a problem costs, exactly and never below 0.
+
+        Raises :class:`UserError` for rules that give a unit two costs, or none that is a number.
+        """
+
+
 class Changes(NamedTuple):
     """What varies of the data that a problem was posed of; see :meth:`foon_asp.Foon.vary`."""
 
@@ -44,6 +60,7 @@ class Changes(NamedTuple):
     without: Names = ()
     rates: Mapping[str, Number] | None = None
     unit_prices: UnitPricesNamed | None = None
+    measures: "str | PathLike[str] | Iterable[str | PathLike[str]] | None" = None
 
 
 class Origin(Protocol):
@@ -74,10 +91,11 @@ class Problem:
     ``containers`` is about. ``own_rates`` has, by id, the rates of units that differ from that of their
     motion; :meth:`rate` gives the rate of any unit. ``unit_prices`` are the prices of units, or ``None``;
     :meth:`price` gives that of a unit. For a store, ``network`` is the part that can matter for the goals.
-    ``origin`` is the data that it was made from, or ``None`` for a problem made by hand. ``as_seen`` is the
-    problem whose rates the user's rules look at, if others are used. ``restriction`` is what rules leave of
-    the network, for this question only: a variation of it has to find its own. ``items`` says that items are
-    used up, and which; ``None`` if they last.
+    ``measures`` are those of the user's own, by the name of the objective; :meth:`measure` gives what a unit
+    costs by one. ``origin`` is the data that it was made from, or ``None`` for a problem made by hand.
+    ``as_seen`` is the problem whose rates the user's rules look at, if others are used. ``restriction`` is
+    what rules leave of the network, for this question only: a variation of it has to find its own.
+    ``items`` says that items are used up, and which; ``None`` if they last.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -96,6 +114,7 @@ class Problem:
     as_seen: "Problem | None" = field(default=None, kw_only=True)
     unit_prices: UnitPrices | None = field(default=None, kw_only=True)
     restriction: Restriction | None = field(default=None, kw_only=True)
+    measures: Mapping[str, Measure] = field(default_factory=dict, kw_only=True)
     items: UsedUp | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -153,8 +172,9 @@ class Problem:
         without: Names = (),
         rates: Mapping[str, Number] | None = None,
         unit_prices: UnitPricesNamed | None = None,
+        measures: str | PathLike[str] | Iterable[str | PathLike[str]] | None = None,
     ) -> "Problem":
-        """Give the same problem with other goals, another container rule, kitchen, rates or prices.
+        """Give the same problem with other goals, container rule, kitchen, rates, prices or measures.
 
         Nothing is read or indexed again, except that a store is read as far as the new problem needs more.
         Whether items are used up stays as it is.
@@ -168,6 +188,7 @@ class Problem:
                 it.
             rates: New success rates of some motions, above 0 and at most 1.
             unit_prices: New prices, from 0, of motions by name and of single units.
+            measures: All measures of your own: files with rules for what units cost, or the rules themselves.
 
         Raises:
             UserError: for a name that means no object node or several, a value out of range, or a problem
@@ -175,7 +196,7 @@ class Problem:
         """
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
-        changes = Changes(kitchen, adding, without, rates, unit_prices)
+        changes = Changes(kitchen, adding, without, rates, unit_prices, measures)
         return self.origin.posed_anew(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
@@ -272,8 +293,15 @@ class Problem:
             objectives: The objectives.
 
         Raises:
-            UserError: if rates or prices are missing, or if a rate is 0 and an objective has no value then.
+            UserError: if rates, prices or the rules of a measure are missing, or if a rate is 0 and an
+                objective has no value then.
         """
+        for each in objectives:
+            if each.row.needs is Known.MEASURES and each not in self.measures:
+                raise UserError(
+                    f"the objective {each} needs the rules of its measure: "
+                    "give them with --measure FILE or in Python load(..., measures=FILE)"
+                )
         by_rates = [each for each in objectives if each.row.needs is Known.RATES]
         sums = [str(each) for each in by_rates if not each.row.multiplies]
         if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
@@ -330,6 +358,43 @@ class Problem:
             raise ValueError(f"no price of unit {unit} is known")
         return price
 
+    def measure(self, name: str, unit: int) -> int | Fraction:
+        """Give what a unit costs by a measure of the user's own.
+
+        Parameters:
+            name: The name of the measure.
+            unit: The id of the unit.
+
+        Raises:
+            ValueError: if there is no such measure.
+            UserError: if its rules are wrong.
+        """
+        return self._costs_by(name)[unit]
+
+    @cached_property
+    def _known_costs(self) -> dict[str, Sequence[int | Fraction]]:
+        return {}  # by measure
+
+    def _costs_by(self, name: str) -> Sequence[int | Fraction]:
+        """Give what each unit costs by a measure, worked out when it is first asked for."""
+        if name not in self.measures:
+            raise ValueError(f"no measure {name} is known")
+        self.apply_measures()
+        return self._known_costs[name]
+
+    def apply_measures(self, deadline: Deadline | None = None) -> None:
+        """Work out what units cost by the measures, unless it is known.
+
+        Parameters:
+            deadline: The limits.
+
+        Raises:
+            UserError: if rules are wrong.
+            KeyboardInterrupt: at a limit.
+        """
+        for name in self.measures.keys() - self._known_costs.keys():
+            self._known_costs[name] = self.measures[name].costs(self, deadline)
+
     @cached_property
     def unpriced(self) -> Sequence[Unpriced]:
         """The units that have no price, by motion: of a store, those of all of it."""
@@ -374,10 +439,11 @@ class Problem:
         taken = len({o for unit in chosen for o in self.needs[unit] if o in self.endless})
         if self.items is not None:
             taken += sum(self.copies_taken(chosen).values())
-        known = {Known.RATES} if self.rates is not None else set()
+        known = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
         if self.unit_prices is not None and all(self.prices[unit] is not None for unit in chosen):
             known.add(Known.PRICES)
-        return tree_costs(list(map(self.measured, chosen)), taken, known)
+        more = map(Objective.of_measure, self.measures)
+        return tree_costs(list(map(self.measured, chosen)), taken, known, more)
 
     def measured(self, unit: int) -> Measured:
         """Give a unit as objectives look at it.
@@ -398,6 +464,20 @@ class Problem:
             ValueError: if a rate or price is missing that the objective needs.
         """
         return objective.row.unit(_MeasuredUnit(self, unit))
+
+    def figures(self, objective: Objective, units: Iterable[int]) -> Iterable[int | Fraction]:
+        """Give what each of some units costs, as :meth:`figure` does.
+
+        Parameters:
+            objective: The objective.
+            units: The ids of the units.
+
+        Raises:
+            ValueError: if a rate, price or measure is missing that the objective needs.
+        """
+        if objective.row.needs is Known.MEASURES:
+            return map(self._costs_by(objective).__getitem__, units)
+        return (self.figure(objective, unit) for unit in units)
 
 
 class _MeasuredUnit(NamedTuple):
@@ -421,6 +501,10 @@ class _MeasuredUnit(NamedTuple):
     def price(self) -> Fraction:
         """Its price."""
         return self.problem.price(self.unit)
+
+    def measure(self, name: str) -> int | Fraction:
+        """What it costs by a measure of the user's."""
+        return self.problem.measure(name, self.unit)
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:

@@ -23,7 +23,7 @@ Constants = Mapping[str, object] | Iterable[str]
 
 def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, ...]:
     """Read objectives; ``success`` needs rates."""
-    objectives = parse_objectives([given] if isinstance(given, str) else given)
+    objectives = parse_objectives([given] if isinstance(given, str) else given, problem.measures)
     problem.require_known_for(objectives)
     return objectives
 

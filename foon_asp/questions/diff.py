@@ -272,7 +272,7 @@ def _side(name: str, given: Answer | Tree | Side) -> Side:
         raise NoTreeError(f"the {name} answer has no tree, so there is nothing to compare", ending)
     problem = tree.problem
     nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}.union(problem.goal_nodes)
-    return side(
+    taken = side(
         name,
         list(zip(tree.units, tree.places, strict=True)),
         problem.goal_nodes,
@@ -285,6 +285,10 @@ def _side(name: str, given: Answer | Tree | Side) -> Side:
         problem.unit_prices,
         objectives,
     )
+    ids = [unit for each in tree if (unit := problem.network.unit_id(each)) is not None]
+    known = problem.costs(ids).measures if len(ids) == len(tree) else {}
+    measures = {each: known[each] for each in map(Objective.of_measure, problem.measures) if each in known}
+    return taken._replace(costs=Costs({**taken.costs.measures, **measures}))
 
 
 def side(
@@ -346,6 +350,10 @@ class _ListedUnit(NamedTuple):
         if self.known_price is None:
             raise ValueError("no price is known")
         return self.known_price
+
+    def measure(self, name: str) -> Fraction:
+        """What it costs by a measure, which says nothing of units of any origin."""
+        raise ValueError(f"no measure {name} is known")
 
 
 def _way(tree: Side, goals: Sequence[ObjectNode]) -> dict[ObjectNode, None]:

@@ -1,7 +1,7 @@
 """What actions cost under a lexicographic list of objectives, as whole numbers."""
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from itertools import pairwise
@@ -52,8 +52,7 @@ class ExactCosts:
         """Give into how many steps 1 is divided, so that no cost of an action is between two."""
         if objective.row.whole or objective in self._multiplied:
             return 1
-        costs = (self._problem.figure(objective, a) for a in actions if a < self._units)
-        return math.lcm(*(cost.denominator for cost in costs))
+        return math.lcm(*{cost.denominator for cost in self._costs(objective, actions)})
 
     def _most(self, objective: Objective, actions: Collection[int]) -> int:
         """Give what no set of actions costs more than by one objective."""
@@ -61,7 +60,12 @@ class ExactCosts:
             return len(actions)
         if objective in self._multiplied:
             return len(actions) * max(self._weights.values(), default=0)
-        return sum(self._figure(objective, a) for a in actions)
+        steps = self._steps[objective]
+        items = objective.row.item * sum(a >= self._units for a in actions) if objective.row.item else 0
+        return sum(int(cost * steps) for cost in self._costs(objective, actions)) + items
+
+    def _costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
+        return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
         """Give what an action costs."""

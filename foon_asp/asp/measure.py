@@ -1,0 +1,271 @@
+"""Measures of the user's own: rules for what each unit costs, and what clingo makes of them."""
+
+import hashlib
+import re
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+from foon_asp.asp.constraint import exists
+from foon_asp.asp.facts import OBJECT_FACTS, object_facts, quote, write_worlds
+from foon_asp.deadline import Deadline
+from foon_asp.errors import UserError
+from foon_asp.grounding.run import ProgramError
+from foon_asp.grounding.stated import Stated
+from foon_asp.network import Network, Source
+from foon_asp.problem import Problem
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+from foon_asp.text.plain_file import read_plain_text
+
+if TYPE_CHECKING:  # clingo, which is not needed before there is a measure
+    from foon_asp.asp.measure_rules import MeasureRules, Statement
+    from foon_asp.grounding.derived import Value
+
+Cost = int | Fraction
+
+_DECIMAL = re.compile(r"[0-9]{1,1000}(\.[0-9]{1,1000})?", re.ASCII)
+_LARGE = 1_500_000  # letters that clingo grounds in a fraction of a second
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Rules of the user's for what each unit costs by one objective, whose name is that of the measure.
+
+    ``place`` says where the rules are from: the path of a file, or words for a text. A file may hold several
+    measures.
+    """
+
+    name: str
+    text: str
+    place: str
+
+    @property
+    def digest(self) -> str:
+        """The SHA-256 digest of the rules."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
+        """Give what each unit of a problem costs, worked out once for a network, up to a deadline.
+
+        Raises :class:`InputError` for rules that give a unit two costs, or one that is no number from 0.
+        """
+        from foon_asp.asp.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
+
+        rules = read_rules(self.text, self.place)
+        seen = problem.as_seen or problem
+        key: list[Hashable] = [self]
+        if "rate" in rules.reads:
+            if seen.rates is None:
+                raise UserError(f"{self.place}: the rules read rate/2: give a rates file, with --rates FILE")
+            key += [frozenset(seen.rates.items()), frozenset(seen.own_rates.items())]
+        if not rules.reads.isdisjoint(("needs", "gives", "utensil")):
+            key += [problem.containers, problem.utensils]
+        known = _known.setdefault(problem.network, {})
+        if tuple(key) not in known:
+            known[tuple(key)] = _Evaluation(self, rules, problem, deadline or Deadline()).costs()
+        return known[tuple(key)]
+
+
+# By network, of each measure and what else it depends on.
+_known: WeakKeyDictionary[Network, dict[Hashable, Sequence[Cost]]] = WeakKeyDictionary()
+
+
+class _Evaluation:
+    """The rules of a measure, asked what the units of a problem cost."""
+
+    def __init__(self, measure: Measure, rules: "MeasureRules", problem: Problem, deadline: Deadline) -> None:
+        self._measure, self._rules, self._problem, self._deadline = measure, rules, problem, deadline
+        self._number = problem.network.unit_number
+
+    def costs(self) -> Sequence[Cost]:
+        """Give what each unit costs; of units with the same facts, one is looked at."""
+        units = range(len(self._problem.network))
+        alike = self._alike()
+        if alike is None:
+            found = self._found(units)
+            return [found.get(self._number(unit), 0) for unit in units]
+        first: dict[Hashable, int] = {}
+        for unit, key in enumerate(alike):
+            first.setdefault(key, unit)
+        found = self._found(first.values())
+        by_key = {key: found.get(self._number(unit), 0) for key, unit in first.items()}
+        return list(map(by_key.__getitem__, alike))
+
+    def _alike(self) -> Sequence[Hashable] | None:
+        """Give for each unit a key that is the same for those whose facts are, but for numbers.
+
+        ``None`` where numbers count, or facts that are not known here.
+        """
+        if not self._rules.nameless:
+            return None
+        problem, network = self._problem, self._problem.network
+        objects = network.objects
+        looks: dict[str, Callable[[], Iterable[Hashable]]] = {
+            "unit": lambda: (),
+            "utensil": lambda: (),
+            "motion": lambda: network.motions,
+            "inputs": lambda: map(len, network.inputs),
+            "ingredients": lambda: (
+                sum(len(objects[o].ingredients) for o in inputs) for inputs in network.inputs
+            ),
+            "rate": lambda: map((problem.as_seen or problem).rate, range(len(network))),
+        }
+        reads = self._rules.reads
+        nodes = reads.intersection(OBJECT_FACTS)
+        sides = {
+            "input": network.inputs,
+            "output": network.outputs,
+            "needs": problem.needs,
+            "gives": problem.gives,
+        }
+        if not reads <= looks.keys() | OBJECT_FACTS | sides.keys():
+            return None
+        columns = [tuple(looks[name]()) for name in sorted(reads & looks.keys())]
+        if nodes or not reads.isdisjoint(sides):
+            numbers: dict[Hashable, int] = {}
+            said = (tuple(object_facts(node, nodes)) for node in objects)
+            kinds = [numbers.setdefault(each, len(numbers)) for each in said]
+            chosen = [sides[name] for name in sorted(reads & sides.keys())]
+            columns.append(tuple(_shape(network, unit, chosen, kinds) for unit in range(len(network))))
+        columns = [column for column in columns if column]
+        return list(zip(*columns, strict=True)) if columns else [()] * len(network)
+
+    def _found(self, units: Iterable[int]) -> dict[int, Cost]:
+        """Give what units cost, by number, as far as rules say something."""
+        by_number = {self._number(unit): unit for unit in units}
+        values: dict[int, Cost] = {}
+        for world, name, number, value in self._derived(by_number.values(), self._rules.statements):
+            if name != (self._measure.name,):
+                continue
+            assert isinstance(world, int)
+            cost = _cost(value) if number == world else None
+            if cost is None or cost != values.setdefault(world, cost):
+                self._refuse(by_number[world])
+        return values
+
+    def _derived(
+        self, units: Iterable[int], statements: Iterable["Statement"]
+    ) -> Sequence[tuple["Value", ...]]:
+        """Let clingo derive costs of units; raises :class:`InputError` for what it would leave out."""
+        from foon_asp.asp.encoding import fault  # noqa: PLC0415 (takes clingo along)
+        from foon_asp.asp.measure_rules import COST, WORLD  # noqa: PLC0415
+        from foon_asp.grounding import derived  # noqa: PLC0415
+
+        statements = list(statements)
+        problem, reads = self._problem, self._rules.reads
+        lines = [statement.text for statement in statements]
+        lines += write_worlds(problem, units, reads, WORLD)
+        if "utensil" in reads:
+            lines += [f"utensil({quote(label)})." for label in sorted(problem.utensils)]
+        text = "\n".join(lines)
+        name, arity = f"_{COST[0]}", COST[1] + 1
+        try:
+            if self._rules.plain and len(text) < _LARGE:
+                return derived.derive(text, name, arity)
+            from foon_asp.grounding.worker_process import derive  # noqa: PLC0415
+
+            return derive(text, name, arity, self._deadline)
+        except ProgramError as refused:
+            raise self._placed(fault(refused.messages, refused.otherwise), statements) from None
+
+    def _placed(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
+        """Say of an error in what clingo was given where it is in the rules."""
+        if not isinstance(error, InputError):
+            return UserError(f"{self._measure.place}: {error}")
+        return InputError(
+            [
+                self._remark(each.code, each.message, statements[each.source.line - 1].source)
+                for each in error.diagnostics
+            ]
+        )
+
+    def _remark(self, code: str, message: str, source: Source) -> Diagnostic:
+        from foon_asp.asp.encoding import located  # noqa: PLC0415 (takes clingo along)
+
+        stated = Stated(self._measure.place, self._measure.text)
+        return located(Severity.ERROR, code, message, source, [stated])
+
+    def _refuse(self, unit: int) -> None:
+        """Raise :class:`InputError` for a unit whose cost is none, or two, naming the rules that say so."""
+        network, number = self._problem.network, self._number(unit)
+        who = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
+        said: dict[tuple[Value, Value], Source] = {}
+        statements = self._rules.statements
+        for rule in (each for each in statements if each.is_cost):
+            alone = [each for each in statements if each is rule or not each.is_cost]
+            for _, name, subject, value in self._derived([unit], alone):
+                if name == (self._measure.name,):
+                    said.setdefault((subject, value), rule.source)
+        errors = []
+        for (subject, value), source in said.items():
+            if subject != number:
+                what = f"found a cost of {_text(subject)} among the facts of {who}: a rule is about one unit"
+            elif _cost(value) is None:
+                what = f'found the cost {_text(value)} of {who}, expected a number from 0: 5, or "2.50"'
+            else:
+                what = f"found the cost {_text(value)} of {who}, expected one value for each unit"
+            errors.append(self._remark("cost", what, source))
+        raise InputError(errors)
+
+
+def _shape(
+    network: Network, unit: int, sides: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
+) -> Hashable:
+    """Give what a unit has on some sides; of object nodes, their kinds and where they are count."""
+    nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
+    places = {o: place for place, o in enumerate(nodes)}
+    return (
+        tuple(kinds[o] for o in nodes),
+        *(tuple(places[o] for o in side[unit]) for side in sides),
+    )
+
+
+def _cost(value: "Value") -> Cost | None:
+    """Give an exact number, a whole one as such; ``None`` for what is no number from 0."""
+    if isinstance(value, int):
+        return value if value >= 0 else None
+    if not isinstance(value, str) or not _DECIMAL.fullmatch(value):
+        return None
+    cost = Fraction(value)
+    return int(cost) if cost.denominator == 1 else cost
+
+
+def _text(value: "Value") -> str:
+    if isinstance(value, str):
+        return quote(value)
+    return str(value) if isinstance(value, int) else value.text
+
+
+def read_measures(given: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
+    """Read measures by name, from files and from texts; one or several.
+
+    A text that has ``:-``, or ends in a full stop, is rules, unless it is an existing path; a path is always
+    a path. Raises :class:`UserError` for faults in them, and for a name that two of them have.
+    """
+    given = [given] if isinstance(given, str | PathLike) else list(given)
+    if not given:
+        return {}
+    from foon_asp.asp.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
+
+    found: dict[str, Measure] = {}
+    texts = [
+        (each, f"measure {number}")
+        if isinstance(each, str) and _is_rules(each)
+        else (read_plain_text(Path(each)), str(each))
+        for number, each in enumerate(given, 1)
+    ]
+    for text, place in dict.fromkeys(texts):
+        for name, source in read_rules(text, place).names.items():
+            if name in found:
+                message = f"found the measure {name!r} again, of which {found[name].place} has rules"
+                raise InputError([Diagnostic(Severity.ERROR, "measure-name", message, source)])
+            found[name] = Measure(name, text, place)
+    return found
+
+
+def _is_rules(text: str) -> bool:
+    return (":-" in text or text.rstrip().endswith(".")) and not exists(Path(text))

@@ -1,0 +1,381 @@
+"""Rules of the user's for what units cost, read and checked: they see one unit at a time.
+
+Each unit has a world of its own, with the facts about this unit and its object nodes and no others, and what
+a rule says of a unit it says in that unit's world. So what a unit costs can depend on nothing else, be it a
+question, a tree or another unit. In the program for clingo, a predicate ``p`` that depends on facts is
+``_p`` with the world as first argument; tables, which depend on none, stay as they are.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
+from graphlib import CycleError, TopologicalSorter
+from typing import NamedTuple
+
+from clingo.ast import (
+    AST,
+    AggregateFunction,
+    ASTType,
+    Function,
+    Literal,
+    Sign,
+    SymbolicAtom,
+    Transformer,
+    Variable,
+)
+from clingo.symbol import SymbolType
+
+from foon_asp.asp.encoding import PUBLIC_NAMES, Signature, fault, located, undefined
+from foon_asp.asp.encoding_file import check_text
+from foon_asp.asp.facts import FACT_PREDICATES, OBJECT_FACTS
+from foon_asp.errors import UserError
+from foon_asp.grounding.messages import listener
+from foon_asp.grounding.parsing import parse
+from foon_asp.grounding.stated import Stated
+from foon_asp.network import Source
+from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
+
+COST = ("cost", 3)
+WORLD = "__world"
+# What a rule cannot read, since it is not about one unit, and why.
+_TREE = (
+    "differs from tree to tree, and what a unit costs does not: a price for what a tree does is a soft "
+    "constraint (--soft), another way to measure trees an edited copy of objectives.lp (--encodings)"
+)
+_QUESTION = "differs from question to question, and what a unit costs does not"
+_REFUSED = {
+    ("use", 1): _TREE,
+    ("available", 1): _TREE,
+    ("kitchen", 1): _QUESTION,
+    ("goal", 1): _QUESTION,
+    ("optimize", 2): _QUESTION,
+    ("price", 2): "is there only where it is exact: list the objective price too, or give costs in a table",
+    ("risk", 2): "is rounded for a question: read rate/2, in millionths",
+    COST: "is rounded for a question: read the facts that it is made of",
+}
+_SIDES = frozenset(("input", "output", "needs", "gives"))
+_UNIT, _OBJECT = "unit", "object"
+_FEW = 6  # atoms in a rule, which can be true in many ways together only where they are more
+
+
+class Statement(NamedTuple):
+    """A statement of the program for clingo, where it comes from, and whether it gives costs."""
+
+    text: str
+    source: Source
+    is_cost: bool
+
+
+class MeasureRules(NamedTuple):
+    """What rules say, for clingo.
+
+    ``names`` are those of the measures, with the place where each is met first; ``reads`` the predicates of
+    facts that they read. ``nameless`` says that the numbers of units and object nodes do not matter: units
+    with the same facts but for these cost the same. ``plain`` says that nothing in the rules can make their
+    grounding large: no intervals, no two tables joined, and few atoms in a rule.
+    """
+
+    names: dict[str, Source]
+    statements: tuple[Statement, ...]
+    reads: frozenset[str]
+    nameless: bool
+    plain: bool
+
+
+@lru_cache(maxsize=64)
+def read_rules(text: str, place: str) -> MeasureRules:
+    """Read the rules of measures; raises :class:`InputError` for what is no rule over facts about a unit."""
+    check_text(text, place)
+    stated = Stated(place, text)
+    statements: list[AST] = []
+    messages: list[str] = []
+    try:
+        parse(stated, statements.append, listener(messages))
+    except RuntimeError as error:
+        raise fault(messages, str(error), [stated]) from None
+    return _Reader(statements, stated).rules()
+
+
+class _Reader:
+    def __init__(self, statements: Sequence[AST], stated: Stated) -> None:
+        self._stated = stated
+        self._errors: list[Diagnostic] = []
+        self._rules: list[AST] = []
+        self._constants: list[AST] = []
+        declared: set[Signature] = set()
+        for statement in statements:
+            kind = statement.ast_type
+            if kind is ASTType.Rule:
+                self._rules.append(statement)
+            elif kind is ASTType.Definition:
+                self._constants.append(statement)
+            elif kind is ASTType.Defined:
+                declared.add((statement.name, statement.arity))
+            elif not (kind in _HARMLESS or (kind is ASTType.Program and statement.name == "base")):
+                self._error("statement", "found a statement that is no rule, expected rules", statement)
+        self._atoms = [_Atoms(rule) for rule in self._rules]
+        self._declared = declared
+        self._refuse_errors()
+
+    def rules(self) -> MeasureRules:
+        """Check the rules and write them for clingo."""
+        names: dict[str, Source] = {}
+        for rule, atoms in zip(self._rules, self._atoms, strict=True):
+            self._check_head(rule, atoms, names)
+            self._check_atoms(atoms)
+        self._check_names(names)
+        self._check_loops()
+        self._refuse_errors()
+        dependent = self._dependent()
+        world = "W"
+        while world in self._stated.text:
+            world += "_"
+        written = [_World(dependent, world).written(rule, self._source(rule)) for rule in self._rules]
+        constants = [Statement(f"{each}", self._source(each), False) for each in self._constants]
+        return MeasureRules(
+            names,
+            (*constants, *written),
+            frozenset(name for name, _ in self._read()),
+            _nameless(self._atoms),
+            all(self._is_plain(atoms, dependent) for atoms in self._atoms),
+        )
+
+    def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
+        head = rule.head
+        if head.ast_type is not ASTType.Literal or head.sign != Sign.NoSign:
+            self._error(
+                "head", "found a choice or a disjunction, expected a rule with one atom in its head", rule
+            )
+        elif head.atom.ast_type is not ASTType.SymbolicAtom:
+            message = "found a constraint, expected a rule for what units cost: pass it with --constraint"
+            self._error("head", message, rule)
+        for atom in atoms.heads:
+            name, arity = _signature(atom)
+            if (name, arity) == COST:
+                term = atom.arguments[0]
+                symbol = term.symbol if term.ast_type is ASTType.SymbolicTerm else None
+                if symbol is None or symbol.type is not SymbolType.Function or symbol.arguments:
+                    message = f"found cost({term},...), expected the name of a measure: cost(mine,U,N)"
+                    self._error("measure-name", message, atom)
+                else:
+                    names.setdefault(symbol.name, self._source(atom))
+            elif FACT_PREDICATES.get(name) == arity or (name, arity) in _REFUSED:
+                self._error("owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom)
+
+    def _check_atoms(self, atoms: "_Atoms") -> None:
+        for place in atoms.negated:
+            self._error("negation", "found an atom with a minus before it, expected one without", place)
+        for atom in (*atoms.heads, *atoms.used):
+            if atom.name.startswith("_"):
+                message = f"found {atom.name}, but names that begin with '_' are reserved: take another"
+                self._error("reserved-name", message, atom)
+        known = {_signature(atom) for each in self._atoms for atom in each.heads} | self._declared
+        readable = {(name, arity) for name, arity in FACT_PREDICATES.items()} - _REFUSED.keys()
+        for atom in atoms.used:
+            signature = _signature(atom)
+            shown = "{}/{}".format(*signature)
+            if signature in _REFUSED:
+                self._error("not-of-a-unit", f"found {shown}, which {_REFUSED[signature]}", atom)
+            elif signature not in known | readable and not atom.name.startswith("_"):
+                self._error("undefined-atom", undefined(signature, known | readable), atom)
+
+    def _check_names(self, names: dict[str, Source]) -> None:
+        """Refuse names of ours, for measures and for constants: in the facts they mean something else."""
+        for name, source in names.items():
+            if name in PUBLIC_NAMES or name.startswith("_"):
+                message = f"found a measure {name!r}, which is a name of ours: give it another one"
+                self._note("measure-name", message, source)
+        for each in self._constants:
+            if each.name in PUBLIC_NAMES or each.name in names or each.name.startswith("_"):
+                message = f"found #const {each.name}, but that is a name in the facts: give it another one"
+                self._error("taken-constant", message, each)
+        if not names and not self._errors:
+            raise UserError(
+                f"{self._stated.place}: expected rules for what units cost, such as "
+                'cost(mine,U,5) :- unit(U), motion(U,"pour").'
+            )
+
+    def _check_loops(self) -> None:
+        """Refuse rules that depend on themselves: what they derive may be endless, or left open."""
+        graph: dict[Signature, set[Signature]] = {}
+        for atoms in self._atoms:
+            for head in map(_signature, atoms.heads):
+                graph.setdefault(head, set()).update(map(_signature, atoms.used))
+        try:
+            tuple(TopologicalSorter(graph).static_order())
+        except CycleError as loop:
+            name, arity = loop.args[1][0]
+            atom = next(
+                head for atoms in self._atoms for head in atoms.heads if _signature(head) == (name, arity)
+            )
+            message = f"found {name}/{arity}, which depends on itself, expected rules without loops"
+            self._error("loop", message, atom)
+
+    def _read(self) -> Iterator[Signature]:
+        derived = {_signature(atom) for each in self._atoms for atom in each.heads}
+        for atoms in self._atoms:
+            for signature in map(_signature, atoms.used):
+                if FACT_PREDICATES.get(signature[0]) == signature[1] and signature not in derived:
+                    yield signature
+
+    def _dependent(self) -> frozenset[Signature]:
+        """Give the predicates that depend on facts about units, and costs."""
+        found = {COST, *self._read()} - {("utensil", 1)}
+        before = 0
+        while len(found) > before:
+            before = len(found)
+            for atoms in self._atoms:
+                if not found.isdisjoint(map(_signature, atoms.used)):
+                    found.update(map(_signature, atoms.heads))
+        return frozenset(found)
+
+    def _is_plain(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
+        tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
+        return not atoms.has_interval and len(tables) < 2 and len(atoms.used) <= _FEW
+
+    def _source(self, at: AST) -> Source:
+        begin = at.location.begin
+        return Source(self._stated.place, begin.line, begin.column)
+
+    def _error(self, code: str, message: str, at: AST) -> None:
+        self._note(code, message, self._source(at))
+
+    def _note(self, code: str, message: str, source: Source) -> None:
+        self._errors.append(located(Severity.ERROR, code, message, source, [self._stated]))
+
+    def _refuse_errors(self) -> None:
+        if self._errors:
+            raise InputError(self._errors)
+
+
+_HARMLESS = {ASTType.ShowSignature, ASTType.Comment}
+
+
+def _signature(atom: AST) -> Signature:
+    return atom.name, len(atom.arguments)
+
+
+class _Atoms(Transformer):
+    """Goes through a rule and notes its atoms, as the terms that they are, and how its variables are used.
+
+    ``compared`` are variables whose values matter, beyond whether two are the same.
+    """
+
+    def __init__(self, rule: AST) -> None:
+        self.heads: list[AST] = []
+        self.used: list[AST] = []
+        self.negated: list[AST] = []
+        self.compared: set[str] = set()
+        self.has_interval = False
+        self._noted = self.heads
+        self.visit(rule.head)
+        self._noted = self.used
+        self.visit_sequence(rule.body)
+
+    def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        self._atom(atom.symbol)
+        return atom
+
+    def _atom(self, symbol: AST) -> None:
+        if symbol.ast_type is ASTType.UnaryOperation:
+            self.negated.append(symbol)
+        elif symbol.ast_type is ASTType.Pool:
+            for one in symbol.arguments:
+                self._atom(one)
+        else:
+            self._noted.append(symbol)
+            self._terms(symbol.arguments)
+
+    def _terms(self, terms: Iterable[AST]) -> None:
+        """Go through terms, of which the variables alone are only ever the same as others or not."""
+        for term in terms:
+            if term.ast_type is not ASTType.Variable:
+                self.visit(term)
+
+    def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
+        weighs = aggregate.function != AggregateFunction.Count
+        for guard in (aggregate.left_guard, aggregate.right_guard):
+            if guard is not None:
+                self.visit(guard)
+        for element in aggregate.elements:
+            for term in element.terms[:weighs]:
+                self.visit(term)
+            self._terms(element.terms[weighs:])
+            self.visit_sequence(element.condition)
+        return aggregate
+
+    def visit_Variable(self, variable: AST) -> AST:  # noqa: N802
+        self.compared.add(variable.name)
+        return variable
+
+    def visit_Interval(self, interval: AST) -> AST:  # noqa: N802
+        self.has_interval = True
+        self.visit_children(interval)
+        return interval
+
+
+def _nameless(rules: Sequence[_Atoms]) -> bool:
+    """Whether rules only ask of units and object nodes whether two are the same.
+
+    Each place of a predicate where a unit may stand is found, and each where an object node may: from those
+    of the facts, along the variables of each rule. Nothing else may stand there, neither may stand anywhere
+    else, and their variables may not be compared with anything.
+    """
+    kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
+    for name, arity in FACT_PREDICATES.items():
+        if name in OBJECT_FACTS:
+            kinds[(name, arity), 0] = _OBJECT
+        elif name != "utensil" and (name, arity) not in _REFUSED:
+            kinds[(name, arity), 0] = _UNIT
+        if name in _SIDES:
+            kinds[(name, arity), 1] = _OBJECT
+    before = 0
+    while len(kinds) > before:
+        before = len(kinds)
+        for rule in rules:
+            variables: dict[str, str] = {}
+            atoms = (*rule.heads, *rule.used)
+            for atom in atoms:
+                for place, term in enumerate(atom.arguments):
+                    kind = kinds.get((_signature(atom), place))
+                    if kind is None or (term.ast_type is ASTType.Variable and term.name == "_"):
+                        continue
+                    if term.ast_type is not ASTType.Variable or variables.setdefault(term.name, kind) != kind:
+                        return False
+            for atom in atoms:
+                for place, term in enumerate(atom.arguments):
+                    if term.ast_type is ASTType.Variable and term.name in variables:
+                        kind = variables[term.name]
+                        if kinds.setdefault((_signature(atom), place), kind) != kind:
+                            return False
+            if not rule.compared.isdisjoint(variables):
+                return False
+    return (COST, 2) not in kinds
+
+
+class _World(Transformer):
+    """Writes rules so that what depends on facts has a world as its first argument."""
+
+    def __init__(self, dependent: frozenset[Signature], world: str) -> None:
+        self._dependent, self._world = dependent, world
+
+    def written(self, rule: AST, source: Source) -> Statement:
+        heads = _Atoms(rule).heads
+        text = str(rule)
+        if any(_signature(atom) in self._dependent for atom in heads):
+            changed = self.visit(rule)
+            location = rule.location
+            world = Function(location, WORLD, [Variable(location, self._world)], 0)
+            body = [*changed.body, Literal(location, Sign.NoSign, SymbolicAtom(world))]
+            text = str(changed.update(body=body))
+        return Statement(text, source, any(_signature(atom) == COST for atom in heads))
+
+    def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        return atom.update(symbol=self._changed(atom.symbol))
+
+    def _changed(self, symbol: AST) -> AST:
+        if symbol.ast_type is ASTType.Pool:
+            return symbol.update(arguments=[self._changed(one) for one in symbol.arguments])
+        if _signature(symbol) not in self._dependent:
+            return symbol
+        arguments = [Variable(symbol.location, self._world), *symbol.arguments]
+        return symbol.update(name=f"_{symbol.name}", arguments=arguments)

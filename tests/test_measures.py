@@ -1,0 +1,469 @@
+"""Measures of the user's own: what rules say of units, and that they count as our objectives do."""
+
+import json
+import pickle
+import random
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import foon_asp
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.measure import read_measures
+from foon_asp.asp.measure_rules import read_rules
+from foon_asp.asp.session import Session
+from foon_asp.engines import Asked, cross_check
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
+from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives
+from foon_asp.reduce import ALL, NONE
+from foon_asp.text.diagnostics import InputError
+from tests import oracle
+from tests.conftest import CORPUS, ROOT, Cli
+from tests.random_problems import MOTIONS, random_problem
+
+RULES = list(ContainerRule)
+MINE = "cost(mine,U,N) :- inputs(U,N)."
+
+
+def by_motion(seed: int) -> tuple[str, Callable[[Problem, FunctionalUnit], Fraction]]:
+    """Give rules for random costs of motions, some of them decimals, and the same costs in Python."""
+    rng = random.Random(f"measure {seed}")
+    costs = {motion: rng.choice(("0", "1", "2", "7", "0.25", "2.50", "1.125")) for motion in MOTIONS}
+    table = " ".join(f'pays("{m}",{c}).' if "." not in c else f'pays("{m}","{c}").' for m, c in costs.items())
+    return f"{table} cost(mine,U,N) :- motion(U,M), pays(M,N).", lambda _, unit: Fraction(costs[unit.motion])
+
+
+# Rules, and what they say in Python.
+SAID: dict[str, tuple[str, Callable[[Problem, FunctionalUnit], Fraction | int]]] = {
+    "inputs": (MINE, lambda _, unit: len(unit.inputs)),
+    "counted": ("cost(mine,U,N) :- unit(U), N = #count{O : input(U,O)}.", lambda _, unit: len(unit.inputs)),
+    "outputs": (
+        "cost(mine,U,N+1) :- unit(U), N = #count{O : output(U,O)}.",
+        lambda _, u: len(set(u.outputs)) + 1,
+    ),
+    "labels": (
+        'w("salt",3). w("dough",2). '
+        "cost(mine,U,S) :- unit(U), S = #sum{W,O : input(U,O), label(O,L), w(L,W)}.",
+        lambda _, unit: sum({"salt": 3, "dough": 2}.get(node.label, 0) for node in unit.inputs),
+    ),
+    "states": (
+        'cost(mine,U,4) :- hot(U). hot(U) :- output(U,O), state(O,"hot"). '
+        'cost(mine,U,"0.5") :- unit(U), not hot(U).',
+        lambda _, unit: 4 if any("hot" in node.states for node in unit.outputs) else Fraction(1, 2),
+    ),
+    "ingredients": (
+        "cost(mine,U,N) :- unit(U), N = #count{O,I : input(U,O), ingredient(O,I)}.",
+        lambda _, unit: sum(len(set(node.ingredients)) for node in unit.inputs),
+    ),
+    "needs": (
+        "cost(mine,U,N) :- unit(U), N = #count{O : needs(U,O)}.",
+        lambda problem, unit: len(needed_inputs(unit, problem.containers, problem.utensils)),
+    ),
+    "handed on": (
+        "cost(mine,U,5) :- input(U,O), output(U,O).",
+        lambda _, unit: 5 * (not set(unit.inputs).isdisjoint(unit.outputs)),
+    ),
+    "pairs": (
+        "cost(mine,U,N) :- unit(U), N = #count{A,B : input(U,A), input(U,B), A < B}.",
+        lambda _, unit: len(set(unit.inputs)) * (len(set(unit.inputs)) - 1) // 2,
+    ),
+    "utensils": (
+        "cost(mine,U,N) :- unit(U), N = #count{O : input(U,O), label(O,L), utensil(L)}.",
+        lambda problem, unit: sum(node.label in problem.utensils for node in set(unit.inputs)),
+    ),
+    "places": (
+        "cost(mine,U,N) :- unit(U), N = #count{O,W,X : output(U,O), located(O,W,X)}.",
+        lambda _, unit: sum(len(node.relations) for node in set(unit.outputs)),
+    ),
+    "alone": ("cost(mine,U,N) :- unit(U), N = #count{V : unit(V)}.", lambda *_: 1),
+    "tables": (
+        "t(1..3). s(X,Y) :- t(X), t(Y), X < Y. cost(mine,U,N) :- unit(U), N = #count{X,Y : s(X,Y)}.",
+        lambda *_: 3,
+    ),
+    "rate": (
+        "cost(mine,U,N) :- rate(U,R), N = (1000000 - R) / 1000.",
+        lambda problem, unit: (
+            (1_000_000 - int(problem.rates[unit.motion] * 1_000_000)) // 1000 if problem.rates else 0
+        ),
+    ),
+    "places read": (
+        "cost(mine,U,N) :- unit(U), N = #count{S : source(U,S)}. cost(mine,U,9) :- video(U,V).",
+        lambda *_: 1,
+    ),
+    "nothing": ("#defined p/1. cost(mine,U,5) :- unit(U), p(U).", lambda *_: 0),
+    "1.0": ('cost(mine,U,1) :- unit(U). cost(mine,U,"1.0") :- unit(U).', lambda *_: 1),
+}
+MINE_OBJECTIVE = Objective.of_measure("mine")
+
+
+def measured(problem: Problem, *rules: str) -> Problem:
+    return replace(problem, measures=read_measures(rules))
+
+
+@pytest.mark.parametrize("said", SAID)
+def test_what_rules_say_of_each_unit(said: str) -> None:
+    rules, expected = SAID[said]
+    for seed in range(6):
+        for containers in RULES:
+            problem = measured(random_problem(seed, containers), rules)
+            units = range(len(problem.network))
+            costs = list(problem.figures(MINE_OBJECTIVE, units))
+            assert costs == [expected(problem, problem.network.unit(unit)) for unit in units], (
+                seed,
+                containers,
+            )
+            assert [problem.measure("mine", unit) for unit in units] == costs
+
+
+@pytest.mark.parametrize(("said", "nameless"), [("inputs", True), ("labels", True), ("pairs", False)])
+def test_units_that_are_alike_are_looked_at_once(said: str, nameless: bool) -> None:
+    assert read_rules(SAID[said][0], "here").nameless is nameless
+
+
+@pytest.mark.parametrize(
+    ("rules", "nameless"),
+    [
+        (
+            "cost(a,U,1) :- p(U). p(X) :- unit(X), not q(X). q(X) :- input(X,O), h(O). h(O) :- label(O,_).",
+            True,
+        ),
+        ("cost(a,U,1) :- unit(U), 1 = { input(U,O) }.", True),
+        ("cost(a,U,1) :- p(U). p(X) :- unit(X), X < 5.", False),
+        ("cost(a,U,1) :- p(U). p(X) :- input(_,X).", False),
+        ("cost(a,U,1) :- p(U), input(U,3). p(X) :- input(X,_).", False),
+        ("cost(a,U,N) :- unit(U), N = #max{O : input(U,O)}.", False),
+        ("cost(a,U,1) :- unit(U), t(U). t(1;2).", False),
+        ("cost(a,U,1) :- unit(U), v(f(U)). v(f(U)) :- input(U,_).", False),
+        ("cost(a,U,O) :- input(U,O).", False),
+        ("cost(a,U,N) :- unit(U), N = U + 1.", False),
+        ("cost(a,U,1) :- unit(U), input(U,O), state(O,S), O = S.", False),
+    ],
+)
+def test_where_numbers_of_units_matter_that_is_seen(rules: str, nameless: bool) -> None:
+    assert read_rules(rules, "here").nameless is nameless
+
+
+@pytest.mark.parametrize(
+    "objectives", [["mine"], ["success", "mine"], ["mine", "kitchen"], ["units", "mine"]]
+)
+@pytest.mark.parametrize("reductions", [ALL, NONE])
+def test_the_best_tree_is_that_of_brute_force(objectives: list[str], reductions: Any) -> None:
+    for seed in range(8):
+        rules, expected = by_motion(seed) if seed % 2 else random.Random(seed).choice([*SAID.values()])
+        if "rate(" in rules:
+            continue
+        problem = measured(random_problem(seed, RULES[seed // 2 % 2], units=6), rules)
+        chosen = parse_objectives(objectives, problem.measures)
+        keys = [
+            tuple(
+                sum((Fraction(expected(problem, unit)) for unit in tree), start=Fraction(0))
+                if objective == "mine"
+                else oracle.measure(problem, tree, objective)
+                for objective in [*objectives, "units"]
+            )
+            for tree in oracle.trees(problem)
+        ]
+        outcome = solve(problem, chosen, Settings(reductions=reductions))
+        found = None
+        if outcome.costs is not None:
+            assert outcome.status is Status.OPTIMAL
+            found = outcome.costs.key((*chosen, Objective.UNITS))
+        assert found == min(keys, default=None), seed
+
+
+def test_a_measure_equal_to_ours_gives_the_same_answers() -> None:
+    problem = foon_asp.load(ROOT / "data" / "kitchen", measures=MINE).problem("macaroni")
+    ours, mine = (solve(problem, parse_objectives([name], problem.measures)) for name in ("inputs", "mine"))
+    assert (ours.units, ours.proof) == (mine.units, mine.proof)
+    assert ours.costs == mine.costs
+    assert mine.costs is not None
+    assert mine.costs.measure(MINE_OBJECTIVE) == mine.costs.inputs
+
+    def figures(front: Any) -> list[Any]:
+        return [point.costs.key(front.objectives) for point in front.points]
+
+    assert figures(foon_asp.pareto(problem, "units,mine")) == figures(
+        foon_asp.pareto(problem, "units,inputs")
+    )
+    assert figures(foon_asp.pareto(problem, "success,mine")) == figures(
+        foon_asp.pareto(problem, "success,inputs")
+    )
+    for ask in (foon_asp.regret, foon_asp.alternatives, foon_asp.shopping_list):
+        assert numbers(ask(problem, "mine")) == numbers(ask(problem, "inputs"))
+
+
+def numbers(found: Any) -> list[str]:
+    """Give the numbers of all units and object nodes of an answer."""
+    listed = re.findall(r'"id": (\d+)', found.json_text())
+    assert listed
+    return listed
+
+
+def test_a_menu_and_a_session_by_a_measure() -> None:
+    foon = foon_asp.load(ROOT / "data" / "kitchen", measures=[MINE])
+    problem = foon.problem("ice", "macaroni")
+    ours, mine = (foon_asp.menu(problem, name) for name in ("inputs", "mine"))
+    assert numbers(ours) == numbers(mine)
+    rule = (ROOT / "encodings" / "constraints" / "forbid_motion.lp",)
+    session = Session()
+    for motion in ("pour", "crush", "pour"):
+        how = Settings(constraints=rule, constants=(f"forbidden_motion={motion}",))
+        asked = solve(problem, (MINE_OBJECTIVE,), how._replace(session=session))
+        assert asked.bounds == solve(problem, (MINE_OBJECTIVE,), how).bounds
+
+
+def test_help_is_priced_beside_a_measure() -> None:
+    problem = foon_asp.load(ROOT / "data" / "kitchen", measures=MINE).problem("macaroni")
+    assert str(foon_asp.assist(problem, most=1)) == str(foon_asp.assist(problem.vary(measures=()), most=1))
+
+
+@pytest.mark.parametrize("said", ["inputs", "labels", "states"])
+def test_engines_agree(said: str) -> None:
+    for seed in (1, 4):
+        problem = measured(random_problem(seed, RULES[seed % 2]), SAID[said][0])
+        cross_check(Asked(solve(problem, (MINE_OBJECTIVE,)), Settings()), None)
+
+
+def test_there_is_one_objective_of_a_name() -> None:
+    mine = Objective.of_measure("mine")
+    assert mine is MINE_OBJECTIVE is pickle.loads(pickle.dumps(mine))
+    assert pickle.loads(pickle.dumps(Objective.SUCCESS)) is Objective.SUCCESS is Objective("success")
+    assert {mine: 1}["mine"] == 1
+    assert json.dumps({mine: mine}) == '{"mine": "mine"}'
+    assert mine not in Objective
+    assert "units" in Objective
+    with pytest.raises(ValueError, match="no objective"):
+        Objective("mine")
+    with pytest.raises(AttributeError, match="does not change"):
+        mine.row = Objective.UNITS.row
+    problem = measured(random_problem(1, RULES[0]), MINE)
+    again = pickle.loads(pickle.dumps(problem.plain))
+    assert list(again.figures(mine, range(3))) == list(problem.figures(mine, range(3)))
+
+
+@pytest.mark.parametrize(
+    ("rules", "message"),
+    [
+        ("cost(mine,U,5) :- use(U).", "found use/1, which differs from tree to tree, .*--soft.*--encodings"),
+        (
+            "cost(mine,U,5) :- unit(U), output(U,O), available(O).",
+            "found available/1, which differs from tree",
+        ),
+        (
+            "cost(mine,U,5) :- input(U,O), kitchen(O).",
+            "found kitchen/1, which differs from question to question",
+        ),
+        ("cost(mine,U,5) :- output(U,O), goal(O).", "found goal/1, which differs from question"),
+        ("cost(mine,U,N) :- risk(U,N).", "found risk/2, which is rounded for a question: read rate/2"),
+        ("cost(mine,U,N) :- price(U,N).", "found price/2, which is there only where it is exact"),
+        ("cost(mine,U,N) :- cost(price,U,N).", "found cost/3, which is rounded"),
+        ('cost(mine,U,5) :- moton(U,"pour").', "no rule or fact defines moton/2.*did you mean motion/2"),
+        ("cost(price,U,5) :- unit(U).", "found a measure 'price', which is a name of ours"),
+        ("cost(motion,U,5) :- unit(U).", "found a measure 'motion', which is a name of ours"),
+        ("cost(inputs_and_ingredients,U,5) :- unit(U).", "which is a name of ours"),
+        ("cost(_mine,U,5) :- unit(U).", "which is a name of ours"),
+        ("cost(M,U,5) :- motion(U,M).", r"found cost\(M,...\), expected the name of a measure"),
+        ('cost("mine",U,5) :- unit(U).', "expected the name of a measure"),
+        ("cost(mine(1),U,5) :- unit(U).", "expected the name of a measure"),
+        ("p :- q. q.", r"expected rules for what units cost, such as cost\(mine,U,5\)"),
+        ("{ cost(mine,U,5) } :- unit(U).", "found a choice or a disjunction"),
+        ("cost(mine,U,5) ; cost(mine,U,6) :- unit(U).", "found a choice or a disjunction"),
+        ("cost(mine,U,5) :- unit(U). :- unit(U).", "found a constraint, expected a rule"),
+        ("cost(mine,U,5) :- unit(U), -p(U). -p(U) :- unit(U).", "with a minus before it"),
+        ("cost(mine,U,5) :- unit(U). _p(1).", "names that begin with '_' are reserved"),
+        ('cost(mine,U,5) :- unit(U). motion(U,"x") :- unit(U).', "found a rule for motion/2"),
+        ("cost(mine,U,5) :- unit(U). use(U) :- unit(U).", "found a rule for use/1"),
+        ("p(X+1) :- p(X). p(1). cost(mine,U,5) :- unit(U).", "found p/1, which depends on itself"),
+        ("p :- not q. q :- not p. cost(mine,U,5) :- unit(U), p.", "depends on itself"),
+        ("#const mine = 3. cost(mine,U,5) :- unit(U).", "found #const mine"),
+        ("#const units = 3. cost(mine,U,5) :- unit(U).", "found #const units"),
+        ("#minimize{1}. cost(mine,U,5) :- unit(U).", "found a statement that is no rule"),
+        ("#external p. cost(mine,U,5) :- unit(U), not p.", "found a statement that is no rule"),
+        ("#program part(t). cost(mine,U,5) :- unit(U).", "found a statement that is no rule"),
+        ("#script (python) #end. cost(mine,U,5) :- unit(U).", "found #script"),
+        ('#include "other.lp". cost(mine,U,5) :- unit(U).', "found #include"),
+        ("cost(mine,U,4294967296) :- unit(U).", "found the number 4294967296"),
+        ("cost(mine,U,5) :- unit(U)", "measure 1:1:.*syntax error"),
+        ("cost(mine,U,N) :- unit(U).", "the variable 'N' is unsafe"),
+    ],
+)
+def test_rules_that_are_refused(rules: str, message: str) -> None:
+    with pytest.raises(UserError) as caught:
+        list(measured(random_problem(1, RULES[0]), rules).figures(MINE_OBJECTIVE, (0,)))
+    assert re.search(message, str(caught.value), re.DOTALL), str(caught.value)
+    assert str(caught.value).startswith("measure 1")
+
+
+@pytest.mark.parametrize(
+    ("rules", "message"),
+    [
+        (
+            "cost(mine,U,-1) :- unit(U).",
+            r"measure 1:1:1: error: found the cost -1 of the unit '\w+' \(0, random:",
+        ),
+        (
+            'cost(mine,U,"1,5") :- unit(U).',
+            r'found the cost "1,5" of the unit .*expected a number from 0: 5, or',
+        ),
+        ('cost(mine,U,"-1") :- unit(U).', 'found the cost "-1"'),
+        ('cost(mine,U,"1/2") :- unit(U).', 'found the cost "1/2"'),
+        ("cost(mine,U,half) :- unit(U).", "found the cost half"),
+        ("cost(mine,7777,5).", "found a cost of 7777 among the facts of the unit"),
+        ("cost(mine,O,5) :- input(_,O).", "found a cost of .*a rule is about one unit"),
+        ("cost(mine,U,N) :- motion(U,M), N = M + 1.", "measure 1:1:1: error: a term has no value here: M"),
+        ("cost(mine,U,1) :- unit(U), 0 < #sum{M : motion(U,M)}.", "the weight in .* is not a number"),
+        (
+            "cost(mine,U,5) :- unit(U).\n\ncost(mine,U,N) :- inputs(U,M), N = M * 0 + 6.",
+            r"measure 1:1:1: error: found the cost 5 of the unit '\w+' \(0, random:\d+\), expected one value "
+            r"for each unit\n.*\nmeasure 1:3:1: error: found the cost 6 of the unit '\w+' \(0, random:\d+\)",
+        ),
+    ],
+)
+def test_costs_that_are_refused_are_named_with_their_places(rules: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        solve(measured(random_problem(1, RULES[0]), rules), (MINE_OBJECTIVE,))
+    assert re.search(message, str(caught.value), re.DOTALL), str(caught.value)
+
+
+def test_rules_that_take_no_end_are_stopped() -> None:
+    numbers = "p(1..9999). q(X+Y+Z) :- p(X), p(Y), p(Z)."
+    problem = measured(
+        random_problem(1, RULES[0]), f"{numbers} cost(mine,U,N) :- unit(U), N = #max{{X : q(X)}}."
+    )
+    outcome = foon_asp.solve(problem, "mine", time_limit=0.3)
+    assert outcome.status is Status.UNKNOWN
+    assert outcome.stopped == "the time limit of 0.3 s while measuring units"
+
+
+def test_a_measure_needs_its_rules_and_the_rates_that_it_reads() -> None:
+    problem = random_problem(1, RULES[0])
+    with pytest.raises(UserError, match="the objective mine needs the rules of its measure"):
+        solve(problem, (MINE_OBJECTIVE,))
+    with pytest.raises(UserError, match=r"found the objective 'mine', expected one of units, .*, price$"):
+        foon_asp.solve(problem, "mine")
+    with pytest.raises(UserError, match=r"expected one of units, .*, price, mine$"):
+        foon_asp.solve(measured(problem, MINE), "yours")
+    with pytest.raises(ValueError, match="no measure yours is known"):
+        problem.measure("yours", 0)
+    with pytest.raises(UserError, match="the rules read rate/2: give a rates file"):
+        measured(replace(problem, rates=None), SAID["rate"][0]).measure("mine", 0)
+
+
+def test_two_files_may_not_name_the_same_measure(tmp_path: Path) -> None:
+    one, two = tmp_path / "one.lp", tmp_path / "two.lp"
+    one.write_text(MINE, encoding="utf-8")
+    two.write_text(f"% other\n{MINE} cost(more,U,1) :- unit(U).", encoding="utf-8")
+    with pytest.raises(
+        InputError, match=r"two\.lp:2:1: error: found the measure 'mine' again, of which .*one\.lp"
+    ):
+        read_measures([one, two])
+    assert read_measures(one) == read_measures([one, one]) == read_measures(str(one))
+    assert list(read_measures(two)) == ["mine", "more"]
+
+
+def test_a_constant_of_a_constraint_does_not_take_the_name(tmp_path: Path) -> None:
+    rule = tmp_path / "rule.lp"
+    rule.write_text("#const mine = units. :- use(U), mine = 3.", encoding="utf-8")
+    problem = measured(random_problem(1, RULES[0]), MINE)
+    with pytest.raises(UserError, match=r"found #const mine .* is the name of a measure"):
+        solve(problem, (MINE_OBJECTIVE,), Settings(constraints=(rule,)))
+
+
+def test_a_store_says_the_same_of_the_units_it_reads(tmp_path: Path, cli: Cli) -> None:
+    rules = tmp_path / "mine.lp"
+    rules.write_text(f"{SAID['counted'][0]} cost(where,U,U) :- unit(U).", encoding="utf-8")
+    assert cli("import", "--data", f"{ROOT}/data/kitchen", "--store", f"{tmp_path}/k.foon").code == 0
+    data = ("--goal", "macaroni", "--objective", "mine,where", "--measure", str(rules), "--format", "json")
+    whole = cli("solve", *data).json
+    part = cli("solve", "--network", f"{tmp_path}/k.foon", *data).json
+    for key in ("costs", "lower_bound", "proof_by_objective", "objectives"):
+        assert whole[key] == part[key]
+    assert whole["costs"]["mine"] == {"exact": "21", "approx": 21.0}
+    problem = foon_asp.load(tmp_path / "k.foon", measures=rules).problem("macaroni")
+    assert len(problem.network) < len(problem.whole.network)
+    assert problem.vary(without="knife").measures == problem.whole.measures == problem.measures
+
+
+def test_a_batch_by_a_measure(tmp_path: Path, cli: Cli) -> None:
+    rules, questions = tmp_path / "mine.lp", tmp_path / "questions.jsonl"
+    rules.write_text(MINE, encoding="utf-8")
+    questions.write_text('{"goal": ["ice", "macaroni"], "objective": ["mine", "inputs"]}\n', encoding="utf-8")
+    words = ("batch", str(questions), "--results", str(tmp_path / "rows.jsonl"), "--measure", str(rules))
+    assert cli(*words).code == 0
+    rows = [json.loads(line) for line in (tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()]
+    rows = [row for row in rows if "goal" in row]
+    found = {(row["goal"], row["objective"]): row["units"] for row in rows}
+    for goal in ("ice", "macaroni"):
+        assert found[goal, "mine"] == found[goal, "inputs"]
+    assert all(row["costs"]["mine"]["exact"] == str(row["costs"]["inputs"]) for row in rows)
+    rules.write_text("cost(other,U,1) :- unit(U).", encoding="utf-8")
+    refused = cli(*words)
+    assert refused.code == 2
+    assert "found the objective 'mine'" in refused.err
+
+
+def test_a_session_knows_the_measures_it_was_started_with(tmp_path: Path, cli: Cli) -> None:
+    rules, script = tmp_path / "mine.lp", tmp_path / "script"
+    rules.write_text(MINE, encoding="utf-8")
+    script.write_text(
+        "objective mine\ngoal macaroni\nsolve\nsolve --objective mine,success\n", encoding="utf-8"
+    )
+    ran = cli("shell", str(script), "--measure", str(rules))
+    assert ran.code == 0
+    assert ran.out.count("mine 21") == 2
+    script.write_text(f"goal ice\nsolve --measure {rules}\n", encoding="utf-8")
+    ran = cli("shell", str(script))
+    assert ran.code == 2
+    assert "a session keeps the data it was started with" in ran.err
+
+
+def test_trees_are_told_apart_by_a_measure(tmp_path: Path, cli: Cli) -> None:
+    rules = tmp_path / "mine.lp"
+    rules.write_text(MINE, encoding="utf-8")
+    shown = cli(
+        "diff", "solve --objective mine", "solve --objective success", "--goal", "macaroni",
+        "--measure", str(rules), "--format", "json",
+    ).json  # fmt: skip
+    assert [side["costs"]["mine"]["exact"] for side in (shown["a"], shown["b"])] == [
+        str(side["costs"]["inputs"]) for side in (shown["a"], shown["b"])
+    ]
+
+
+def test_what_is_asked_of_other_units_is_asked_of_none() -> None:
+    """Each unit has a world of its own: values do not change where other units come or go."""
+    rules = (
+        "cost(mine,U,1) :- motion(U,M), motion(V,M), V != U. cost(mine,U,2) :- lone(U). lone(U) :- unit(U)."
+    )
+    builder = NetworkBuilder()
+    salt, soup, hot = ObjectNode.of("salt"), ObjectNode.of("soup"), ObjectNode.of("soup", ["hot"])
+    for number, (given, made) in enumerate(((salt, soup), (soup, hot))):
+        builder.add("pour", [given], [made], Source("here", number))
+    network = builder.build()
+    problem = Problem(network, frozenset(), (1,), None, frozenset())
+    assert list(measured(problem, rules).figures(MINE_OBJECTIVE, range(2))) == [2, 2]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not here")
+def test_makeable_objects_of_the_real_network() -> None:
+    foon = foon_asp.load(CORPUS / "universal")
+    rng = random.Random("measures")
+    table = " ".join(f'pays("{m}",{rng.randint(0, 30)}).' for m in sorted(set(foon.network.motions)))
+    foon = foon.vary(measures=[MINE, f"{table} cost(random,U,N) :- motion(U,M), pays(M,N)."])
+    problem = foon.problem(foon.network.objects[0])
+    goals = rng.sample(sorted(foon_asp.problem.reach(problem).makers), 100)
+    for goal in goals:
+        asked = replace(problem, goals=(goal,))
+        ours, mine = (solve(asked, parse_objectives([name], asked.measures)) for name in ("inputs", "mine"))
+        assert ours.costs == mine.costs
+        both = [
+            solve(asked, (Objective.of_measure("random"),), Settings(reductions=each)).bounds
+            for each in (ALL, NONE)
+        ]
+        assert both[0] == both[1]
