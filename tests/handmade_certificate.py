@@ -21,6 +21,7 @@ def handmade(problem: Problem, **values: Any) -> Content:
         "objective": ["units"],
         "digests": verify.digests(*_data(problem)),
         "rules": [],
+        "measures": {},
         "not_covered": [],
         "tree": None,
         "costs": None,
@@ -31,7 +32,7 @@ def handmade(problem: Problem, **values: Any) -> Content:
     }
     if content["version"] in (1, 2, 3):
         content = {"forbidden": {"motions": [], "objects": []}, **content}
-        del content["rules"]
+        del content["rules"], content["measures"]
         content["digests"] = {key: sha for key, sha in content["digests"].items() if key != "sources"}
     return {**content, "seal": verify.seal(content)}
 

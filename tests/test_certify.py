@@ -397,7 +397,7 @@ def test_a_certificate_holds_to_the_format_of_the_verifier() -> None:
     assert content["seal"] == verify.seal(content)
     assert list(content) == [
         *("format", "version", "claim", "goals", "containers", "level", "objective", "digests"),
-        *("rules", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
+        *("rules", "measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
     ]
     assert content["proof"] == {"weights": [[0, ["1"]]]}
     assert (content["tree"], content["costs"], content["cuts"]) == ([POUR], [1], [[END, MIDDLE]])

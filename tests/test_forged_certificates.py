@@ -5,6 +5,7 @@ the table says why the check stays all the same. So none is missing here, and no
 """
 
 import ast
+import hashlib
 import json
 import re
 import sys
@@ -113,6 +114,7 @@ def certificate(at: Data, **values: Any) -> dict[str, Any]:
         "objective": ["units"],
         "digests": verify.digests(*at),
         "rules": [],
+        "measures": {},
         "not_covered": [],
         "tree": [0],
         "costs": [1],
@@ -166,12 +168,23 @@ def older(version: int, **values: Any) -> Forged:
     content = certificate(PLAIN, version=version, forbidden={"motions": [], "objects": []}, **values)
     since = {"prices": 3, "sources": 4}
     content["digests"] = {k: v for k, v in content["digests"].items() if version >= since.get(k, 0)}
-    del content["rules"]
+    del content["rules"], content["measures"]
     return Forged({**content, "seal": verify.seal(content)})
 
 
 KIND = "what is of another kind ends the check with a fault of Python's and not with a refusal"
 WORDS = "the refusal says what is wrong; without it a later one says less"
+
+# By a measure, pouring and baking cost 5.
+FIVE: dict[str, Any] = {"objective": ["mine"], "costs": ["5"], "proof": {"weights": [[0, ["5"]]]}}
+
+
+def measured(name: str = "mine", costs: dict[str, list[int]] | None = None, **values: Any) -> dict[str, Any]:
+    """Give a measure as certificates state it, with other values."""
+    rules = "cost(mine,U,5) :- unit(U)."
+    stated = {"rules": rules, "sha256": hashlib.sha256(rules.encode()).hexdigest()}
+    return {name: {**stated, "costs": costs or {"5": [0, 2]}, **values}}
+
 
 BOUND: dict[str, Any] = {"claim": "bound", "bound": ["0"]}
 INTERMEDIATE: dict[str, Any] = {"rule": "require_intermediate", "required_intermediate": "middle"}
@@ -389,6 +402,21 @@ FORGED: dict[str, Forged] = {
     "_read: expected rates of motions in a weight, and none of 0 or 1": plain(
         **SUCCESS, proof={"weights": [[0, [{"99/100": "1"}]]]}
     ),
+    # --- measures
+    "_measure: a measure has no name of its own": plain(measures=measured("Mine")),
+    "_measure: expected the text of rules": plain(stays=KIND, **FIVE, measures=measured(rules=5)),
+    "_measure: the digest of a measure is not that of its rules": plain(
+        **FIVE, measures=measured(sha256="0")
+    ),
+    "_measure: a unit costs less than 0 by a measure": plain(
+        **FIVE, measures=measured(costs={"-1": [1], "5": [0, 2]})
+    ),
+    "_measure: a unit has two costs by a measure": plain(
+        **FIVE, measures=measured(costs={"6": [0], "5": [0, 2]})
+    ),
+    "_measured: the cost of a unit by a measure is not stated": plain(
+        stays=KIND, **FIVE, measures=measured(costs={"5": [0]})
+    ),
     # --- limits
     "_minus_log_sign: products of rates are too close to be told apart in reasonable time": plain(
         at=PRODUCTS,
@@ -501,7 +529,7 @@ def held(by: Any, forged: Forged, folder: Path) -> Any:
 
 
 def test_a_right_certificate_passes(tmp_path: Path) -> None:
-    for forged in (plain(), Forged(text()), Forged(text().encode())):
+    for forged in (plain(), plain(**FIVE, measures=measured()), Forged(text()), Forged(text().encode())):
         assert held(verify, forged, tmp_path).claim in ("optimal", "bound")
 
 

@@ -238,7 +238,9 @@ def test_what_the_schemas_share_is_used() -> None:
 
 def test_the_words_of_the_schemas_are_ours() -> None:
     shared = schema("answer")["$defs"]
-    assert shared["objective"]["enum"] == list(map(str, Objective))
+    ours, measures = shared["objective"]["anyOf"]
+    assert ours["enum"] == list(shared["figures"]["properties"]) == list(map(str, Objective))
+    assert re.fullmatch(measures["pattern"], "mine")
     assert shared["containers"]["enum"] == list(map(str, ContainerRule))
     assert shared["status"]["enum"] == list(map(str, Status))
     assert sorted(shared["level"]["enum"]) == sorted(LEVELS)

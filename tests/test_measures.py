@@ -1,5 +1,6 @@
 """Measures of the user's own: what rules say of units, and that they count as our objectives do."""
 
+import hashlib
 import json
 import pickle
 import random
@@ -17,10 +18,12 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.measure import read_measures
 from foon_asp.asp.measure_rules import read_rules
 from foon_asp.asp.session import Session
+from foon_asp.certificate import certify
 from foon_asp.engines import Asked, cross_check
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives
+from foon_asp.proof import verify
 from foon_asp.reduce import ALL, NONE
 from foon_asp.text.diagnostics import InputError
 from tests import oracle
@@ -447,6 +450,88 @@ def test_what_is_asked_of_other_units_is_asked_of_none() -> None:
     network = builder.build()
     problem = Problem(network, frozenset(), (1,), None, frozenset())
     assert list(measured(problem, rules).figures(MINE_OBJECTIVE, range(2))) == [2, 2]
+
+
+def sealed(content: dict[str, Any], rules: str, name: str = "mine") -> dict[str, Any]:
+    """Give a certificate other rules of its measure, and a seal and a digest that fit."""
+    (stated,) = content["measures"].values()
+    digest = hashlib.sha256(rules.encode()).hexdigest()
+    changed = {**content, "measures": {name: {**stated, "rules": rules, "sha256": digest}}}
+    return {**changed, "seal": verify.seal(changed)}
+
+
+@pytest.mark.parametrize("said", ["inputs", "labels", "states", "needs"])
+def test_certificates_say_what_they_take_on_trust(said: str) -> None:
+    for seed in range(6):
+        problem = measured(random_problem(seed, RULES[seed % 2]), SAID[said][0])
+        outcome = solve(problem, (MINE_OBJECTIVE, Objective.UNITS))
+        if outcome.units is None:
+            continue
+        found = certify(problem, (MINE_OBJECTIVE, Objective.UNITS), outcome.units)
+        assert found is not None
+        proved = foon_asp.verify(problem, found, with_clingo=True).verified
+        assert proved.claim == "optimal"
+        assert outcome.costs is not None
+        assert proved.costs == outcome.costs.key(found.certified)
+        (trusted,) = proved.trusted
+        assert trusted.costs.keys() >= set(outcome.units)
+        assert all(problem.measure("mine", unit) == cost for unit, cost in trusted.costs.items())
+        stated = found.content["measures"]["mine"]
+        assert sorted(unit for units in stated["costs"].values() for unit in units) == sorted(trusted.costs)
+        assert trusted.sha256 == hashlib.sha256(SAID[said][0].encode()).hexdigest()
+
+
+def test_what_is_taken_on_trust_is_checked_with_clingo(tmp_path: Path, cli: Cli) -> None:
+    rules, other, file = tmp_path / "mine.lp", tmp_path / "other.lp", tmp_path / "proof.json"
+    rules.write_text(MINE, encoding="utf-8")
+    other.write_text("cost(mine,U,N+1) :- inputs(U,N).", encoding="utf-8")
+    asked = ("--goal", "ice", "--objective", "mine", "--measure", str(rules))
+    assert cli("certify", *asked, "-o", str(file)).code == 0
+    digest = hashlib.sha256(MINE.encode()).hexdigest()
+    trusted = (
+        "taken on trust (--with-clingo checks them): the costs of 4 units by mine, and that none is below 0; "
+        f"rules with SHA-256 {digest}\n"
+    )
+    assert trusted in cli("verify", str(file)).out
+    assert trusted in cli("verify", str(file), "--measure", str(rules)).out
+    refused = cli("verify", str(file), "--measure", str(other))
+    assert (refused.code, refused.out) == (1, "refused: the rules of mine are not those that are given\n")
+    assert (
+        "\nchecked with clingo: the costs of 4 units by mine" in cli("verify", str(file), "--with-clingo").out
+    )
+    said = cli("verify", str(file), "--with-clingo", "--format", "json").json["measures"]
+    assert said == [{"name": "mine", "sha256": digest, "units": 4, "checked": "clingo"}]
+    content = json.loads(file.read_text(encoding="utf-8"))
+    for text, why in (
+        ("cost(mine,U,N+1) :- inputs(U,N).", r"refused: unit \d+ costs 4 by the rules of mine, and not 3"),
+        ("cost(mine,U,3) :- unit(U), inputs(U,3).", None),
+        (
+            "cost(mine,U,3) :- inputs(U,3). cost(mine,U,-1) :- inputs(U,4).",
+            "refused: the rules of mine:1:32: error: found the cost -1",
+        ),
+        ("cost(yours,U,3) :- inputs(U,3).", "refused: the rules say nothing of mine"),
+        ("cost(mine,U,N) :- use(U), inputs(U,N).", "refused: the rules of mine:1:19: error: found use/1"),
+        ("mine", "refused: the rules of mine:1:.*syntax error"),
+    ):
+        file.write_text(json.dumps(sealed(content, text)), encoding="utf-8")
+        assert cli("verify", str(file)).code == 0
+        ran = cli("verify", str(file), "--with-clingo")
+        assert ran.code == (0 if why is None else 1), ran.out
+        assert re.match(why or "goal", ran.out, re.DOTALL), ran.out
+    file.write_text(json.dumps(sealed(content, MINE, "units")), encoding="utf-8")
+    assert cli("verify", str(file)).out == "refused: a measure has no name of its own\n"
+
+
+def test_rules_of_a_stranger_are_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("foon_asp.questions.verify._SECONDS", 0.3)
+    problem = measured(random_problem(1, RULES[0]), MINE)
+    found = foon_asp.certify(problem, "mine").certificate
+    assert found is not None
+    endless = "p(1..9999). q(X+Y+Z) :- p(X), p(Y), p(Z). cost(mine,U,N) :- inputs(U,N), q(_)."
+    forged = found._replace(content=sealed(found.content, endless))
+    assert foon_asp.verify(replace(problem, measures={}), forged)
+    with pytest.raises(verify.LimitError, match=r"the rules of mine: the time limit of 0\.3 s while"):
+        foon_asp.verify(replace(problem, measures={}), forged, with_clingo=True)
 
 
 @pytest.mark.slow

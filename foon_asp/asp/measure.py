@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from os import PathLike
@@ -70,6 +70,27 @@ class Measure:
         return known[tuple(key)]
 
 
+def wrong_cost(
+    measure: Measure, problem: Problem, stated: Mapping[int, Fraction], deadline: Deadline
+) -> str | None:
+    """Say which unit does not cost what is stated by a measure; ``None`` where all do, and none less than 0.
+
+    Each unit is looked at by itself, whatever others are like it. Raises as :meth:`Measure.costs` does.
+    """
+    from foon_asp.asp.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
+
+    everything = measure.costs(problem, deadline)
+    rules = read_rules(measure.text, measure.place)
+    if measure.name not in rules.names:
+        return f"the rules say nothing of {measure.name}"
+    alone = _Evaluation(measure, rules, problem, deadline).found(stated)
+    for unit, cost in stated.items():
+        for found in (everything[unit], alone.get(problem.network.unit_number(unit), 0)):
+            if found != cost:
+                return f"unit {unit} costs {found} by the rules of {measure.name}, and not {cost}"
+    return None
+
+
 # By network, of each measure and what else it depends on.
 _known: WeakKeyDictionary[Network, dict[Hashable, Sequence[Cost]]] = WeakKeyDictionary()
 
@@ -86,12 +107,12 @@ class _Evaluation:
         units = range(len(self._problem.network))
         alike = self._alike()
         if alike is None:
-            found = self._found(units)
+            found = self.found(units)
             return [found.get(self._number(unit), 0) for unit in units]
         first: dict[Hashable, int] = {}
         for unit, key in enumerate(alike):
             first.setdefault(key, unit)
-        found = self._found(first.values())
+        found = self.found(first.values())
         by_key = {key: found.get(self._number(unit), 0) for key, unit in first.items()}
         return list(map(by_key.__getitem__, alike))
 
@@ -134,7 +155,7 @@ class _Evaluation:
         columns = [column for column in columns if column]
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
-    def _found(self, units: Iterable[int]) -> dict[int, Cost]:
+    def found(self, units: Iterable[int]) -> dict[int, Cost]:
         """Give what units cost, by number, as far as rules say something."""
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}

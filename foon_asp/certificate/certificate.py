@@ -3,7 +3,9 @@
 docs/proofs.md describes the format. Nothing is given out that ``foon_asp.proof.verify`` does not accept.
 """
 
-from collections.abc import Callable, Sequence
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 from foon_asp.bounds.cut import Cut
@@ -181,6 +183,11 @@ def _write(
             rules=covered.rules,
         ),
         "rules": [dict(rule) for rule in covered.rules],
+        "measures": {
+            str(objective): _measure(problem, objective)
+            for objective in arrays.objectives
+            if objective in problem.measures
+        },
         "not_covered": list(covered.not_covered),
         "tree": None if units is None else list(units),
         "costs": costs,
@@ -188,19 +195,47 @@ def _write(
         "cuts": [list(objects) for objects in cuts],
         "proof": found,
     }
-    content["seal"] = verify.seal(content)
-    certificate = Certificate(content, claim, arrays.objectives)
     try:
-        verify.verify(
-            verify.read_certificate(certificate.text()),
-            problem.network,
-            problem.kitchen,
-            problem.rates,
-            problem.utensils,
-            problem.unit_prices,
-        )
+        verified = _verified(content, claim, arrays)
+        for measure in verified.trusted:  # of all units, those that the proof looks at
+            content["measures"][measure.name]["costs"] = _by_cost(measure.costs)
+        if verified.trusted:
+            _verified(content, claim, arrays)
     except verify.LimitError:
         return None
     except verify.RefusedError as refused:
         raise BugError(f"a certificate that was found is refused: {refused}") from None
-    return certificate
+    return Certificate(content, claim, arrays.objectives)
+
+
+def _verified(content: dict[str, Any], claim: str, arrays: Arrays) -> verify.Verified:
+    """Seal a certificate, and verify it as it is written."""
+    problem = arrays.problem
+    content["seal"] = verify.seal({key: value for key, value in content.items() if key != "seal"})
+    return verify.verify(
+        verify.read_certificate(Certificate(content, claim, arrays.objectives).text()),
+        problem.network,
+        problem.kitchen,
+        problem.rates,
+        problem.utensils,
+        problem.unit_prices,
+    )
+
+
+def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
+    """Give the rules of a measure, and what they say of all units."""
+    rules = problem.measures[objective].text
+    costs = problem.figures(objective, range(len(problem.network)))
+    return {
+        "rules": rules,
+        "sha256": hashlib.sha256(rules.encode()).hexdigest(),
+        "costs": _by_cost(dict(enumerate(costs))),
+    }
+
+
+def _by_cost(costs: Mapping[int, int | Fraction]) -> dict[str, list[int]]:
+    """List the units of each cost."""
+    listed: dict[str, list[int]] = {}
+    for unit in sorted(costs):
+        listed.setdefault(str(costs[unit]), []).append(unit)
+    return listed

@@ -38,8 +38,9 @@ OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "at
 
 _KEYS = {
     *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
-    *("not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
+    *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
 }
+_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
 _SURROGATE = re.compile("[\ud800-\udfff]")
 _DIGITS = 50  # of a logarithm
@@ -83,13 +84,27 @@ class LimitError(RefusedError):
     """The certificate may be right, but to check it takes more than is reasonable."""
 
 
+class Trusted(NamedTuple):
+    """What is not proved but taken on trust: what units cost by a measure of the user's own.
+
+    ``rules`` are said to give these ``costs`` of units, by id, and none below 0 of any unit; ``sha256`` is
+    the digest of the rules.
+    """
+
+    name: str
+    rules: str
+    sha256: str
+    costs: Mapping[int, Fraction]
+
+
 class Verified(NamedTuple):
     """What a certificate proves about the data it was checked with.
 
     ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
     ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
     All trees are meant that keep to the ``rules``: ready-made constraints, each by its name (``rule``) and
-    its values. ``costs`` are those of the tree, one for each objective.
+    its values. ``costs`` are those of the tree, one for each objective. ``trusted`` is what the claim rests
+    on that the data do not say.
     """
 
     claim: str
@@ -102,6 +117,7 @@ class Verified(NamedTuple):
     tree: tuple[int, ...] | None
     costs: tuple[int | Fraction, ...] | None
     cuts: int
+    trusted: tuple[Trusted, ...] = ()
 
 
 def load_certificate(file: Path) -> Any:
@@ -185,7 +201,7 @@ def verify(
         _require(
             type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format"
         )
-        keys = _KEYS if version >= _WITH_RULES else _KEYS - {"rules"} | {"forbidden"}
+        keys = _KEYS if version >= _WITH_RULES else _KEYS - {"rules", "measures"} | {"forbidden"}
         _require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
         _require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
         _require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
@@ -228,12 +244,18 @@ class _Check:
         self.allowed = _STEPS + _STEPS_EACH * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
+        self.looked_at: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
         self.utensils = utensils
         self.containers = certificate["containers"]
         _require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
         self.objectives = tuple(_list(certificate["objective"]))
-        _require(all(objective in OBJECTIVES for objective in self.objectives), "an objective is unknown")
+        measures = _object(certificate.get("measures", {}))
+        self.measures = {name: self._measure(name, stated) for name, stated in measures.items()}
+        _require(
+            all(objective in (*OBJECTIVES, *self.measures) for objective in self.objectives),
+            "an objective is unknown",
+        )
         _require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
         by_rates = {"success", "attempts"} & set(self.objectives)
         self.rates = self._rates(rates) if by_rates else []
@@ -258,6 +280,31 @@ class _Check:
         self.cuts = [frozenset(_numbers(cut, nodes)) for cut in _list(certificate["cuts"])]
         self.members = [frozenset(self._members(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
+
+    def _measure(self, name: str, stated: Any) -> Trusted:
+        """Read what units are said to cost by a measure; nothing is trusted yet."""
+        _require(bool(_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own")
+        measure = _object(stated, ("rules", "sha256", "costs"))
+        rules = measure["rules"]
+        _require(isinstance(rules, str), "expected the text of rules")
+        digest = hashlib.sha256(rules.encode(errors="backslashreplace")).hexdigest()
+        _require(measure["sha256"] == digest, "the digest of a measure is not that of its rules")
+        costs: dict[int, Fraction] = {}
+        for text, units in _object(measure["costs"]).items():
+            cost = _rational(text)
+            _require(cost >= 0, "a unit costs less than 0 by a measure")
+            for unit in _numbers(units, len(self.network)):
+                _require(unit not in costs, "a unit has two costs by a measure")
+                costs[unit] = cost
+        self.looked_at[name] = {}
+        return Trusted(name, rules, digest, costs)
+
+    def _measured(self, name: str, unit: int) -> Fraction:
+        """Give what a unit is said to cost by a measure, which is taken on trust from now on."""
+        costs = self.measures[name].costs
+        _require(unit in costs, "the cost of a unit by a measure is not stated")
+        self.looked_at[name][unit] = costs[unit]
+        return costs[unit]
 
     def _rates(self, given: Mapping[str, Fraction] | None) -> list[Fraction]:
         """Give the success rate of each unit."""
@@ -337,6 +384,11 @@ class _Check:
             None if listed is None else tuple(listed),
             None if costs is None else tuple(costs),
             len(self.cuts),
+            tuple(
+                measure._replace(costs=self.looked_at[name])
+                for name, measure in self.measures.items()
+                if name in self.objectives
+            ),
         )
 
     def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
@@ -364,7 +416,8 @@ class _Check:
                 figure = total.get((level, None), Fraction(0))
                 if max(figure.numerator, figure.denominator).bit_length() > _WRITTEN:
                     raise LimitError("what the tree costs is too long a number to be written")
-                costs.append(figure if objective in {"attempts", "price"} else int(figure))
+                sums = {"attempts", "price", *self.measures}
+                costs.append(figure if objective in sums else int(figure))
         return total, costs
 
     def _keep(self, units: frozenset[int]) -> None:
@@ -563,6 +616,8 @@ class _Check:
                 cost[level, None] = 1 / self.rates[member]
             elif objective == "price":
                 cost[level, None] = self.prices[member]
+            elif objective in self.measures:
+                cost[level, None] = self._measured(objective, member)
             else:
                 _require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
                 inputs = network.inputs[member]

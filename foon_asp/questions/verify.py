@@ -6,6 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
@@ -20,12 +21,15 @@ from foon_asp.report.certified import verified_json, verified_text
 if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
     from foon_asp.certificate import Certificate
 
+_SECONDS = 60.0  # for what clingo checks
+
 
 @dataclass(frozen=True, repr=False)
 class VerifiedCertificate(Result):
     """What a certificate proves: ``verified`` has its ``claim``, ``goals``, ``tree`` and ``costs``.
 
-    ``network`` is the network that it is about, ``content`` the certificate as plain values.
+    ``network`` is the network that it is about, ``content`` the certificate as plain values. ``with_clingo``
+    says that clingo checked what is otherwise taken on trust, as ``verified.trusted`` lists it.
 
     Example:
         >>> foon = foon_asp.load()
@@ -37,14 +41,15 @@ class VerifiedCertificate(Result):
     verified: proof.Verified
     network: Network
     content: Mapping[str, Any]
+    with_clingo: bool = False
 
     def text(self) -> str:
         """Say what is proved, as ``foon-asp verify`` does."""
-        return verified_text(self.verified, self.network, dict(self.content))
+        return verified_text(self.verified, self.network, dict(self.content), self.with_clingo)
 
     def json_dict(self) -> object:
         """Say what is proved, as ``foon-asp verify --format json`` does."""
-        return verified_json(self.verified, self.network)
+        return verified_json(self.verified, self.network, self.with_clingo)
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,10 +72,12 @@ class Refused(Result):
         return document("verify", verified=False, reason=self.reason)
 
 
-def verify_or_refuse(data: Foon, certificate: Path) -> VerifiedCertificate | Refused:
+def verify_or_refuse(
+    data: Foon, certificate: Path, *, with_clingo: bool = False
+) -> VerifiedCertificate | Refused:
     """Check a certificate as ``foon-asp verify`` does."""
     try:
-        return verify(data, certificate)
+        return verify(data, certificate, with_clingo=with_clingo)
     except proof.RefusedError as refused:
         return Refused(str(refused))
 
@@ -79,6 +86,9 @@ def verify_or_refuse(data: Foon, certificate: Path) -> VerifiedCertificate | Ref
     Option(
         "certificate", "The file with the certificate.", Kind.FILE, metavar="CERTIFICATE", positional=True
     ),
+    Option(
+        "with_clingo", "Check with clingo what is otherwise taken on trust: costs by measures.", Kind.FLAG
+    ),
     pose=the_data,
     command=verify_or_refuse,
     help_="""
@@ -86,16 +96,22 @@ def verify_or_refuse(data: Foon, certificate: Path) -> VerifiedCertificate | Ref
     foon-asp solve --goal 'greek salad' --certificate proof.json
     foon-asp verify proof.json
 
-    The data has to be the same: --data and the other options name it as they do for solve. Exits with 0 when
-    the certificate is right and with 1 when it is refused.
+    The data has to be the same: --data and the other options name it as they do for solve. What units cost by
+    a measure of your own is taken on trust, unless --with-clingo checks it; with --measure, the rules have to
+    be those of the certificate. Exits with 0 when the certificate is right and with 1 when it is refused.
     """,
 )
-def verify(data: Foon | Problem, certificate: "Certificate | str | PathLike[str]") -> VerifiedCertificate:
+def verify(
+    data: Foon | Problem, certificate: "Certificate | str | PathLike[str]", *, with_clingo: bool = False
+) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
+
+    What units cost by a measure of the user's own is taken on trust, and ``verified.trusted`` lists it.
 
     Parameters:
         data: The data, as loaded, or a problem made from them.
         certificate: The path of a certificate, or one that :func:`foon_asp.certify` found.
+        with_clingo: Whether clingo checks what is otherwise taken on trust.
 
     Returns:
         What the certificate proves, as ``verified``.
@@ -117,6 +133,32 @@ def verify(data: Foon | Problem, certificate: "Certificate | str | PathLike[str]
             raise UserError(f"{certificate}: cannot be read: {error}") from None
     else:
         content = proof.read_certificate(certificate.text())
-    read = (data if isinstance(data, Foon) else Foon.of(data)).dataset.data
+    dataset = (data if isinstance(data, Foon) else Foon.of(data)).dataset
+    read = dataset.data
     verified = proof.verify(content, read.network, read.kitchen, read.rates, read.utensils, read.unit_prices)
-    return VerifiedCertificate(verified, read.network, content)
+    for measure in verified.trusted:
+        ours = dataset.measures.get(measure.name)
+        if ours is not None and ours.text != measure.rules:
+            raise proof.RefusedError(f"the rules of {measure.name} are not those that are given")
+    if with_clingo and verified.trusted:
+        _check_with_clingo(dataset.problem(verified.goals, verified.containers, everything=True), verified)
+    return VerifiedCertificate(verified, read.network, content, with_clingo)
+
+
+def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:
+    """Check what units are said to cost; raises :class:`RefusedError` where the rules say otherwise."""
+    from foon_asp.asp.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
+
+    for measure in verified.trusted:
+        rules = Measure(measure.name, measure.rules, f"the rules of {measure.name}")
+        deadline = Deadline(_SECONDS)  # rules may come from a stranger
+        try:
+            wrong = wrong_cost(rules, problem, measure.costs, deadline)
+        except UserError as error:
+            raise proof.RefusedError(str(error)) from None
+        except LimitError as limit:
+            if deadline.interrupted:
+                raise
+            raise proof.LimitError(f"the rules of {measure.name}: {limit.stopped}") from None
+        if wrong is not None:
+            raise proof.RefusedError(wrong)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from foon_asp.document.json_document import document, figures_json, goals_json, head_json
 from foon_asp.escapes import escaped
 from foon_asp.network import Network, counted
-from foon_asp.problem import Objective
+from foon_asp.problem import parse_objectives
 from foon_asp.proof.constraint import Rule
 from foon_asp.proof.verify import Verified
 from foon_asp.text.json_value import Json
@@ -62,8 +62,10 @@ def _success(exponents: Mapping[str, str]) -> str:
     return f"{float(precise.exp(min(logarithm, Decimal(0)))):.4g}"
 
 
-def verified_text(verified: Verified, network: Network, content: dict[str, Any]) -> str:
-    """Say what a verified certificate proves."""
+def verified_text(
+    verified: Verified, network: Network, content: dict[str, Any], with_clingo: bool = False
+) -> str:
+    """Say what a verified certificate proves; ``with_clingo`` says that clingo checked what is on trust."""
     lines = [f"goal: {network.objects[goal]}" for goal in verified.goals]
     rule = f"{verified.containers} containers" + (f", level {verified.level}" if verified.level < 3 else "")
     if verified.claim == "infeasible":
@@ -78,13 +80,20 @@ def verified_text(verified: Verified, network: Network, content: dict[str, Any])
         )
     lines += [f"among the trees that keep to {_rule(rule)}" for rule in verified.rules]
     lines += [f"not covered, so among all trees: {name}" for name in verified.not_covered]
+    for measure in verified.trusted:
+        what = (
+            f"the costs of {counted(len(measure.costs), 'unit')} by {measure.name}, and that none is below 0"
+        )
+        how = "checked with clingo" if with_clingo else "taken on trust (--with-clingo checks them)"
+        lines.append(f"{how}: {what}; rules with SHA-256 {measure.sha256}")
     lines.append(f"proof: {counted(verified.cuts, 'cut')}, checked without a solver")
     return "\n".join(lines) + "\n"
 
 
-def verified_json(verified: Verified, network: Network) -> Json:
+def verified_json(verified: Verified, network: Network, with_clingo: bool = False) -> Json:
     """Give what a verified certificate proves for programs."""
-    goals, objectives = goals_json(network, verified.goals), tuple(map(Objective, verified.objectives))
+    goals = goals_json(network, verified.goals)
+    objectives = parse_objectives(verified.objectives, [measure.name for measure in verified.trusted])
     costs = None if verified.costs is None else dict(zip(objectives, verified.costs, strict=True))
     return document(
         "verify",
@@ -93,6 +102,15 @@ def verified_json(verified: Verified, network: Network) -> Json:
         claim=verified.claim,
         costs=None if costs is None else figures_json(costs),
         rules=list(map(dict, verified.rules)),
+        measures=[
+            {
+                "name": measure.name,
+                "sha256": measure.sha256,
+                "units": len(measure.costs),
+                "checked": "clingo" if with_clingo else None,
+            }
+            for measure in verified.trusted
+        ],
         not_covered=list(verified.not_covered),
         tree=None if verified.tree is None else list(verified.tree),
         cuts=verified.cuts,
