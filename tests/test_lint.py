@@ -16,7 +16,7 @@ from foon_asp.lint.near_names import near_names
 from foon_asp.lint.sheet import Sheet
 from foon_asp.network import Network, NetworkBuilder, ObjectNode
 from foon_asp.network.dead_cycles import dead_cycles
-from foon_asp.report.lint_text import lint_text
+from foon_asp.report.lint_findings import lint_text
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli

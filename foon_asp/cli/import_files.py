@@ -1,6 +1,7 @@
 """``foon-asp import``: files into a store, from which a question reads only its part."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -26,16 +27,7 @@ from foon_asp.text.diagnostics import summarize
 )
 @options.network_options
 def command(
-    paths: tuple[Path, ...],
-    store: Path,
-    folder: Path | None,
-    network: tuple[Path, ...],
-    kitchen: Path | None,
-    rates: Path | None,
-    utensils: Path | None,
-    goals: Path | None,
-    unit_prices: Path | None,
-    lenient: bool,
+    paths: tuple[Path, ...], store: Path, network: tuple[Path, ...], lenient: bool, **beside: Any
 ) -> ExitCode:
     """Merge networks into a store, for networks too large to read for each question.
 
@@ -48,9 +40,9 @@ def command(
     unless others are given. Every copy of a unit keeps its file, line and videos. Copies with different
     prices are an error, unless a line of --unit-prices chooses one.
     """
-    if folder is None and not paths and not network:
+    if beside["folder"] is None and not paths and not network:
         raise UserError("name the networks to import, or a folder of data with --data")
-    files = find_data(folder, (*paths, *network), kitchen, rates, utensils, goals, unit_prices)
+    files = find_data(network=(*paths, *network), **beside)
     imported = import_files(files, store, lenient)
     for text in summarize(imported.warnings):
         click.echo(text, err=True)

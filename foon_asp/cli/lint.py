@@ -12,9 +12,7 @@ from foon_asp.errors import UserError
 from foon_asp.lint.catalog import CATALOG
 from foon_asp.lint.linter import lint
 from foon_asp.lint.mending import mended
-from foon_asp.report.lint_annotations import lint_annotations
-from foon_asp.report.lint_json import lint_json
-from foon_asp.report.lint_text import lint_text
+from foon_asp.report.lint_findings import lint_annotations, lint_json, lint_text
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from foon_asp.errors import UserError
+from foon_asp.escapes import encodable
 from foon_asp.network import Contents, Network, ObjectNode, Relation, Source
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
 from foon_asp.text.listed_unit import node_of
@@ -45,28 +46,25 @@ def _check_names(nodes: tuple[ObjectNode, ...], blocks: list[str], motions: dict
         back = (
             node_of(first.label, said) if isinstance(first, ObjectLine) and len(said) == len(rest) else None
         )
-        if back != node or not _is_utf8(block):
+        if back != node or encodable(block) != block:
             raise UserError(f"the object node {str(node)!r} has a name that FOON text cannot hold")
     for motion, line in motions.items():
         parsed = reader.parse(line[:-1])
-        if not isinstance(parsed, MotionLine) or parsed.motion != motion or not _is_utf8(line):
+        if not isinstance(parsed, MotionLine) or parsed.motion != motion or encodable(line) != line:
             raise UserError(f"the motion {motion!r} is a name that FOON text cannot hold")
 
 
 def _copy(source: Source) -> str:
     """Write a place, and read it back: the name of a file may hold what ends it in a line of text."""
     written = write_copy(source)
-    if "\n" in written[:-1] or "\r" in written or read_copy(written[:-1]) != source or not _is_utf8(written):
+    if (
+        "\n" in written[:-1]
+        or "\r" in written
+        or read_copy(written[:-1]) != source
+        or encodable(written) != written
+    ):
         raise UserError(
             f"{source.file!r} cannot be named in a line of text: rename it, without tabs, line ends and"
             " blanks at the start"
         )
     return written
-
-
-def _is_utf8(text: str) -> bool:
-    try:
-        text.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
