@@ -22,6 +22,7 @@ class RandomRules:
         }
         self._helpers: list[tuple[str, str]] = []
         self._count = 0
+        self._near = False
 
     def text(self) -> str:
         """Give a few helper rules, and then a few constraints."""
@@ -37,6 +38,27 @@ class RandomRules:
                 self._helpers.append(new)
         lines += [f":- {self._body([])}." for _ in range(rng.choice((1, 2, 2)))]
         return "\n".join(lines) + "\n"
+
+    def of_one_unit(self) -> str:
+        """Give a constraint that is about one unit, and what it is made of; some have helpers."""
+        rng = self._rng
+        self._near = True
+        bound, parts = ["U0"], ["use(U0)"]
+        lines = [f"helper0({self._name('label')})." for _ in range(rng.choice((0, 1, 3)))]
+        self._helpers += [("helper0", "N")] if lines else []
+        if rng.random() < 0.4:
+            own, within = ["O0"], [f"label(O0,{self._name('label')})"]
+            within = rng.choice((within, ["label(O0,N0)", self._part([*own, "N0"], within)]))
+            lines.append(f"helper1(O0) :- {'; '.join(within)}.")
+            self._helpers.append(("helper1", "O"))
+        for _ in range(rng.choice((1, 2, 2, 3))):
+            parts.append(self._part(bound, parts))
+        if rng.random() < 0.7:
+            return "\n".join([*lines, f":- {'; '.join(parts)}."]) + "\n"
+        if rng.random() < 0.5:
+            return "\n".join([*lines, f"done :- {'; '.join(parts)}.", ":- not done."]) + "\n"
+        simple = [part for part in parts[1:] if ":" not in part and "#" not in part]
+        return "\n".join([*lines, f":- not use(U0) : {', '.join(['unit(U0)', *simple])}."]) + "\n"
 
     def _helper_rule(self, name: str, sort: str) -> str:
         if sort == "N" and self._rng.random() < 0.3:
@@ -66,7 +88,7 @@ class RandomRules:
     def _known(self, sort: str, bound: list[str], parts: list[str]) -> str:
         """Give a variable that is bound, or bind one."""
         fitting = [variable for variable in bound if variable[0] == sort]
-        if fitting and self._rng.random() < 0.85:
+        if fitting and (self._rng.random() < 0.85 or (self._near and sort == "U")):
             return self._rng.choice(fitting)
         parts.append(self._binding(sort, parts, bound))
         return bound[-1]
@@ -75,6 +97,11 @@ class RandomRules:
         """Give a positive literal that binds a new variable, the last one of those bound."""
         rng = self._rng
         helpers = [name for name, of in self._helpers if of == sort]
+        if self._near and sort != "N":
+            unit = next((variable for variable in bound if variable[0] == "U"), None)
+            side = rng.choice(("input", "output", "needs", "gives"))
+            way = "goal({})" if unit is None or rng.random() < 0.1 else f"{side}({unit},{{}})"
+            return way.format(self._variable("O", bound))
         if sort == "U":
             near = [variable for variable in bound if variable[0] == "O"]
             ways = ["use({})"] * 12 + ["times({},_)"] + ["unit({})", f"motion({{}},{self._name('motion')})"]

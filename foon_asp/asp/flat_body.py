@@ -382,7 +382,7 @@ class _Scope:
         if isinstance(part, Literal):
             ways = self._atom(part)
             for _ in range(part.negations):
-                ways = [_never(ways, self._given([part]))]
+                ways = [_never(ways, self._having(part))]
             return ways
         if isinstance(part, Test):
             return self._test(part, against=False)
@@ -394,7 +394,7 @@ class _Scope:
             elif part.literal.negations == 1:
                 against = within._atom(part.literal)
             else:
-                against = [_never(within._atom(part.literal), within._given([part.literal]))]
+                against = [_never(within._atom(part.literal), within._having(part.literal))]
             inner = [
                 Way((*one.items, *other.items))
                 for one in within.ways(part.condition)
@@ -445,6 +445,10 @@ class _Scope:
         scope = copy(self)
         scope._named = {name: self._named[name] for name in self._named.keys() & self._whole}
         return scope
+
+    def _having(self, literal: Literal) -> frozenset[Variable]:
+        """Give the variables of a literal that gives none of them a value."""
+        return frozenset(_variables(self._named[name] for name in _names(literal)))
 
     def _given(self, parts: Iterable[Part]) -> frozenset[Variable]:
         """Give the variables of the whole rule that parts of it have."""
