@@ -71,6 +71,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.read_plan import read_plan as read_plan
     from foon_asp.questions.regret import Regrets as Regrets
     from foon_asp.questions.regret import regret as regret
+    from foon_asp.questions.relax import Relaxed as Relaxed
+    from foon_asp.questions.relax import relax as relax
     from foon_asp.questions.search import Retrieved as Retrieved
     from foon_asp.questions.search import retrieve as retrieve
     from foon_asp.questions.sensitivity import Sensitivity as Sensitivity

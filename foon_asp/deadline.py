@@ -132,6 +132,10 @@ class Deadline:
             if self._within is not None:
                 self._within.interrupt()
 
+    def enough(self) -> None:
+        """Note that all that was asked for is known; what this is within goes on."""
+        self._by = self._by or "a proof"
+
     def out_of_memory(self) -> None:
         """Note that there is no more memory."""
         limit = "" if self.memory is None else f"the memory limit of {size_text(self.memory)}"

@@ -519,7 +519,8 @@ class _Solver:
         return bounds if bounds[first] == best.measure(first) else {first: bounds[first]}
 
     def _report_bound(self, lower: Sequence[int]) -> None:
-        self.heard.reporter.bound(*list(self._bounds(lower).items())[-1])
+        for objective, bound in self._bounds(lower).items():
+            self.heard.reporter.bound(objective, bound)
 
     def _outcome(
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]

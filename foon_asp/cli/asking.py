@@ -19,9 +19,8 @@ from foon_asp.errors import UserError
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.index import module_name, question_name
+from foon_asp.questions.posing import DATA
 from foon_asp.questions.result import Result
-
-_DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
 
 
 def find_question(verb: str) -> Question:
@@ -50,7 +49,7 @@ def ask(
     own = {option.name for option in question.options}
     command = _Command({name: value for name, value in given.items() if name not in own}, command_of)
     with Progress() as progress:
-        who = Caller(progress, session_here(), deadline, lenient=bool(given["lenient"]))
+        who = Caller(progress, session_here(), deadline, lenient=bool(given.get("lenient")))
         with asked_by(who):
             about = question.pose(command, **parameters(question, given, Part.PROBLEM))
         with asked_by(who._replace(read_seconds=command.read_seconds)):
@@ -96,8 +95,8 @@ class _Command:
             flags = sorted(each.opts[0] for each in command.params if each.name in without)
             raise UserError(f"found {words!r}, expected a question without {', '.join(flags)}")
         beside = {option: value for option, value in here.params.items() if _is_given(here, option)}
-        if any(_is_given(own, option) for option in _DATA):
-            beside = {option: value for option, value in beside.items() if option not in _DATA}
+        if any(_is_given(own, option) for option in DATA):
+            beside = {option: value for option, value in beside.items() if option not in DATA}
         defaults = {**(here.default_map or {}), **beside}  # a session has something to say, too
         asked = command.make_context(name, rest, default_map=defaults, obj=here.obj)
         here.call_on_close(asked.close)

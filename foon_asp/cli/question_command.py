@@ -21,6 +21,7 @@ from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
 from foon_asp.questions.contract import Part, Question, not_built
 from foon_asp.questions.index import INDEX
+from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 
 _CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
@@ -32,7 +33,7 @@ def question_command(verb: str) -> click.Command:
     """Give the command of a question; its module is imported only then."""
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answering(question)
-    command = options.data_options(command)
+    command = (options.debug_option if question.pose is no_data else options.data_options)(command)
     for option in _format_options(question):
         command = option(command)
     names = {option.name for option in question.options}

@@ -54,6 +54,17 @@ class GroundProgram:
         for atom, holds in atoms.items():
             self._control.assign_external(parse_term(atom), holds)
 
+    def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
+        """Give for each predicate, by name and arity, the numbers of its atoms: all that the rules derive.
+
+        To be asked of rules without choice, whose atoms grounding alone settles.
+        """
+        atoms = self._control.symbolic_atoms
+        return [
+            [tuple([term.number for term in atom.symbol.arguments]) for atom in atoms.by_signature(*each)]
+            for each in predicates
+        ]
+
     def search(
         self,
         opt_mode: str,

@@ -54,6 +54,10 @@ class Grounded:
         self._program.deadline = deadline
         self._program.assign(atoms)
 
+    def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
+        """Give for each predicate, by name and arity, the numbers of its atoms; raises as the class does."""
+        return self._program.consequences(predicates)
+
     def search(
         self,
         deadline: Deadline,
@@ -77,9 +81,9 @@ class Grounded:
                 on_tree(heard.units)
 
         def bound(lower: list[int]) -> None:
-            result.lower = lower
+            result.lower = max(result.lower, lower)  # a lesser one may come behind; each of them holds
             if on_bound:
-                on_bound(lower)
+                on_bound(result.lower)
 
         try:
             self._begin("searching", deadline)

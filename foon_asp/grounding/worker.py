@@ -47,12 +47,8 @@ def serve() -> None:
             _bound_memory(memory)
             return derive(*described)
         assert program is not None
-        if command == "add":
-            program.add(*given)
-            return None
-        if command == "assign":
-            program.assign(*given)
-            return None
+        if command in {"add", "assign", "consequences"}:
+            return getattr(program, command)(*given)
         assert command == "search"
         opt_mode, predicates = given
         tree, bound = (lambda said, kind=kind: send(answers, (kind, said)) for kind in ("tree", "bound"))

@@ -54,6 +54,11 @@ class WorkerProgram:
         if atoms:
             self._worker.ask(self.deadline, "assign", dict(atoms))
 
+    def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
+        """Give for each predicate, by name and arity, the numbers of its atoms."""
+        found: list[list[tuple[int, ...]]] = self._worker.ask(self.deadline, "consequences", list(predicates))
+        return found
+
     def search(
         self,
         opt_mode: str,

@@ -102,6 +102,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Read the plan of another planner back into a task tree, and execute it.",
         ("read_plan", "PlanRead"),
     ),
+    "relax": Entry(
+        "Plan",
+        "Find the cheapest plan of a planning task without its deletes (h+), and prove it.",
+        ("relax", "Relaxed"),
+    ),
     "draw": Entry(
         "Show",
         "Draw an optimal task tree, a given one, some functional units, or a whole network.",

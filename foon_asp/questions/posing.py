@@ -36,6 +36,9 @@ class Command(Protocol):
         """Stop what is read in a ``with`` block at the limits of the command."""
 
 
+DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
+"""The options of a command that name data."""
+
 Pose = Callable[..., tuple[object, ...]]
 """Makes what a function is asked about, its first arguments: of a :class:`Command`, and the options of the
 problem by name."""
@@ -61,6 +64,11 @@ def the_data(command: Command) -> "tuple[Foon]":
     from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
 
     return (Foon(command.dataset, "the data"),)
+
+
+def no_data(command: Command) -> tuple[()]:
+    """Ask about something that the question names itself; its command has no options for data."""
+    return ()
 
 
 def each_goal(

@@ -1,6 +1,6 @@
 """Is a certificate right? Without any solver."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -13,8 +13,9 @@ from foon_asp.foon import Foon
 from foon_asp.network import Network
 from foon_asp.problem import Problem
 from foon_asp.proof import verify as proof
-from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.posing import the_data
+from foon_asp.questions.arguments import begin
+from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.certified import verified_json, verified_text
 
@@ -72,8 +73,20 @@ class Refused(Result):
         return document("verify", verified=False, reason=self.reason)
 
 
+def _posed(command: Command, task: Sequence[Path]) -> tuple[Foon | Problem]:
+    """Pose the data that are named, or the relaxation of a planning task."""
+    if not task:
+        return the_data(command)
+    if any(map(command.given, DATA)):
+        raise UserError("found options for data beside a planning task: a certificate is about one of them")
+    from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)
+
+    with command.reading():
+        return (read_task(task, begin(None, None)).problem(),)
+
+
 def verify_or_refuse(
-    data: Foon, certificate: Path, *, with_clingo: bool = False
+    data: Foon | Problem, certificate: Path, *, with_clingo: bool = False
 ) -> VerifiedCertificate | Refused:
     """Check a certificate as ``foon-asp verify`` does."""
     try:
@@ -89,12 +102,23 @@ def verify_or_refuse(
     Option(
         "with_clingo", "Check with clingo what is otherwise taken on trust: costs by measures.", Kind.FLAG
     ),
-    pose=the_data,
+    Option(
+        "task",
+        "The planning task that `foon-asp relax` was asked about: DOMAIN.pddl PROBLEM.pddl, or TASK.sas.",
+        Kind.FILE,
+        Part.PROBLEM,
+        default=(),
+        many=True,
+        metavar="[TASK...]",
+        positional=True,
+    ),
+    pose=_posed,
     command=verify_or_refuse,
     help_="""
     \b
     foon-asp solve --goal 'greek salad' --certificate proof.json
     foon-asp verify proof.json
+    foon-asp verify proof.json domain.pddl problem.pddl
 
     The data has to be the same: --data and the other options name it as they do for solve. What units cost by
     a measure of your own is taken on trust, unless --with-clingo checks it; with --measure, the rules have to
