@@ -22,7 +22,7 @@ from foon_asp.certificate import certify
 from foon_asp.engines import Asked, cross_check
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives
+from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives, reach
 from foon_asp.proof import verify
 from foon_asp.reduce import ALL, NONE
 from foon_asp.text.diagnostics import InputError
@@ -535,6 +535,7 @@ def test_rules_of_a_stranger_are_stopped(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::foon_asp.FoonWarning")  # of what is assumed of the real files
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not here")
 def test_makeable_objects_of_the_real_network() -> None:
     foon = foon_asp.load(CORPUS / "universal")
@@ -542,7 +543,7 @@ def test_makeable_objects_of_the_real_network() -> None:
     table = " ".join(f'pays("{m}",{rng.randint(0, 30)}).' for m in sorted(set(foon.network.motions)))
     foon = foon.vary(measures=[MINE, f"{table} cost(random,U,N) :- motion(U,M), pays(M,N)."])
     problem = foon.problem(foon.network.objects[0])
-    goals = rng.sample(sorted(foon_asp.problem.reach(problem).makers), 100)
+    goals = rng.sample(sorted(reach(problem).makers), 100)
     for goal in goals:
         asked = replace(problem, goals=(goal,))
         ours, mine = (solve(asked, parse_objectives([name], asked.measures)) for name in ("inputs", "mine"))
