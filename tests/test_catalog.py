@@ -43,14 +43,14 @@ BESIDE = {
 # what a plain `solve` may import of ours, room by room: what it reads, cuts and shows needs no more, and each
 # module costs every start
 MAY_BE_LOADED = """
-asp: assembly constraint encoding_file exact_success facts measure optimum outcome
-    own_encodings postconditions prepared program scales settings solver
+asp: assembly constraint optimum outcome own_encodings postconditions prepared program settings
+    solver
 bounds: coprime_base hypergraph landmark_cuts lexicographic
 cli: asking click_option exit_code held main named_path options output output_file progress
     question_command verbs weighted_files
 dataset: dataset items names paths reading
 document: json_document
-grounding: run stated
+grounding: stated
 network: counted functional_unit level network node_pattern object_node source spelling
     task_tree unit_prices
 problem: containers costs items number objective order problem relevance restriction root

@@ -7,7 +7,6 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
-from foon_asp.asp.measure import read_measures
 from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_ids
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, UnitPrices, counted, pattern_at_level
@@ -157,6 +156,9 @@ class Dataset:
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.valued(rates, unit_prices)
         if measures is not None:
+            # takes the facts for rules along, which most questions do without
+            from foon_asp.asp.measure import read_measures  # noqa: PLC0415
+
             dataset = dataset.measured(read_measures(measures))
         if kitchen is None and not adding and not without:
             return dataset
