@@ -1,0 +1,287 @@
+"""What rules of one's own cost: each ready-made constraint, against the question without it, in one run.
+
+    python benchmarks/rules.py --family recipe-like --family deep --units 100000 --goals 5
+    python benchmarks/rules.py DIR...      networks in folders, such as a universal FOON
+
+Prints a table in Markdown, a row for each network, objective and constraint, over all goals. A constraint that
+deletes units is held against the same network written without these units, others against the question
+without a rule. Values of constants are chosen from the network and from the best tree without the rule, so
+that they matter: a motion that many units have, one use fewer than the best tree makes, and so on. ``allowed``
+is the greatest time for which a row is good: 1.2 times the other one for a rule that deletes, 5 times for the
+others, each plus 0.1 s. ``--plain SECONDS`` solves each question with ``--reduce none`` as well, for at most
+so long, and compares the answers; the exit code is 1 where two answers differ.
+"""
+
+import argparse
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp.assembly import assemble
+from foon_asp.deadline import Deadline
+from foon_asp.network import NetworkBuilder
+from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
+from foon_asp.reduce import ALL, NONE
+from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.text.goal_name import listed_nodes
+
+COLUMNS = (
+    "data",
+    "objective",
+    "constraint",
+    "units removed",
+    "trees",
+    "proved",
+    "without s",
+    "with s",
+    "times",
+    "worst s",
+    "worst times",
+    "beyond what is allowed",
+)
+DELETING = {"forbid_motion", "forbid_object", "forbid_ingredient", "least_rate"}
+_TRIED = 8  # values of a constant, the most frequent ones, of which the one that leaves most trees is taken
+
+
+class Asked(NamedTuple):
+    """A constraint with its constants."""
+
+    name: str
+    constants: tuple[str, ...]
+
+    def settings(self, **more: object) -> Settings:
+        return Settings((Path(self.name),), constants=self.constants)._replace(**more)  # type: ignore[arg-type]
+
+
+class Measured(NamedTuple):
+    """A question without a rule and with it: seconds, and the outcome with it."""
+
+    without: float
+    with_: float
+    outcome: Outcome
+    allowed: float
+
+
+def main() -> int:
+    """Read the command line, ask everything and print; 1 where two answers differ."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folders", nargs="*", type=Path, metavar="DIR")
+    parser.add_argument("--family", action="append", default=[], metavar="NAME", help="see generate.py")
+    parser.add_argument("--units", action="append", type=int, default=[])
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--goals", type=int, default=5, help="the number of last goals of each")
+    parser.add_argument("--any", action="store_true", help="goals at random among what can be made")
+    parser.add_argument("--constraint", action="append", default=[], help="only these")
+    parser.add_argument("--objectives", default="units,success")
+    parser.add_argument("--containers", type=ContainerRule, default=ContainerRule.STRICT)
+    parser.add_argument("--limit", type=float, default=60, metavar="SECONDS")
+    parser.add_argument("--plain", type=float, metavar="SECONDS", help="also without reductions")
+    arguments = parser.parse_args()
+    print("| " + " | ".join(COLUMNS) + " |")
+    print("|" + "---|" * len(COLUMNS))
+    different = 0
+    for folder in arguments.folders:
+        different += _folder(folder, arguments)
+    with tempfile.TemporaryDirectory() as made:
+        for family in arguments.family:
+            for units in arguments.units or [1000]:
+                folder = Path(made) / f"{family}-{units}"
+                words = [f"--family={family}", f"--units={units}", f"--seed={arguments.seed}"]
+                script = Path(__file__).with_name("generate.py")
+                subprocess.run([sys.executable, script, *words, f"--out={folder}"], check=True, stdout=sys.stderr)
+                different += _folder(folder, arguments)
+    return 1 if different else 0
+
+
+def _folder(folder: Path, arguments: argparse.Namespace) -> int:
+    data = read_data(find_data(folder, (), None, None, None, None), lenient=True)
+
+    def posed(goal: int) -> Problem:
+        network, kitchen = data.network, data.kitchen
+        return Problem(network, kitchen, (goal,), data.rates, data.utensils, arguments.containers)
+
+    if arguments.any:
+        made = sorted(reach(posed(0)).makers)
+        goals = random.Random(arguments.seed).sample(made, min(arguments.goals, len(made)))
+    else:
+        goals = list(dict.fromkeys(node for entry in data.goals for node in listed_nodes(entry, data.network)))
+        goals = goals[-arguments.goals :]
+    problems = [posed(goal) for goal in goals]
+    _ = problems[0].needs, problems[0].makers  # indexes of the network
+    different = 0
+    deadline = Deadline
+    for name in arguments.objectives.split(","):
+        objectives = (Objective(name),)
+        best = [solve(problem, objectives, Settings(deadline=deadline(arguments.limit))) for problem in problems]
+        trees = [outcome for outcome in best if outcome.units]
+        for asked, of in _constraints(trees):
+            if arguments.constraint and asked.name not in arguments.constraint:
+                continue
+            row = [_asked(outcome, objectives, asked, arguments.limit) for outcome in of]
+            if asked.name in DELETING:
+                row = list(_without_units(row, objectives, asked, arguments.limit))
+            _print(folder.name, objectives, asked, row)
+            if arguments.plain:
+                different += sum(_differs(m.outcome, objectives, asked, arguments.plain) for m in row)
+    return different
+
+
+def _constraints(trees: list[Outcome]) -> Iterator[tuple[Asked, list[Outcome]]]:
+    """Give constraints with constants that matter, and the trees of whose goals they are asked."""
+    problem = trees[0].problem
+    network = problem.network
+    motions = Counter(network.motions)
+    labels, ingredients = Counter[str](), Counter[str]()
+    for sides in zip(network.inputs, network.outputs, strict=True):
+        nodes = [network.objects[o] for side in sides for o in side]
+        labels.update({node.label for node in nodes})
+        ingredients.update({item for node in nodes for item in node.ingredients})
+    rates = sorted({rate for rate in (problem.rates or {}).values()})
+    for name, constant, values in (
+        ("forbid_motion", "forbidden_motion", [f'"{m}"' for m, _ in motions.most_common(_TRIED)]),
+        ("forbid_object", "forbidden_object", [f'"{m}"' for m, _ in labels.most_common(_TRIED)]),
+        ("forbid_ingredient", "forbidden_ingredient", [f'"{m}"' for m, _ in ingredients.most_common(_TRIED)]),
+        ("least_rate", "least_rate", [str(int(rate * 10**6)) for rate in rates[1 : 1 + _TRIED]][::-1]),
+    ):
+        asked = [Asked(name, (f"{constant}={value}",)) for value in values]
+        if asked:
+            yield max(asked, key=lambda each: _trees_left(each, trees)), trees
+    for outcome in trees:
+        used = Counter(network.motions[unit] for unit in outcome.units or ())
+        [(often, uses)] = used.most_common(1)
+        motion = f'limited_motion="{often}"'
+        yield Asked("at_most_motion", (motion, f"max_uses={uses - 1}")), [outcome]
+        yield Asked("at_most_units", (f"max_units={len(outcome.units or ())}",)), [outcome]
+        nodes = {o for u in outcome.units or () for o in (*network.inputs[u], *network.outputs[u])}
+        held = {network.objects[o].label for o in nodes}
+        yield Asked("at_most_utensils", (f"max_utensils={len(held & problem.utensils) - 1}",)), [outcome]
+        some = [m for m, _ in used.most_common()]
+        words = (f'earlier_motion="{some[-1]}"', f'later_motion="{some[len(some) // 2]}"')
+        yield Asked("before", words), [outcome]
+        for name, constant, counted, there in (
+            ("require_motion", "required_motion", motions, set(used)),
+            ("require_object", "required_object", labels, held),
+            ("require_ingredient", "required_ingredient", ingredients, held),
+            ("require_intermediate", "required_intermediate", labels, held),
+        ):
+            other = next((value for value, _ in counted.most_common() if value not in there), None)
+            if other is not None:
+                yield Asked(name, (f'{constant}="{other}"',)), [outcome]
+
+
+def _restricted(problem: Problem, asked: Asked) -> Problem:
+    from dataclasses import replace
+
+    rules = assemble(asked.settings(), lambda _: None).understood
+    assert rules is not None
+    found = rules.applied(problem)
+    assert isinstance(found, Restriction)
+    return replace(problem, restriction=found)
+
+
+def _trees_left(asked: Asked, trees: list[Outcome]) -> tuple[int, int]:
+    """Count of how many goals a tree is left, and then the units that are removed."""
+    from dataclasses import replace
+
+    rules = assemble(asked.settings(), lambda _: None).understood
+    assert rules is not None
+    left = removed = 0
+    for outcome in trees:
+        found = rules.applied(outcome.problem)
+        if isinstance(found, Restriction):
+            problem = replace(outcome.problem, restriction=found)
+            left += bool(reach(problem).available[problem.goals[0]])
+            removed = sum(map(found.removed, range(len(problem.network)))) if outcome is trees[-1] else removed
+    return left, removed
+
+
+def _timed(problem: Problem, objectives: tuple[Objective, ...], settings: Settings) -> tuple[float, Outcome]:
+    began = time.perf_counter()
+    outcome = solve(problem, objectives, settings)
+    return time.perf_counter() - began, outcome
+
+
+def _asked(outcome: Outcome, objectives: tuple[Objective, ...], asked: Asked, limit: float) -> Measured:
+    without, _ = _timed(outcome.problem, objectives, Settings(deadline=Deadline(limit)))
+    with_, found = _timed(outcome.problem, objectives, asked.settings(deadline=Deadline(limit)))
+    return Measured(without, with_, found, 5 * without + 0.1)
+
+
+def _without_units(
+    row: list[Measured], objectives: tuple[Objective, ...], asked: Asked, limit: float
+) -> Iterator[Measured]:
+    """Ask the same of the network written without the units that are removed."""
+    whole = row[0].outcome.problem
+    restriction = _restricted(whole, asked).restriction
+    assert restriction is not None
+    builder = NetworkBuilder()
+    for unit in range(len(whole.network)):
+        if not restriction.removed(unit):
+            kept = whole.network.unit(unit)
+            builder.add(kept.motion, list(kept.inputs), list(kept.outputs), whole.network.sources[unit][0])
+    network = builder.build()
+    ids = [network.object_id(node) for node in whole.network.objects]
+    kitchen = frozenset(new for o in whole.kitchen if (new := ids[o]) is not None)
+    for measured in row:
+        goal = ids[measured.outcome.problem.goals[0]]
+        if goal is None:
+            yield measured._replace(without=0.0, allowed=0.1)
+            continue
+        problem = Problem(network, kitchen, (goal,), whole.rates, whole.utensils, whole.containers)
+        _ = problem.needs, problem.makers
+        without, other = _timed(problem, objectives, Settings(deadline=Deadline(limit)))
+        assert other.status is measured.outcome.status
+        if other.costs is not None and measured.outcome.costs is not None:
+            by = levels(objectives)
+            assert other.costs.key(by) == measured.outcome.costs.key(by)
+        yield measured._replace(without=without, allowed=1.2 * without + 0.1)
+
+
+def _differs(outcome: Outcome, objectives: tuple[Objective, ...], asked: Asked, limit: float) -> bool:
+    _, plain = _timed(outcome.problem, objectives, asked.settings(deadline=Deadline(limit), reductions=NONE))
+    if plain.status in {Status.FEASIBLE, Status.UNKNOWN}:
+        return False
+    if plain.costs is None or outcome.costs is None:
+        return plain.costs is not outcome.costs
+    by = levels(objectives)
+    same = plain.costs.key(by) == outcome.costs.key(by)
+    if not same:
+        print(f"DIFFERENT: {asked}, {outcome.problem}: {plain.costs} and {outcome.costs}")
+    return not same
+
+
+def _print(data: str, objectives: tuple[Objective, ...], asked: Asked, row: list[Measured]) -> None:
+    ratios = [m.with_ / m.without for m in row if m.without]
+    beyond = [m.with_ - m.allowed for m in row]
+    removed = ""
+    if asked.name in DELETING:
+        restriction = _restricted(row[0].outcome.problem, asked).restriction
+        assert restriction is not None
+        removed = str(sum(map(restriction.removed, range(len(row[0].outcome.problem.network)))))
+    cells = (
+        data,
+        objectives[0],
+        f"`{asked.name}` {' '.join(asked.constants)}",
+        removed,
+        str(sum(m.outcome.units is not None for m in row)),
+        str(sum(m.outcome.status in {Status.OPTIMAL, Status.INFEASIBLE} for m in row)),
+        f"{median(m.without for m in row):.3f}",
+        f"{median(m.with_ for m in row):.3f}",
+        f"{median(ratios):.1f}" if ratios else "",
+        f"{max(m.with_ for m in row):.3f}",
+        f"{max(ratios):.1f}" if ratios else "",
+        str(sum(each > 0 for each in beyond)) or "",
+    )
+    print("| " + " | ".join(cells) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
