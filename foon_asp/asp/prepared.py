@@ -22,6 +22,9 @@ if TYPE_CHECKING:  # often there is nothing left to ask clingo
     from foon_asp.grounding.run import Run
 
 
+_BY_PERSON = ("_by_person", 1)  # what rules look at that are about who does a unit
+
+
 @dataclass(frozen=True)
 class Prepared:
     """A question, prepared for the search.
@@ -209,6 +212,8 @@ def _applied(first: Prepared, rules: "Rules") -> tuple[Prepared, bool]:
     """
     from foon_asp.asp.rule_kind import Kind  # noqa: PLC0415 (takes clingo along)
 
+    if first.program.bounded and _BY_PERSON in first.program.looked_at:
+        rules = rules.varying({_BY_PERSON})  # bounds may come with it
     if rules.rest and not rules.local:
         return first, False
     found = rules.applied(first.problem, first.deadline)
