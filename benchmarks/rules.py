@@ -31,6 +31,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.deadline import Deadline
 from foon_asp.network import NetworkBuilder
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
+from foon_asp.python_process import _end_all
 from foon_asp.reduce import NONE
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import listed_nodes
@@ -170,8 +171,8 @@ def _constraints(trees: list[Outcome]) -> Iterator[tuple[Asked, list[Outcome]]]:
         motion = f'limited_motion="{often}"'
         yield Asked("at_most_motion", (motion, f"max_uses={uses - 1}")), [outcome]
         yield Asked("at_most_units", (f"max_units={len(outcome.units or ())}",)), [outcome]
-        nodes = {o for u in outcome.units or () for o in (*network.inputs[u], *network.outputs[u])}
-        held = {network.objects[o].label for o in nodes}
+        touched = {o for u in outcome.units or () for o in (*network.inputs[u], *network.outputs[u])}
+        held = {network.objects[o].label for o in touched}
         yield Asked("at_most_utensils", (f"max_utensils={len(held & problem.utensils) - 1}",)), [outcome]
         some = [m for m, _ in used.most_common()]
         words = (f'earlier_motion="{some[-1]}"', f'later_motion="{some[len(some) // 2]}"')
@@ -219,7 +220,7 @@ def _timed(problem: Problem, objectives: tuple[Objective, ...], settings: Settin
 
 def _spent() -> float:
     """Give the seconds of processors spent so far; the processes of clingo are ended, so that they count."""
-    worker_process.end_idle()
+    _end_all()
     times = os.times()
     return times.user + times.system + times.children_user + times.children_system
 
@@ -261,7 +262,9 @@ def _without_units(
 
 
 def _differs(outcome: Outcome, objectives: tuple[Objective, ...], asked: Asked, limit: float) -> bool:
-    _, plain = _timed(outcome.problem, objectives, asked.settings._replace(deadline=Deadline(limit), reductions=NONE))
+    _, plain = _timed(
+        outcome.problem, objectives, asked.settings._replace(deadline=Deadline(limit), reductions=NONE)
+    )
     if plain.status in {Status.FEASIBLE, Status.UNKNOWN}:
         return False
     if plain.costs is None or outcome.costs is None:

@@ -53,7 +53,8 @@ def regret(problem: Problem, rules: Rules) -> object:
 
 
 def assist(problem: Problem, rules: Rules) -> object:
-    found = foon_asp.assist(problem, only=sorted(set(problem.network.motions))[:2], **rules)
+    better = dict.fromkeys(sorted(set(problem.network.motions))[:2], 1)
+    found = foon_asp.assist(problem, person=better, **rules)
     return [(row.most, row.status, row.costs and row.costs.success) for row in found.rows]
 
 
@@ -103,7 +104,7 @@ def drawn(seed: int, folder: Path) -> tuple[Problem, Rules]:
     file = folder / "mine.lp"
     text = "\n".join(rule.text for rule in rules(seed, len(problem.network), sorted(CLASSES)))
     if rng.random() < 0.3:
-        text += "\n:- use(U), _by_person(U), motion(U,M), #count { V : use(V), motion(V,M) } > 1."
+        text += "\n#defined _by_person/1.\n:- use(U), _by_person(U), motion(U,M), #count { V : use(V), motion(V,M) } > 1."
         text += f"\n:- use(U), _by_person(U), output(U,{rng.randrange(len(problem.network.objects))})."
     file.write_text(f"{text}\n")
     return problem, {"constraints": [file]}
@@ -132,7 +133,7 @@ def test_ready_made_constraints_have_the_answers_of_the_plain_program(seeds: ran
         settings = Settings(tuple(map(Path, names)), constants=tuple(constants))
         ours = solve(problem, objectives, settings)
         for others in ({"reductions": NONE}, {"encodings": Path("by_need")}):
-            plain = solve(problem, objectives, settings._replace(**others))  # type: ignore[arg-type]
+            plain = solve(problem, objectives, settings._replace(**others))
             if "encodings" in others and not _by_need(names):
                 continue
             assert ours.status is plain.status, (seed, settings, others)

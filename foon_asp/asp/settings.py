@@ -51,7 +51,7 @@ class Settings(NamedTuple):
 
     ``constraints`` are added to the encodings; ``encodings`` is a folder whose files replace ours;
     ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo as they are.
-    ``reductions`` come before the search, unless there are constraints, bounds or other encodings.
+    ``reductions`` come before the search as far as constraints allow, and not with bounds or other encodings.
     ``relaxed`` are constraints in other words. Trees keep to what is ``bounded``. ``session`` keeps ground
     programs for the next question. ``deadline`` is for everything from the cut to the last proof, and has
     begun.
