@@ -133,7 +133,7 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
             solve(problem, objectives, Settings(deadline=deadline(arguments.limit))) for problem in problems
         ]
         trees = [outcome for outcome in best if outcome.units]
-        for asked, of in _constraints(trees):
+        for asked, of in _constraints(trees, arguments.constraint):
             if arguments.constraint and asked.name not in arguments.constraint:
                 continue
             row = [_asked(outcome, objectives, asked, arguments.limit) for outcome in of]
@@ -145,7 +145,7 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
     return different
 
 
-def _constraints(trees: list[Outcome]) -> Iterator[tuple[Asked, list[Outcome]]]:
+def _constraints(trees: list[Outcome], only: list[str]) -> Iterator[tuple[Asked, list[Outcome]]]:
     """Give constraints with constants that matter, and the trees of whose goals they are asked."""
     problem = trees[0].problem
     network = problem.network
@@ -163,7 +163,7 @@ def _constraints(trees: list[Outcome]) -> Iterator[tuple[Asked, list[Outcome]]]:
         ("least_rate", "least_rate", [str(int(rate * 10**6)) for rate in rates[1 : 1 + _TRIED]][::-1]),
     ):
         asked = [Asked(name, (f"{constant}={value}",)) for value in values]
-        if asked:
+        if asked and (not only or name in only):
             yield max(asked, key=lambda each: _trees_left(each, trees)), trees
     for outcome in trees:
         used = Counter(network.motions[unit] for unit in outcome.units or ())

@@ -104,7 +104,8 @@ def drawn(seed: int, folder: Path) -> tuple[Problem, Rules]:
     file = folder / "mine.lp"
     text = "\n".join(rule.text for rule in rules(seed, len(problem.network), sorted(CLASSES)))
     if rng.random() < 0.3:
-        text += "\n#defined _by_person/1.\n:- use(U), _by_person(U), motion(U,M), #count { V : use(V), motion(V,M) } > 1."
+        text += "\n#defined _by_person/1."
+        text += "\n:- use(U), _by_person(U), motion(U,M), #count { V : use(V), motion(V,M) } > 1."
         text += f"\n:- use(U), _by_person(U), output(U,{rng.randrange(len(problem.network.objects))})."
     file.write_text(f"{text}\n")
     return problem, {"constraints": [file]}
