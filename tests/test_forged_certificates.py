@@ -172,6 +172,13 @@ def older(version: int, **values: Any) -> Forged:
     return Forged({**content, "seal": verify.seal(content)})
 
 
+def own(claims: list[Any], **file: str) -> dict[str, Any]:
+    """Give what is taken on trust of a rule."""
+    text = ":- use(3)."
+    known = {"name": "mine.lp", "sha256": hashlib.sha256(text.encode()).hexdigest(), "text": text}
+    return {"rule": "own", "claims": claims, "constants": [], "files": [known | file], "library": []}
+
+
 KIND = "what is of another kind ends the check with a fault of Python's and not with a refusal"
 WORDS = "the refusal says what is wrong; without it a later one says less"
 
@@ -239,6 +246,10 @@ FORGED: dict[str, Forged] = {
         rules=[{"rule": "at_most_units", "max_units": True}]
     ),
     "_rules: expected rules in order, each of them once": plain(rules=forbid(["sing", "dance"])[::-1]),
+    "_rules: rules of the user's own stand twice": plain(rules=[own([[[3], []]]), own([])]),
+    "_own: a file of rules has no printable name": plain(rules=[own([], name="mine.lp\nverified")]),
+    "_own: a text of rules does not have its digest": plain(rules=[own([], sha256="0" * 64)]),
+    "_own: expected two sets of units in a claim": plain(rules=[own([[[3]]])], stays=KIND),
     "_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
     "_rational: expected a number such as 3/2": plain(proof={"weights": [[0, ["one"]]]}, stays=KIND),
     "_rational: expected a fraction in lowest terms": plain(proof={"weights": [[0, ["2/2"]]]}),
@@ -765,6 +776,18 @@ PARTS = {
             cuts=[[MIDDLE]],
         ),
         ruled,
+    ),
+    # where nothing is dug, mixing is right
+    "a claim bars the last of its units where the others are used": Part(
+        "if len(one) == 1",
+        "if one",
+        plain(
+            **NO_TREE,
+            rules=[own([[[1, 3], []]]), *forbid(["pour"])],
+            cuts=[sorted([END, MIDDLE])],
+            proof=HOPELESS,
+        ),
+        constraint,
     ),
     "no unit of the tree is barred": Part(
         "any(units & barred for",

@@ -12,7 +12,7 @@ from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.lexicographic import Vector
 from foon_asp.bounds.lower_bound import Broken, CheaperError, Hopeless, Packing, Proof, Prover
 from foon_asp.certificate.arrays import Arrays, written
-from foon_asp.certificate.coverage import NOTHING, Coverage
+from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Known, Objective, Problem
 from foon_asp.proof import verify
@@ -88,7 +88,7 @@ def certify(
             proof = prover.prove(arrays.actions(units))
         except CheaperError as cheaper:
             guide = tuple(a for a in cheaper.actions if a < len(problem.network))
-            if not covered.not_covered:
+            if not covered.partial:
                 raise NotBestError(guide, problem.costs(guide)) from None
             break
         if proof is not None:
@@ -170,6 +170,9 @@ def _write(
             costs = [figure if isinstance(figure, int) else written(figure) for figure in figures]
     except verify.LimitError:
         return None
+    graph = arrays.graph
+    members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
+    rules = needed(covered.rules, members) if covered.partial else covered.rules
     content: dict[str, Any] = {
         "format": verify.FORMAT,
         "version": verify.VERSION,
@@ -180,9 +183,9 @@ def _write(
         "objective": [str(objective) for objective in arrays.objectives],
         "digests": verify.digests(
             *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
-            rules=covered.rules,
+            rules=rules,
         ),
-        "rules": [dict(rule) for rule in covered.rules],
+        "rules": [dict(rule) for rule in rules],
         "measures": {
             str(objective): _measure(problem, objective)
             for objective in arrays.objectives

@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,7 +10,7 @@ from foon_asp.asp import Settings
 from foon_asp.asp.constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.asp.own_encodings import is_own
 from foon_asp.problem import Problem
-from foon_asp.proof.constraint import LIBRARY, Question, Rule, meaning
+from foon_asp.proof.constraint import LIBRARY, OWN, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.proof.verify import canonical
 
@@ -30,6 +30,11 @@ class Coverage(NamedTuple):
 
     rules: tuple[Rule, ...] = ()
     not_covered: tuple[str, ...] = ()
+
+    @property
+    def partial(self) -> bool:
+        """Whether trees may have to keep to more than the rules say here."""
+        return bool(self.not_covered) or any(rule["rule"] == OWN for rule in self.rules)
 
     def ruled(self, problem: Problem) -> Ruled:
         """Give what the rules add to the network of a problem."""
@@ -155,6 +160,17 @@ def _named(constraint: Constraint) -> str:
 
 def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
+
+
+def needed(rules: Iterable[Rule], members: Iterable[int]) -> tuple[Rule, ...]:
+    """Leave out of what is claimed the removal of units that would be no members of any cut anyway."""
+    kept = set(members)
+    return tuple(
+        {**rule, "claims": [claim for claim in rule["claims"] if claim[1] or kept.issuperset(claim[0])]}
+        if rule["rule"] == OWN
+        else rule
+        for rule in rules
+    )
 
 
 def _printable(name: str) -> str:

@@ -13,6 +13,7 @@ from foon_asp.certificate.certificate import Certificate, NotBestError, certify,
 from foon_asp.certificate.coverage import Coverage, coverage
 from foon_asp.errors import BugError
 from foon_asp.problem import Problem, levels, multiplies
+from foon_asp.proof.verify import trusted
 
 _WRITTEN = 13_000  # bits of a number that is printed; Python writes at most 4,300 digits
 
@@ -23,38 +24,46 @@ def certify_outcome(
     """Find a certificate for an answer to a question under these settings, and mark the answer with it.
 
     The answer is marked ``certificate`` where the whole of its claim is proved; where only the first of its
-    objectives are, it says for each. Raises :class:`BugError` when a tree that the solver called optimal is
-    not, and when answer and certificate cannot both be true.
+    objectives are, it says for each. Where more than a bound is proved only by taking on trust what rules of
+    the user's own remove and ask for, the answer is left as it is. Raises :class:`BugError` when a tree that
+    the solver called optimal is not, and when answer and certificate cannot both be true.
     """
     began = time.perf_counter()
     covered = coverage(settings)
-    found: Certificate | None = None
-    if outcome.status is Status.INFEASIBLE:
-        found = certify_infeasible(outcome.problem, covered, expired)
-    elif outcome.status is Status.OPTIMAL and outcome.units is not None:
-        try:
-            found = certify(
-                outcome.problem,
-                levels(outcome.objectives),
-                outcome.units,
-                covered,
-                expired,
-                outcome.cuts,
-            )
-        except NotBestError as better:
-            raise _contradiction(
-                outcome, settings, f"there is a better tree, {_tree(outcome, better.units)}"
-            ) from None
+    found = _certified(outcome, settings, covered, expired)
+    if covered.not_covered and (found is None or found.claim == "bound") and outcome.proof is not None:
+        from foon_asp.certificate.own_rules import with_own_rules  # noqa: PLC0415 - it loads clingo
+
+        more = with_own_rules(covered, outcome.problem, settings)
+        trusting = None if more is None else _certified(outcome, settings, more, expired)
+        if more is not None and trusting is not None and trusting.claim != "bound":
+            covered, found = more, trusting
     outcome.seconds["certificate"] = time.perf_counter() - began
     if found is not None:
         why = _at_odds(outcome, found, covered)
         if why is not None:
             raise _contradiction(outcome, settings, why)
-    if found is None or found.claim == "bound":
+    if found is None or found.claim == "bound" or trusted(found.content):
         return outcome, found
     complete = found.claim == "infeasible" or found.certified == levels(outcome.objectives)
     proof = Proof.CERTIFICATE if complete else outcome.proof
     return outcome._replace(proof=proof, certified=found.certified), found
+
+
+def _certified(
+    outcome: Outcome, settings: Settings, covered: Coverage, expired: Callable[[], bool]
+) -> Certificate | None:
+    """Find a certificate among trees that keep to what is covered."""
+    if outcome.status is Status.INFEASIBLE:
+        return certify_infeasible(outcome.problem, covered, expired)
+    if outcome.status is not Status.OPTIMAL or outcome.units is None:
+        return None
+    wanted = levels(outcome.objectives)
+    try:
+        return certify(outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts)
+    except NotBestError as better:
+        why = f"there is a better tree, {_tree(outcome, better.units)}"
+        raise _contradiction(outcome, settings, why) from None
 
 
 def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 from foon_asp.network import Network
 
 # A constraint as a certificate states it: its name as ``rule``, and its values by name.
-Rule: TypeAlias = "Mapping[str, Any]"
+Rule: TypeAlias = Mapping[str, Any]
 Units = frozenset[int]
 Barred = Callable[[Units, Units], Units]
 
@@ -88,13 +88,15 @@ class Constraint(NamedTuple):
 
 
 def meaning(rule: Rule, question: Question) -> Meaning:
-    """Give what a constraint with its values says."""
+    """Give what a constraint with its values says, or what is claimed of rules of the user's own."""
+    if rule["rule"] == OWN:
+        return own(rule)
     return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
     """Give what a constraint looks at of the places of each unit; ``None`` where it does not."""
-    places = LIBRARY[rule["rule"]].places
+    places = None if rule["rule"] == OWN else LIBRARY[rule["rule"]].places
     if places is None:
         return None
     return [sorted(places(network, unit, **_values(rule))) for unit in range(len(network))]
@@ -258,6 +260,28 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
             found = more
 
     return Meaning(barred=barred)
+
+
+OWN = "own"  # in place of a constraint's name: rules of the user's own
+
+
+def own(rule: Rule) -> Meaning:
+    """Give what is claimed of rules of the user's own: no tree has all units of a set and none of another.
+
+    What follows of a claim on a branch: where all units of the first set but one are used, and the second set
+    is left out, that one is barred.
+    """
+    claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
+    removed = [used for used, without in claims if len(used) == 1 and not without]
+    wanted = [[[without]] for used, without in claims if not used]
+    others = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
+
+    def barred(used: Units, without: Units) -> Units:
+        left = [some - used for some, none in others if none <= without]
+        whole = [some for some, none in others if none <= without and some <= used]
+        return frozenset().union(*(one for one in left if len(one) == 1), *whole)
+
+    return Meaning(frozenset().union(*removed), wanted, barred=barred if others else None)
 
 
 LIBRARY: Mapping[str, Constraint] = {

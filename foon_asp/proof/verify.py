@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import Network, UnitPrices, node_at_level
-from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, looked_at, meaning
+from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
 from foon_asp.proof.ruled import Ruled
 
 FORMAT = "foon-asp certificate"
@@ -180,6 +180,11 @@ def seal(certificate: Mapping[str, Any]) -> str:
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
+def trusted(certificate: Mapping[str, Any]) -> Rule | None:
+    """Give what a certificate takes on trust of rules of the user's own, if anything."""
+    return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
+
+
 def verify(
     certificate: Any,
     network: Network,
@@ -208,7 +213,9 @@ def verify(
         level = certificate["level"]
         _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
         rules = (
-            _rules(certificate["rules"]) if version >= _WITH_RULES else _forbidding(certificate["forbidden"])
+            _rules(certificate["rules"], len(network))
+            if version >= _WITH_RULES
+            else _forbidding(certificate["forbidden"])
         )
         found = digests(network, kitchen, rates, utensils, prices, rules)
         for name, since in (("prices", _WITH_PRICES), ("sources", _WITH_RULES)):
@@ -264,7 +271,7 @@ class _Check:
         self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
         _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
-        self.rules = rules
+        self.rules, self.claimed = rules, 0
         rate = [(rates or {}).get(motion) for motion in network.motions]
         known = (rate.__getitem__, self._each_price(prices).__getitem__)
         asked = Question(network, kitchen, self.goals, utensils, *known, self.needs, self.gives)
@@ -428,7 +435,7 @@ class _Check:
 
     def _barred(self, place: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Give the units that a rule bars from trees that use some members and have none of others."""
-        self._spend(len(self.network))
+        self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[place](units, without)
 
@@ -595,6 +602,7 @@ class _Check:
     def _meaning(self, rule: Rule, question: Question) -> Meaning:
         """Give what a rule says of the network."""
         self._spend(_STEPS_RULE * (len(self.network) + len(self.network.objects)))
+        self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning(rule, question)
 
     def _cost(self, member: int) -> Amount:
@@ -831,22 +839,44 @@ def _goal(value: Any, network: Network) -> int:
     return found
 
 
-def _rules(value: Any) -> tuple[Rule, ...]:
-    """Read the constraints that a claim is about."""
+def _rules(value: Any, units: int) -> tuple[Rule, ...]:
+    """Read the constraints that a claim is about, and what it takes on trust of rules of the user's own."""
     rules = [_object(rule) for rule in _list(value)]
     if len(rules) > _RULES:
         raise LimitError(f"it has more than {_RULES} rules")
     for rule in rules:
         name = rule.get("rule")
+        if name == OWN:
+            _own(rule, units)
+            continue
         _require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
         values = LIBRARY[rule["rule"]].values
         _object(rule, ("rule", *values))
         for key, kind in values.items():
             _require(type(rule[key]) is kind, "a value of a rule is of another kind")
             _names(rule[key] if kind is list else [rule[key]] if kind is str else [])
+    _require(sum(rule["rule"] == OWN for rule in rules) <= 1, "rules of the user's own stand twice")
     texts = [canonical(rule) for rule in rules]
     _require(texts == sorted(set(texts)), "expected rules in order, each of them once")
     return tuple(rules)
+
+
+def _own(rule: Rule, units: int) -> None:
+    """Check the form of what is taken on trust: texts of rules, their digests, and claims of units."""
+    _object(rule, ("rule", "claims", "constants", "files", "library"))
+    for key in ("constants", "library"):
+        _names(rule[key])
+    for file in _list(rule["files"]):
+        _object(file, ("name", "sha256", "text"))
+        _names([file["name"]])
+        _names([file["text"]])
+        _require(file["name"].isprintable(), "a file of rules has no printable name")
+        sha = hashlib.sha256(file["text"].encode()).hexdigest()
+        _require(file["sha256"] == sha, "a text of rules does not have its digest")
+    for claim in _list(rule["claims"]):
+        _require(isinstance(claim, list) and len(claim) == 2, "expected two sets of units in a claim")
+        for side in claim:
+            _numbers(side, units, ascending=side != [])
 
 
 def _forbidding(value: Any) -> tuple[Rule, ...]:

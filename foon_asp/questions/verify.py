@@ -100,7 +100,9 @@ def verify_or_refuse(
         "certificate", "The file with the certificate.", Kind.FILE, metavar="CERTIFICATE", positional=True
     ),
     Option(
-        "with_clingo", "Check with clingo what is otherwise taken on trust: costs by measures.", Kind.FLAG
+        "with_clingo",
+        "Check with clingo what is otherwise taken on trust: costs by measures, and rules of your own.",
+        Kind.FLAG,
     ),
     Option(
         "task",
@@ -121,8 +123,9 @@ def verify_or_refuse(
     foon-asp verify proof.json domain.pddl problem.pddl
 
     The data has to be the same: --data and the other options name it as they do for solve. What units cost by
-    a measure of your own is taken on trust, unless --with-clingo checks it; with --measure, the rules have to
-    be those of the certificate. Exits with 0 when the certificate is right and with 1 when it is refused.
+    a measure of your own, and what rules of your own say, is taken on trust, unless --with-clingo checks it;
+    with --measure, the rules have to be those of the certificate. Exits with 0 when the certificate is right
+    and with 1 when it is refused.
     """,
 )
 def verify(
@@ -130,7 +133,8 @@ def verify(
 ) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
 
-    What units cost by a measure of the user's own is taken on trust, and ``verified.trusted`` lists it.
+    What units cost by a measure of the user's own is taken on trust, and ``verified.trusted`` lists it. So is
+    what rules of the user's own say.
 
     Parameters:
         data: The data, as loaded, or a problem made from them.
@@ -164,8 +168,14 @@ def verify(
         ours = dataset.measures.get(measure.name)
         if ours is not None and ours.text != measure.rules:
             raise proof.RefusedError(f"the rules of {measure.name} are not those that are given")
-    if with_clingo and verified.trusted:
-        _check_with_clingo(dataset.problem(verified.goals, verified.containers, everything=True), verified)
+    own = proof.trusted(content)
+    if with_clingo and (verified.trusted or own is not None):
+        problem = dataset.problem(verified.goals, verified.containers, everything=True)
+        _check_with_clingo(problem, verified)
+        if own is not None:
+            from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
+
+            check_with_clingo(content, own, problem, Deadline(_SECONDS))
     return VerifiedCertificate(verified, read.network, content, with_clingo)
 
 

@@ -9,8 +9,8 @@ from foon_asp.document.json_document import document, figures_json, goals_json, 
 from foon_asp.escapes import escaped
 from foon_asp.network import Network, counted
 from foon_asp.problem import parse_objectives
-from foon_asp.proof.constraint import Rule
-from foon_asp.proof.verify import Verified
+from foon_asp.proof.constraint import OWN, Rule
+from foon_asp.proof.verify import Verified, trusted
 from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # the rest of these rooms takes clingo along, which `verify` has to do without
@@ -24,6 +24,11 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         return ["proof: none, so there is nothing to certify"]
     if certificate is None:
         return [f"proof: {outcome.proof} (no certificate was found, and nothing is written)"]
+    own = trusted(certificate.content)
+    if own is not None and certificate.claim != "bound":
+        proved = "that there is no tree" if certificate.claim == "infeasible" else "the tree best"
+        given = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
+        return [f"proof: {outcome.proof}; {given}", *(f"  {line}" for line in _on_trust(own, None))]
     if certificate.claim == "bound":
         return [
             f"proof: {outcome.proof}; the certificate {file} proves a bound on all trees, "
@@ -78,7 +83,10 @@ def verified_text(
         lines.append(
             f"verified: no task tree is better by {', then '.join(verified.objectives)} ({rule}): {figures}"
         )
-    lines += [f"among the trees that keep to {_rule(rule)}" for rule in verified.rules]
+    lines += [f"among the trees that keep to {_rule(rule)}" for rule in verified.rules if rule["rule"] != OWN]
+    own = trusted(content)
+    if own is not None:
+        lines += _on_trust(own, verified.tree, "checked with clingo" if with_clingo else "taken on trust")
     lines += [f"not covered, so among all trees: {name}" for name in verified.not_covered]
     for measure in verified.trusted:
         what = (
@@ -95,13 +103,17 @@ def verified_json(verified: Verified, network: Network, with_clingo: bool = Fals
     goals = goals_json(network, verified.goals)
     objectives = parse_objectives(verified.objectives, [measure.name for measure in verified.trusted])
     costs = None if verified.costs is None else dict(zip(objectives, verified.costs, strict=True))
+    own = [rule for rule in verified.rules if rule["rule"] == OWN]
     return document(
         "verify",
         **head_json(goals, verified.containers, verified.level, objectives),
         verified=True,
         claim=verified.claim,
         costs=None if costs is None else figures_json(costs),
-        rules=list(map(dict, verified.rules)),
+        rules=[dict(rule) for rule in verified.rules if rule["rule"] != OWN],
+        trusted=next(
+            (_trusted_json(rule, with_clingo) for rule in verified.rules if rule["rule"] == OWN), None
+        ),
         measures=[
             {
                 "name": measure.name,
@@ -115,6 +127,27 @@ def verified_json(verified: Verified, network: Network, with_clingo: bool = Fals
         tree=None if verified.tree is None else list(verified.tree),
         cuts=verified.cuts,
     )
+
+
+def _on_trust(own: Rule, tree: tuple[int, ...] | None, how: str = "taken on trust") -> list[str]:
+    """Say what is taken on trust of rules of the user's own, by what they are called, or was checked."""
+    names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in own["files"]]
+    names += [*own["library"], *own["constants"]]
+    removed = [used[0] for used, without in own["claims"] if len(used) == 1 and not without]
+    wanted = sum(not used for used, _ in own["claims"])
+    others = len(own["claims"]) - len(removed) - wanted
+    said = [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
+    said += [f"every tree has a unit of {wanted} {'set' if wanted == 1 else 'sets'}"] if wanted else []
+    said += [f"{others} {'set breaks' if others == 1 else 'sets break'} a rule"] if others else []
+    said += ["the tree keeps to them"] if tree is not None or not said else []
+    return [escaped(f"among the trees that keep to {', '.join(names)}; {how}: {'; '.join(said)}")]
+
+
+def _trusted_json(own: Rule, checked: bool) -> Json:
+    claims = [{"used": used, "without": without} for used, without in own["claims"]]
+    files = [{"name": file["name"], "sha256": file["sha256"]} for file in own["files"]]
+    given = {"files": files, "library": own["library"], "constants": own["constants"]}
+    return {**given, "claims": claims, "checked": checked}
 
 
 def _rule(rule: Rule) -> str:

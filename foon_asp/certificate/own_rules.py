@@ -1,0 +1,109 @@
+"""What rules of the user's own remove and ask for: taken on trust by certificates, and checked by clingo."""
+
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.constraint import Constraint, LibraryUse, RuleText, find_constraint, named_constraint
+from foon_asp.asp.encoding import read_encoding
+from foon_asp.asp.encoding_file import included_files
+from foon_asp.asp.own_encodings import is_own
+from foon_asp.asp.rules import Contradiction
+from foon_asp.asp.settings import Bounded
+from foon_asp.certificate.coverage import Coverage
+from foon_asp.deadline import Deadline
+from foon_asp.errors import UserError
+from foon_asp.problem import Objective, Problem
+from foon_asp.proof.constraint import OWN, Rule
+from foon_asp.proof.verify import LimitError, RefusedError, canonical
+from foon_asp.reduce import NONE
+
+
+def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> Coverage | None:
+    """Cover rules of the user's own by what they remove and ask for; ``None`` where nothing is known of that.
+
+    What the covered rules remove and ask for already is left out, since it is not taken on trust.
+    """
+    rules = assemble(settings, lambda _: None).understood
+    found = None if rules is None else rules.applied(problem, settings.begun)
+    if found is None:
+        return None
+    claims: list[list[list[int]]] = []
+    if isinstance(found, Contradiction):
+        claims.append([[], []])
+    else:
+        ruled = covered.ruled(problem)
+        asked = {frozenset(makers) for makers in ruled.makers.values()}
+        gone = (u for u in range(len(problem.network)) if u not in ruled.removed and found.removed(u))
+        claims += ([[unit], []] for unit in gone)
+        claims += ([[], sorted(units)] for units in found.required if units not in asked)
+    given = [find_constraint(each) for each in settings.constraints]
+    own: dict[str, Any] = {
+        "rule": OWN,
+        "claims": claims,
+        "constants": sorted(set(settings.constants)),
+        "files": [_file(each) for each in dict.fromkeys(given) if not _is_library(each)],
+        "library": sorted({_written(each) for each in given if _is_library(each)}),
+    }
+    return Coverage(tuple(sorted((*covered.rules, own), key=canonical)))
+
+
+def check_with_clingo(
+    content: Mapping[str, Any], own: Rule, problem: Problem, deadline: Deadline | None = None
+) -> None:
+    """Let clingo check what a certificate takes on trust; the problem is the one that it is about.
+
+    Asks for a tree that keeps to the rules and of which a claim is not true, and whether its own tree keeps
+    to them. Raises :class:`RefusedError` where something is not true, and where clingo cannot be asked.
+    """
+    given = [RuleText(file["text"]) for file in own["files"]]
+    found = (*given, *map(named_constraint, own["library"]))
+    how = Settings(found, constants=tuple(own["constants"]), reductions=NONE, deadline=deadline)
+    wrong = "".join(f"_wrong :- {_claim(*claim)}.\n" for claim in own["claims"])
+    if wrong and _some_tree(content, problem, how, f"{wrong}:- not _wrong.\n"):
+        raise RefusedError("what is taken on trust is not true: clingo finds a tree without it")
+    if content["tree"] is not None:
+        chosen = set(content["tree"])
+        fixed = (f":- {'not ' * (u in chosen)}use({u}).\n" for u in range(len(problem.network)))
+        if not _some_tree(content, problem, how, "".join(fixed)):
+            raise RefusedError("the tree does not keep to the rules: clingo says so")
+
+
+def _some_tree(content: Mapping[str, Any], problem: Problem, how: Settings, rules: str) -> bool:
+    """Ask clingo whether there is a tree that keeps to more rules, among all units that can be made."""
+    ours = set(Objective)
+    objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
+    try:
+        found = solve(problem, objectives, how._replace(bounded=Bounded(rules, ())))
+    except UserError as error:
+        raise RefusedError(f"clingo cannot be asked what is taken on trust: {error}") from None
+    if found.status is Status.UNKNOWN:
+        raise LimitError("clingo does not finish with what is taken on trust")
+    return found.status is not Status.INFEASIBLE
+
+
+def _claim(used: list[int], without: list[int]) -> str:
+    literals = [*(f"use({unit})" for unit in used), *(f"not use({unit})" for unit in without)]
+    return ", ".join(literals) or "#true"
+
+
+def _is_library(constraint: Constraint) -> bool:
+    return isinstance(constraint, LibraryUse) or (isinstance(constraint, Path) and is_own(constraint))
+
+
+def _written(constraint: Constraint) -> str:
+    return constraint.stem if isinstance(constraint, Path) else str(constraint)
+
+
+def _file(constraint: Constraint) -> dict[str, str]:
+    """Give the text of rules; of a file that includes others, all that it says."""
+    if isinstance(constraint, Path):
+        alone = len(included_files(constraint)) == 1
+        text = constraint.read_text("utf-8") if alone else read_encoding(constraint).text
+    else:
+        text = str(constraint)
+    sha = hashlib.sha256(text.encode()).hexdigest()
+    return {"name": constraint.name, "sha256": sha, "text": text}

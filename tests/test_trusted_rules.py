@@ -1,0 +1,150 @@
+"""Certificates under rules of the user's own: what they take on trust, and clingo's check of that."""
+
+import hashlib
+import json
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.constraint import given_constraint
+from foon_asp.certificate import certify_outcome
+from foon_asp.certificate.own_rules import check_with_clingo
+from foon_asp.problem import ContainerRule, Objective
+from foon_asp.proof.verify import seal, trusted, verify
+from tests import oracle
+from tests.conftest import Cli
+from tests.constraint_oracle import keeps
+from tests.random_problems import MOTIONS, random_problem
+
+NO_CRUSHING = ':- use(U), motion(U,"crush").\n'
+DRAINING = ':- not use(U) : motion(U,"drain").\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (NO_CRUSHING, "no tree has one of the units 27; the tree keeps to them"),
+        (DRAINING, "every tree has a unit of 1 set; the tree keeps to them"),
+        ('sharp("crush"). bad(M) :- sharp(M).\n:- use(U), motion(U,M), bad(M).\n', "no tree has one of"),
+    ],
+)
+def test_what_is_taken_on_trust_is_said_and_checked(cli: Cli, tmp_path: Path, text: str, said: str) -> None:
+    mine, file = tmp_path / "mine.lp", tmp_path / "proof.json"
+    mine.write_text(text)
+    asked = ("certify", "--goal", "ice", "--constraint", mine, "-o", file)
+    found = cli(*asked)
+    assert found.code == 0
+    assert "but takes on trust what rules say" in found.err
+    mine.unlink()  # the certificate has all that it is about
+    plain = cli("verify", file)
+    assert plain.code == 0
+    assert "among the trees that keep to mine.lp (SHA-256 " in plain.out
+    assert f"taken on trust: {said}" in plain.out
+    checked = cli("verify", file, "--with-clingo")
+    assert checked.code == 0
+    assert f"checked with clingo: {said}" in checked.out
+    assert cli("verify", file, "--format", "json").json["trusted"]["checked"] is False
+    assert cli("verify", file, "--with-clingo", "--format", "json").json["trusted"]["checked"] is True
+
+
+def test_an_answer_that_rests_on_trust_is_not_called_certified(cli: Cli, tmp_path: Path) -> None:
+    ran = cli(
+        "solve", "--goal", "ice", "--rule", NO_CRUSHING, "--certificate", tmp_path / "p", "--format", "json"
+    )
+    assert ran.json["proof"] == "cuts"
+
+
+def changed(cli: Cli, folder: Path, text: str, change: Any) -> str:
+    """Give what clingo says of a certificate in which what is taken on trust is another."""
+    mine, file = folder / "mine.lp", folder / "proof.json"
+    mine.write_text(text)
+    assert cli("certify", "--goal", "ice", "--constraint", mine, "-o", file).code == 0
+    content = json.loads(file.read_text())
+    change(content, content["rules"][0])
+    content["seal"] = seal(content)
+    file.write_text(json.dumps(content))
+    assert cli("verify", file).code == 0  # which is why it says what it takes on trust
+    ran = cli("verify", file, "--with-clingo")
+    assert ran.code == 1
+    return ran.out
+
+
+def test_a_claim_that_does_not_follow_is_refused(cli: Cli, tmp_path: Path) -> None:
+    false = "refused: what is taken on trust is not true: clingo finds a tree without it\n"
+
+    def more(content: Any, own: Any) -> None:
+        own["claims"].append([[0], []])
+
+    def narrower(content: Any, own: Any) -> None:
+        (claim,) = own["claims"]
+        own["claims"] = [[[], [unit for unit in claim[1] if unit in content["tree"]]]]
+
+    assert changed(cli, tmp_path, NO_CRUSHING, more) == false
+    assert changed(cli, tmp_path, DRAINING, narrower) == false
+
+
+def test_a_tree_that_breaks_the_rules_is_refused(cli: Cli, tmp_path: Path) -> None:
+    def weaker(content: Any, own: Any) -> None:
+        own["claims"], own["files"][0]["text"] = [], ":- not use(0).\n"
+        content.update(claim="bound", bound=["0"], cuts=[], proof={"weights": []})
+        own["files"][0]["sha256"] = hashlib.sha256(own["files"][0]["text"].encode()).hexdigest()
+
+    said = "refused: the tree does not keep to the rules: clingo says so\n"
+    assert changed(cli, tmp_path, NO_CRUSHING, weaker) == said
+
+
+def test_rules_that_clingo_cannot_take_are_refused(cli: Cli, tmp_path: Path) -> None:
+    def script(content: Any, own: Any) -> None:
+        text = "#script (python) print(1) #end."
+        own["files"][0].update(text=text, sha256=hashlib.sha256(text.encode()).hexdigest())
+
+    assert changed(cli, tmp_path, NO_CRUSHING, script).startswith("refused: clingo cannot be asked")
+
+
+RULES: dict[str, dict[str, str]] = {
+    ':- use(U), motion(U,"{0}").': {"rule": "forbid_motion", "forbidden_motion": "{0}"},
+    ':- not use(U) : motion(U,"{0}").': {"rule": "require_motion", "required_motion": "{0}"},
+    ':- use(U), input(U,O), label(O,"salt"), motion(U,"{0}").': {},
+}
+
+
+@pytest.mark.parametrize("part", [8, pytest.param(1, marks=pytest.mark.slow)])
+def test_answers_under_random_rules_of_the_users_own(part: int) -> None:
+    met = set()
+    for seed in range(0, 240, part):
+        rng = random.Random(seed)
+        problem = random_problem(seed, list(ContainerRule)[seed % 2])
+        motion, limited = rng.choice(MOTIONS), rng.choice(MOTIONS)
+        text, same = rng.choice([*RULES.items()])
+        given = [given_constraint(text.format(motion))]
+        rules: list[Any] = [{name: value.format(motion) for name, value in same.items()}]
+        if rng.random() < 0.5:
+            given.append(given_constraint(f"at_most_motion:limited_motion={limited},max_uses=1"))
+            rules.append({"rule": "at_most_motion", "limited_motion": limited, "max_uses": 1})
+        settings = Settings(tuple(given))
+        outcome, found = certify_outcome(solve(problem, (Objective.UNITS,), settings), settings)
+        assert found is not None
+        met.add((found.claim, trusted(found.content) is not None))
+        claim = verify(
+            found.content,
+            problem.network,
+            problem.kitchen,
+            problem.rates,
+            problem.utensils,
+            problem.unit_prices,
+        )
+        own = trusted(found.content)
+        if own is not None:
+            check_with_clingo(found.content, own, problem)
+        if same:
+            kept = [t for t in oracle.trees(problem) if all(keeps(problem, t, rule) for rule in rules)]
+            assert (outcome.status is Status.INFEASIBLE) == (not kept)
+            if claim.claim == "optimal":
+                assert claim.costs is not None
+                assert claim.costs[0] == min(map(len, kept))
+            else:
+                assert claim.claim == "infeasible"
+    assert {("optimal", True), ("infeasible", True)} <= met
