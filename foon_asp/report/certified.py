@@ -111,9 +111,7 @@ def verified_json(verified: Verified, network: Network, with_clingo: bool = Fals
         claim=verified.claim,
         costs=None if costs is None else figures_json(costs),
         rules=[dict(rule) for rule in verified.rules if rule["rule"] != OWN],
-        trusted=next(
-            (_trusted_json(rule, with_clingo) for rule in verified.rules if rule["rule"] == OWN), None
-        ),
+        trusted=next((_trusted_json(rule, with_clingo) for rule in own), None),
         measures=[
             {
                 "name": measure.name,
