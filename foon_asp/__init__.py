@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from foon_asp.problem import Objective as Objective
     from foon_asp.problem import Problem as Problem
     from foon_asp.problem import UsedUp as UsedUp
+    from foon_asp.proof.replay import Copy as Copy
     from foon_asp.proof.simulation import Simulation as Simulation
     from foon_asp.proof.simulation import Verdict as Verdict
     from foon_asp.proof.verify import RefusedError as RefusedError
@@ -82,6 +83,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.solve import solve as solve
     from foon_asp.questions.solve_soft import SoftAnswer as SoftAnswer
     from foon_asp.questions.solve_soft import solve_soft as solve_soft
+    from foon_asp.questions.trace import Traced as Traced
+    from foon_asp.questions.trace import trace as trace
     from foon_asp.questions.tree import Tree as Tree
     from foon_asp.questions.units import Units as Units
     from foon_asp.questions.units import units as units
@@ -106,6 +109,7 @@ _ROOMS = {
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
+    "proof.replay": ("Copy",),
     "proof.simulation": ("Simulation", "Verdict"),
     "proof.verify": ("RefusedError",),
     "text.line": ("parse_node",),

@@ -152,7 +152,8 @@ def test_an_example_runs(name: str) -> None:
 def test_an_unknown_objective_is_an_error_that_is_named(name: str) -> None:
     given: dict[str, Any] = {"soft": {}} if name == "solve_soft" else {}
     with pytest.raises(UserError, match="'speed'"):
-        FUNCTIONS[name](foon_asp.load().problem("ice", "tea"), "speed", **given)
+        plan: tuple[Any, ...] = ((),) if name == "trace" else ()
+        FUNCTIONS[name](foon_asp.load().problem("ice", "tea"), *plan, "speed", **given)
     assert "UserError" in ENTRY.findall(sections(inspect.getdoc(FUNCTIONS[name]) or "")["Raises"])
 
 

@@ -71,6 +71,11 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
     "read-plan": [("PLAN", "--map", "MAP")],
     "relax": [("DOMAIN", "PROBLEM")],
     "batch": [("QUESTIONS", "--results", "ROWS")],
+    "trace": [
+        ("TREE", "--goal", "ice", "--items", "used-up"),
+        ("TREE", "--goal", "ice", "--items", "used-up", "--failed", "2"),
+        ("TORN", "--goal", "ice"),
+    ],
     "units": [("--unit", "3", "--explain-items"), ("--unit", "3")],
     "stats": [()],
     "facts": [("--goal", "ice"), ("--goal", "ice", *SOFT[:2])],
@@ -139,7 +144,7 @@ def answers() -> dict[str, click.Command]:
 def test_every_verb_that_answers_has_a_schema() -> None:
     assert answers().keys() == ASKED.keys() == VERBS.keys() - OTHERS
     kinds = {"answer" if verb == "solve" else verb for verb in ASKED}
-    assert {*schema_kinds()} == kinds | {"batch-row", "compare-row", "pddl-map"}
+    assert {*schema_kinds()} == kinds | {"batch-row", "compare-row", "pddl-map", "steps"}
 
 
 @pytest.mark.parametrize(("verb", "words"), CASES)

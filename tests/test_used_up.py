@@ -1,5 +1,6 @@
 """Items that are used up: the rule, the replay of plans, and the best plans against brute force."""
 
+import json
 from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
@@ -288,3 +289,63 @@ def test_other_questions_say_by_name_that_they_are_not_built_for_it(cli: Cli) ->
         ran = cli("solve", "--goal", "ice", "--items", "used-up", *words)
         assert ran.code == 2
         assert f"solve {words[0]} is not built for items that are used up" in ran.err
+
+
+# --- Rules of the user's.
+
+
+@pytest.mark.parametrize(
+    ("constraint", "constants", "expected"),
+    [
+        ("forbid_motion", {"forbidden_motion": "crush"}, 3),
+        ("require_motion", {"required_motion": "pound"}, 3),
+        ("at_most_units", {"max_units": 2}, 2),
+        (":- times(U,N), N > 1.", {}, 2),
+        (':- use(U), motion(U,"crush").', {}, 3),
+    ],
+)
+def test_rules_hold_for_plans(constraint: str, constants: dict[str, int | str], expected: int) -> None:
+    problem = foon_asp.load().problem("ice", items="used-up")
+    answer = foon_asp.solve(problem, constraints=constraint, constants=constants)
+    assert (answer.status, answer.costs and answer.costs.units) == (Status.OPTIMAL, expected)
+
+
+@pytest.mark.parametrize(
+    ("constraint", "message"),
+    [
+        ("before", "the constraint before is not built"),
+        ("require_intermediate", "the constraint require_intermediate is not built"),
+        (":- available(1).", "rules over available/1 are not built"),
+        (":- use(U), input(U,O), output(V,O), not use(V).", "looks at more than the units of a plan"),
+    ],
+)
+def test_rules_that_look_at_more_are_refused(constraint: str, message: str) -> None:
+    problem = foon_asp.load().problem("ice", items="used-up")
+    with pytest.raises(UserError, match=message):
+        foon_asp.solve(problem, constraints=constraint)
+
+
+# --- After a failure.
+
+
+def test_after_every_step_the_rest_of_the_plan_is_what_is_still_to_do() -> None:
+    problem = foon_asp.load().problem("macaroni", items="used-up")
+    plan = foon_asp.solve(problem).tree
+    assert plan is not None
+    for failed in range(1, len(plan) + 1):
+        traced = foon_asp.trace(problem, plan, failed=failed)
+        assert traced.answer is not None
+        assert traced.answer.costs is not None
+        assert traced.answer.costs.units == len(plan) - failed + 1
+        assert "what was left of the plan is still the best" in traced.text()
+    with pytest.raises(UserError, match="expected one up to which the plan runs: 1 to 9"):
+        foon_asp.trace(problem, plan, failed=10)
+
+
+def test_steps_wait_for_what_makes_and_for_what_reads() -> None:
+    answer = foon_asp.solve(foon_asp.load().problem("greek salad", items="used-up"))
+    steps = json.loads(answer.steps())["steps"]
+    assert [step["step"] for step in steps] == list(range(1, 34))
+    assert all(earlier < step["step"] for step in steps for earlier in step["after"])
+    cut = next(step for step in steps if step["motion"] == "cut")
+    assert "knife" in {node["label"] for node in cut["acted_on"] + cut["tools"]}

@@ -102,7 +102,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
             and _OF_ONE_SEARCH not in looked_at
             and not any(each.assigns for each in extra)
         )
-        if extra and not (encodings or used_up) and relaxed is None:
+        if extra and not encodings and relaxed is None:
             from foon_asp.asp import rules as user_rules  # noqa: PLC0415
 
             understood = user_rules.Rules(extra, constants[1::2], endless)

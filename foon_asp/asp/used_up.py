@@ -2,11 +2,12 @@
 
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from graphlib import TopologicalSorter
+from pathlib import Path
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.exact_success import RateScale, rate_scale
@@ -15,15 +16,19 @@ from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import Reporter
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
 from foon_asp.errors import BugError, UserError
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies, reach
+from foon_asp.problem import Costs, Objective, Problem, Restriction, levels, multiplies, reach
 from foon_asp.proof.replay import replay_for
 
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
 
+_TIMES = ("times", 2)
 _LARGEST = 10**9  # a cost that is not rounded
 _FINE = 10**6  # steps of the greatest cost, where costs are rounded
-_MOST_COPIES = 64  # executions of a unit, up to which a first plan is looked for
+# Constraints of ours about what is available before something else, and predicates of that kind.
+_NOT_BUILT = ("before", "require_intermediate")
+_NOT_READ = frozenset({"available", "executes", "taken", "makes"})
+_MOST_COPIES = 4  # executions of a unit beyond its count, up to which a first plan is looked for
 
 
 def solve_used_up(
@@ -44,6 +49,11 @@ def solve_used_up(
 
 
 def _require_built(settings: Settings) -> None:
+    """Raise :class:`UserError` for what is not built for items that are used up, by name."""
+    for each in settings.constraints:
+        name = Path(each.name.partition(":")[0]).stem
+        if name in _NOT_BUILT:
+            raise UserError(f"the constraint {name} is not built for items that are used up")
     for given, what in (
         (settings.encodings, "other encodings (--encodings)"),
         (settings.relaxed, "soft constraints"),
@@ -67,7 +77,9 @@ class _Solver:
         self.problem, self.objectives, self.levels = problem, objectives, asked
         self.deadline, self.reporter = settings.begun, reporter
         self.program = assemble(settings, reporter.warning, used_up=True)
-        self.settings = settings
+        self._require_rules()
+        self.removed: Callable[[int], bool] = lambda _: False
+        self.required: tuple[frozenset[int], ...] = ()
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
         self.bounds: dict[Objective, int | Fraction] = {}
@@ -75,26 +87,70 @@ class _Solver:
     def solve(self) -> Outcome:
         began = time.perf_counter()
         try:
+            if not self._apply_rules():
+                return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
             with self.deadline.watched("cutting the network", late=True):
                 units = self._cut()
             self._spent("cut", began)
             if units is None:
                 return self._outcome(Status.INFEASIBLE, Proof.CUTS)
             return self._search(units)
-        except (Stopped, KeyboardInterrupt):
-            self.deadline.interrupt()
+        except (Stopped, KeyboardInterrupt) as stop:
+            if isinstance(stop, KeyboardInterrupt):
+                self.deadline.interrupt()
             return self._outcome(Status.UNKNOWN if self.best is None else Status.FEASIBLE, None)
+
+    def _require_rules(self) -> None:
+        """Raise :class:`UserError` for rules of the user's that look at more than a plan says."""
+        for name, arity in sorted(self.program.looked_at):
+            if name.lstrip("_") in _NOT_READ:
+                raise UserError(f"rules over {name}/{arity} are not built for items that are used up")
+        rules = self.program.understood
+        if rules is not None and not rules.local:
+            rule = next(rule for rule in rules.rules if not rule.local)
+            raise UserError(
+                f"{rule.source}: this rule looks at more than the units of a plan ({rule.further}), which is "
+                "not built for items that are used up"
+            )
+
+    def _apply_rules(self) -> bool:
+        """Take what rules say of single units, and of sets of which one is needed; whether they allow a plan.
+
+        A rule about how often a unit is executed is left to the search, like all others: what is said of it
+        is meant for items that last, where that is once.
+        """
+        rules = self.program.understood
+        if rules is None or _TIMES in self.program.looked_at:
+            return True
+        found = rules.applied(self.problem, self.deadline)
+        if isinstance(found, Restriction):
+            self.removed, self.required = found.removed, found.required
+        return found is None or isinstance(found, Restriction)
+
+    @property
+    def _keeps_spare(self) -> bool:
+        """Whether a rule may ask for units that lead to no goal."""
+        rules = self.program.understood
+        return rules is not None and (
+            bool(self.required) or _TIMES in self.program.looked_at or not rules.shrinking
+        )
 
     def _cut(self) -> list[int] | None:
         """Give the units that can matter, ascending; ``None`` where no goal is reached even if items last.
 
-        They make what a goal or another of them asks for and what does not run out.
+        They make what a goal or another of them asks for and what does not run out; all that can be executed,
+        where rules may ask for others.
         """
         problem = self.problem
         stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
-        reached = reach(problem if stocked == problem.kitchen else replace(problem, kitchen=stocked))
+        left = Restriction(self.removed, self.required)
+        reached = reach(replace(problem, kitchen=stocked, restriction=left))
         if not all(reached.available[goal] for goal in problem.goals):
             return None
+        if not all(each & set(reached.units) for each in self.required):
+            return None
+        if self._keeps_spare:
+            return sorted(reached.units)
         allowed = set(reached.units)
         makers: dict[int, list[int]] = {}
         for unit in reached.units:
@@ -133,9 +189,11 @@ class _Solver:
             try:
                 began = time.perf_counter()
                 counting.prove()
-                self._spent("bound", began)
                 return self._outcome(Status.OPTIMAL, Proof.COUNTS)
             except BetterError:
+                continue
+            finally:
+                self.bounds = counting.proved()
                 self._spent("bound", began)
 
     def _take(self, plan: Plan) -> bool:
@@ -162,7 +220,7 @@ class _Solver:
             self.bounds if plan is not None else {},
             self.seconds,
             proof=proof,
-            stopped=None if proof else self.deadline.stopped or "a limit",
+            stopped=None if proof else self.deadline.stopped or "counts that have no order",
         )
 
     def _require_runs(self, plan: Plan, costs: Costs) -> None:
@@ -202,6 +260,7 @@ class _Counting:
                 {o: problem.stock_of(o) or 0 for o in asked & problem.kitchen - problem.endless},
                 [goal for goal in problem.goals if goal not in problem.endless],
             ),
+            [[a for a, unit in enumerate(units) if unit in each] for each in solver.required],
             expired=lambda: solver.deadline.passed,
         )
         self._measures: dict[Objective, Measure] = {}
@@ -269,6 +328,14 @@ class _Counting:
         assert self._solver.best is not None
         costs = self._solver.best[1]
         self.bound.prove([self.level(objective, costs) for objective in self._solver.levels], self._is_better)
+
+    def proved(self) -> dict[Objective, int | Fraction]:
+        """Give what the first objective costs at least, where that is not rounded and something is proved."""
+        objective = self._solver.levels[0]
+        if self.bound.proved <= 0 or self.measure(objective).exact is not None:
+            return {}
+        least = Fraction(math.ceil(self.bound.proved)) / self._scale(objective)
+        return {objective: int(least) if objective.row.whole else least}
 
     def _is_better(self, counts: Counts) -> bool:
         plan = self.order(counts)

@@ -105,6 +105,7 @@ class CountBound:
     ) -> None:
         self._flows, self._expired = flows, expired
         self._size = len(flows.asks)
+        self.proved: float | Fraction = 0  # what every plan costs at least by the first level, so far
         self._landmarks = [Landmark(tuple(units)) for units in required]
         self._makers: dict[int, list[int]] = {}
         for action, added in enumerate(flows.adds):
@@ -185,6 +186,8 @@ class CountBound:
         while waiting:
             self._check()
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
+            if not before:
+                self.proved = max(self.proved, bound)
             model.tighten()
             solved = model.program.solve(objective, cutoff)
             if solved.bound > cutoff:

@@ -26,7 +26,7 @@ from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, R
 
 _CODES = {Ending.DONE: ExitCode.DONE, Ending.NEGATIVE: ExitCode.NEGATIVE, Ending.LIMIT: ExitCode.LIMIT}
 _LIMITS = frozenset({"time_limit", "memory_limit"})
-_SHOWN = frozenset({"text", "json", "csv", "markdown"})  # what is data alone is written to the byte
+_SHOWN = frozenset({"text", "json", "csv", "markdown", "steps"})  # what is data alone is written to the byte
 
 
 def question_command(verb: str) -> click.Command:

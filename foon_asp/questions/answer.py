@@ -9,7 +9,7 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_value import Json, json_text
 
 if TYPE_CHECKING:  # what a command that prints an answer can do without
     from foon_asp.questions.tree import Tree
@@ -63,6 +63,14 @@ class Answer(Result, Outcome):
     def foon(self) -> str:
         """Give the tree as FOON text with a comment that says what it is; empty where there is none."""
         return outcome_foon(self)
+
+    def steps(self) -> str:
+        """Give the plan for a robot's program, as JSON; empty where there is none."""
+        if self.units is None:
+            return ""
+        from foon_asp.report.robot_steps import robot_steps  # noqa: PLC0415
+
+        return json_text(robot_steps(self.problem, self.objectives, self.units))
 
     def remark(self, format_: str) -> str:
         """Say what is claimed, where that is not the best tree."""

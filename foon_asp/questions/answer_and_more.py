@@ -40,6 +40,10 @@ class AnswerAndMore(Result, Generic[A]):
         """Give the tree as FOON text; empty where there is none."""
         return self.answer.foon()
 
+    def steps(self) -> str:
+        """Give the plan for a robot's program, as JSON; empty where there is none."""
+        return self.answer.steps()
+
     def remark(self, format_: str) -> str:
         """Give what a format cannot tell, and the additional lines."""
         said = self.answer.remark(format_)

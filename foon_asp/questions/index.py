@@ -112,6 +112,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Draw an optimal task tree, a given one, some functional units, or a whole network.",
         ("draw", "Drawn"),
     ),
+    "trace": Entry(
+        "Check",
+        "Show what is in the kitchen after each step of a plan, and plan anew where a step failed.",
+        ("trace", "Traced"),
+    ),
     "units": Entry(
         "Show",
         "List the functional units of a network, and say which of their inputs are used up.",

@@ -70,6 +70,14 @@ class Result:
         """
         raise UserError("this is no tree, which FOON text could hold")
 
+    def steps(self) -> str:
+        """Give the plan for a robot's program, as JSON: each step with its objects by role.
+
+        Raises:
+            UserError: for a result that is no tree.
+        """
+        raise UserError("this is no tree, whose steps could be listed")
+
     def renderable(self) -> "Renderable | None":
         """Give what a console shows in place of the text, as wide and in such colours as it has.
 

@@ -118,7 +118,7 @@ def solve_and_more(
         metavar="[-- CLINGO OPTIONS]",
         positional=True,
     ),
-    formats=("text", "json", "foon"),
+    formats=("text", "json", "foon", "steps"),
     command=solve_and_more,
     help_="""
     \b
