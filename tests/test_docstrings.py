@@ -151,8 +151,8 @@ def test_an_example_runs(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in FUNCTIONS if "objectives" in parameters(FUNCTIONS[name])])
 def test_an_unknown_objective_is_an_error_that_is_named(name: str) -> None:
     given: dict[str, Any] = {"soft": {}} if name == "solve_soft" else {}
+    plan: tuple[Any, ...] = ((),) if name == "trace" else ()
     with pytest.raises(UserError, match="'speed'"):
-        plan: tuple[Any, ...] = ((),) if name == "trace" else ()
         FUNCTIONS[name](foon_asp.load().problem("ice", "tea"), *plan, "speed", **given)
     assert "UserError" in ENTRY.findall(sections(inspect.getdoc(FUNCTIONS[name]) or "")["Raises"])
 

@@ -172,6 +172,7 @@ class _Solver:
             self._take(())
             return self._outcome(Status.OPTIMAL, Proof.CUTS)
         counting = _Counting(self, units)
+        self.deadline.doing = "counting executions"
         began = time.perf_counter()
         counts = counting.bound.counts([counting.measure(objective) for objective in self.levels])
         self._spent("bound", began)
@@ -262,6 +263,7 @@ class _Counting:
             ),
             [[a for a, unit in enumerate(units) if unit in each] for each in solver.required],
             expired=lambda: solver.deadline.passed,
+            left=lambda: solver.deadline.left,
         )
         self._measures: dict[Objective, Measure] = {}
 

@@ -92,9 +92,10 @@ class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
 
 
 class CountBound:
-    """The counts of plans for one question; ``expired`` says when to give up, and raises :class:`Stopped`.
+    """The counts of plans for one question.
 
-    ``required`` are sets of actions of each of which one has to be executed.
+    ``expired`` says when to give up, and ``left`` in how many seconds, if time is limited: methods then raise
+    :class:`Stopped`. ``required`` are sets of actions of each of which one has to be executed.
     """
 
     def __init__(
@@ -102,8 +103,9 @@ class CountBound:
         flows: Flows,
         required: Sequence[Sequence[int]] = (),
         expired: Callable[[], bool] = lambda: False,
+        left: Callable[[], float | None] = lambda: None,
     ) -> None:
-        self._flows, self._expired = flows, expired
+        self._flows, self._expired, self._left = flows, expired, left
         self._size = len(flows.asks)
         self.proved: float | Fraction = 0  # what every plan costs at least by the first level, so far
         self._landmarks = [Landmark(tuple(units)) for units in required]
@@ -123,7 +125,7 @@ class CountBound:
             model = _Model(self, measures, far=True)
             x: list[float] = []
             for measure in measures:
-                whole = model.program.whole_optimum(model.objective(measure))
+                whole = model.program.whole_optimum(model.objective(measure), self._left())
                 if whole is None:
                     return None
                 x = whole

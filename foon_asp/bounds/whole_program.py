@@ -97,8 +97,8 @@ class WholeProgram:
                 return Solved(None, math.inf)
         return Solved(None, -math.inf)
 
-    def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
-        """Give the best whole solution by HiGHS' word; ``None`` if it finds none."""
+    def whole_optimum(self, objective: Mapping[int, int], seconds: float | None = None) -> list[float] | None:
+        """Give the best whole solution by HiGHS' word; ``None`` if it finds none, in some seconds at most."""
         highs = self._send(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
@@ -106,6 +106,8 @@ class WholeProgram:
             count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
         )
         highs.setOptionValue("presolve", "on")
+        if seconds is not None:
+            highs.setOptionValue("time_limit", seconds)
         highs.run()
         found = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
         values = list(highs.getSolution().col_value) if found else None

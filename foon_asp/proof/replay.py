@@ -9,7 +9,7 @@ from foon_asp.problem import Problem, given_outputs, needed_inputs
 
 
 class Copy(NamedTuple):
-    """One copy of an object node: ``made`` is the position of the step that made it, ``None`` in the kitchen.
+    """One copy of an object ``node``: ``made`` is the position of the step that made it, if one did.
 
     Example:
         >>> foon_asp.Copy(foon_asp.parse_node("ice; crushed"), 1).made
