@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from foon_asp.network import ObjectNode as ObjectNode
     from foon_asp.network import Source as Source
     from foon_asp.network import TaskTree as TaskTree
+    from foon_asp.planning.unified import register_engine as register_engine
     from foon_asp.problem import ContainerRule as ContainerRule
     from foon_asp.problem import Costs as Costs
     from foon_asp.problem import Fate as Fate
@@ -62,6 +63,7 @@ if TYPE_CHECKING:
     from foon_asp.questions.draw import draw as draw
     from foon_asp.questions.export import Exported as Exported
     from foon_asp.questions.export import export as export
+    from foon_asp.questions.export import to_unified_planning as to_unified_planning
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.optima import Optima as Optima
@@ -104,10 +106,12 @@ _ROOMS = {
     "questions.solve_soft": ("SoftAnswer", "solve_soft"),
     "questions.cross_check": ("CrossChecked", "cross_check"),
     "foon": ("Foon", "build", "load"),
+    "questions.export": ("to_unified_planning",),
     "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
+    "planning.unified": ("register_engine",),
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
     "proof.replay": ("Copy",),
     "proof.simulation": ("Simulation", "Verdict"),

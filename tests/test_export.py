@@ -17,6 +17,7 @@ import foon_asp
 from foon_asp import Foon, FunctionalUnit, Problem, Source, UserError
 from foon_asp.engines import fast_downward
 from foon_asp.planning.pddl_name import pddl_name
+from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import Number
 from tests.conftest import Cli
 
@@ -154,6 +155,8 @@ def test_what_cannot_be_added_up_is_refused(foon: Foon) -> None:
     hopeless = replace(problem, rates={**(problem.rates or {}), "crush": Fraction(0)})
     with pytest.raises(UserError, match="never succeeds"):
         foon_asp.export(hopeless, "success")
+    with pytest.raises(UserError, match="items are used up in this problem"):
+        planning_task(replace(problem, items=foon_asp.UsedUp()))
     with pytest.raises(UserError, match="expected pddl"):
         foon_asp.export(foon.problem("ice"), target="anml")
 

@@ -47,6 +47,15 @@ def relaxed(task: PddlTask, deadline: Deadline) -> StripsTask:
     return _Relaxation(task).ground(deadline)
 
 
+def deletes_matter(task: PddlTask) -> bool:
+    """Whether a task may differ from its relaxation: something that is asked for can be lost again."""
+    effects = [effect for schema in task.domain.schemas for effect in schema.effects]
+    lost = {(effect.atom.predicate, effect.adds) for effect in effects}
+    conditions = [task.goal, *(schema.condition for schema in task.domain.schemas)]
+    conditions += [effect.condition for effect in effects]
+    return any((each.atom.predicate, not each.holds) in lost for c in conditions for each in literals(c))
+
+
 class _Prepared(NamedTuple):
     """An action as it is grounded: with no quantifiers, but more parameters than those that name it."""
 

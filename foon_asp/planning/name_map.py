@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from foon_asp.document.json_document import document, fraction_text, mention_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
-from foon_asp.planning.planning_task import PlanningTask
+from foon_asp.planning.planning_task import PlanningTask, taking
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import Json, read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
@@ -30,11 +30,11 @@ class NameMap(NamedTuple):
 
 
 def map_of(task: PlanningTask) -> NameMap:
-    """Give what the names of a task stand for."""
+    """Give what the names of a task stand for, whether its actions take kitchen items or these are there."""
     problem, network = task.problem, task.problem.network
     return NameMap(
         {action.name: network.unit(action.unit) for action in task.actions if action.unit is not None},
-        frozenset(action.name for action in task.actions if action.item is not None),
+        frozenset(map(taking, task.names.values())),
         problem.goal_nodes,
         str(problem.containers),
         network.level,

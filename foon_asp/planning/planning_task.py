@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from foon_asp.errors import UserError
 from foon_asp.planning.action_costs import ActionCosts, action_costs
 from foon_asp.planning.pddl_name import pddl_name
 from foon_asp.problem import Objective, Problem, first_tree, reach, relevant
@@ -40,14 +41,25 @@ class PlanningTask:
     costs: ActionCosts
 
 
+def taking(name: str) -> str:
+    """Name the action that takes a kitchen item."""
+    return f"take-{name}"
+
+
 def planning_task(
     problem: Problem, objectives: Sequence[Objective] = (Objective.UNITS,), whole: bool = False
 ) -> PlanningTask:
     """Make a planning task of a problem: of the units that its goals can need, or of the ``whole`` network.
 
     Where kitchen items cost something, there is an action that takes each of them. Raises
-    :class:`UserError` where an objective has no costs that planners can add up.
+    :class:`UserError` where an objective has no costs that planners can add up, and where items are used
+    up.
     """
+    if problem.items is not None:
+        raise UserError(
+            "items are used up in this problem, and planning tasks are written for items that last: pose it "
+            "without items=..."
+        )
     network = problem.network
     problem.require_known_for(objectives)
     by_items = any(objective.row.item for objective in objectives)
@@ -74,6 +86,6 @@ def planning_task(
         )
         for unit in units
     ]
-    actions += [Action(f"take-{names[o]}", None, o, (), (o,), costs.item) for o in items]
+    actions += [Action(taking(names[o]), None, o, (), (o,), costs.item) for o in items]
     start = tuple(sorted((met & problem.kitchen) - bought))
     return PlanningTask(problem, tuple(objectives), tuple(actions), names, start, goals, costs)

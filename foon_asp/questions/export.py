@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from foon_asp.dataset.paths import File
 from foon_asp.document.json_document import document
@@ -12,6 +13,7 @@ from foon_asp.network import counted
 from foon_asp.planning.name_map import map_json
 from foon_asp.planning.pddl_writer import domain_text, problem_text, scale_words
 from foon_asp.planning.planning_task import PlanningTask, planning_task
+from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
 from foon_asp.questions.contract import Kind, Option, question
@@ -183,3 +185,34 @@ def export(
         problem = whole(problem)
     with reading():
         return Exported(planning_task(problem, chosen, every_unit))
+
+
+def to_unified_planning(
+    problem: Problem, objectives: Objectives = "units", *, every_unit: bool = False
+) -> Any:
+    """Give the goals of a problem as a problem of unified-planning, with the names that PDDL has.
+
+    :func:`foon_asp.read_plan` reads its plans back. The package comes with ``foon-asp[planning]``.
+
+    Parameters:
+        problem: The problem.
+        objectives: What actions cost: a name, names separated by commas, or several names.
+        every_unit: Whether to give the whole network, instead of the units that the goals can need.
+
+    Returns:
+        A ``unified_planning.model.Problem``.
+
+    Raises:
+        UserError: if unified-planning is not installed, for a wrong argument, or where planners cannot add
+            up what actions cost.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> try:
+        ...     len(foon_asp.to_unified_planning(problem).actions)
+        ... except foon_asp.UserError:
+        ...     5
+        5
+    """
+    chosen = chosen_objectives(problem, objectives)
+    return unified_problem(whole(problem) if every_unit else problem, chosen, every_unit)

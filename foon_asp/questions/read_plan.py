@@ -103,13 +103,13 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
     the line and the reason; with 2 for a line that is no step, or an action that the map does not have.
     """,
 )
-def read_plan(problem: Problem, plan: str | PathLike[str], *, names: File | None = None) -> PlanRead:
+def read_plan(problem: Problem, plan: str | PathLike[str] | object, *, names: File | None = None) -> PlanRead:
     r"""Read the plan of another planner back into a task tree, and execute it.
 
     A unit that a plan executes twice is in the tree once.
 
     Parameters:
-        plan: The path of the file that the planner wrote.
+        plan: The path of the file that the planner wrote, or a plan of unified-planning.
 
     Returns:
         The ``tree``, whether it is ``sound``, and the ``simulation`` with what stops it.
@@ -131,7 +131,10 @@ def read_plan(problem: Problem, plan: str | PathLike[str], *, names: File | None
     else:
         named = read_name_map(Path(names))
     with reading():
-        steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
+        if isinstance(plan, str | PathLike):
+            steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
+        else:  # as unified-planning writes it
+            steps = read_plan_text(str(plan), "the plan", named)
     places = dict(reversed(steps))  # of the first execution
     units = tuple(dict.fromkeys(unit for unit, _ in steps))
     tree = Tree.given(problem, units, [places[unit] for unit in units])

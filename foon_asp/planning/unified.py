@@ -1,0 +1,75 @@
+"""Problems for unified-planning, which the extra ``foon-asp[planning]`` installs."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from foon_asp.errors import UserError
+from foon_asp.planning.pddl_writer import AT_HAND, DOMAIN
+from foon_asp.planning.planning_task import planning_task
+from foon_asp.problem import Objective, Problem
+
+ENGINE = "foon-asp"
+
+
+def require_unified_planning() -> Any:
+    """Give what unified-planning offers; raises :class:`UserError` where it is not installed."""
+    try:
+        import unified_planning.shortcuts as up  # noqa: PLC0415 (optional)
+    except ImportError:
+        raise UserError(
+            "unified-planning is not installed: pip install 'foon-asp[planning]' brings it along"
+        ) from None
+    return up
+
+
+def unified_problem(problem: Problem, objectives: Sequence[Objective], whole: bool = False) -> Any:
+    """Give a problem of unified-planning: the same task as in PDDL, with the same names.
+
+    Raises :class:`UserError` as :func:`foon_asp.planning.planning_task.planning_task`, and where
+    unified-planning is not installed.
+    """
+    up = require_unified_planning()
+    task = planning_task(problem, objectives, whole)
+    item = up.UserType("item")
+    at_hand = up.Fluent(AT_HAND, up.BoolType(), o=item)
+    unified = up.Problem(DOMAIN)
+    unified.add_fluent(at_hand, default_initial_value=False)
+    objects = {o: up.Object(name, item) for o, name in task.names.items()}
+    unified.add_objects(objects.values())
+    costs: dict[Any, Any] = {}
+    for action in task.actions:
+        made = up.InstantaneousAction(action.name)
+        for o in action.needs:
+            made.add_precondition(at_hand(objects[o]))
+        for o in action.gives:
+            made.add_effect(at_hand(objects[o]), True)
+        unified.add_action(made)
+        costs[made] = up.Int(action.cost)
+    for o in task.start:
+        unified.set_initial_value(at_hand(objects[o]), True)
+    for o in task.goals:
+        unified.add_goal(at_hand(objects[o]))
+    unified.add_quality_metric(up.MinimizeActionCosts(costs))
+    return unified
+
+
+def register_engine() -> str:
+    """Offer the engine to unified-planning for this process.
+
+    Returns:
+        The name of the engine there: ``foon-asp``.
+
+    Raises:
+        UserError: if unified-planning is not installed.
+
+    Example:
+        >>> try:
+        ...     foon_asp.register_engine()
+        ... except foon_asp.UserError:
+        ...     "foon-asp"
+        'foon-asp'
+    """
+    factory = require_unified_planning().get_environment().factory
+    if ENGINE not in factory.engines:
+        factory.add_engine(ENGINE, "foon_asp.planning.unified_engine", "FoonAspPlanner")
+    return ENGINE
