@@ -152,3 +152,17 @@ def test_clingo_and_we_remove_and_require_the_same(seeds: range) -> None:
 def test_conditions_with_variables_of_their_own(text: str) -> None:
     for seed in range(12):
         assert check_both_ways(problem_of(seed), understood(text))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ":- not use(0..1).",  # two rules
+        ":- not use(1..0).",  # none
+        ":- not available(O..O+1), goal(O).",
+        ":- not use(0..1) : goal(_).",
+    ],
+)
+def test_claims_hold_of_odd_rules(text: str) -> None:
+    for seed in range(12):
+        check(problem_of(seed), text)

@@ -39,6 +39,12 @@ class Literal(NamedTuple):
         """Whether it has no ``not``, and so gives its variables their values."""
         return not self.negations
 
+    @property
+    def single(self) -> bool:
+        """Whether it is one atom once its variables have values; an interval stands for any number."""
+        within = (node for argument in self.arguments for node in nodes(argument))
+        return all(node.ast_type != ASTType.Interval for node in within)
+
 
 class Test(NamedTuple):
     """A comparison, or ``#true`` and ``#false``; ``holds`` says whether it does where that is known."""
@@ -194,15 +200,19 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
     return values
 
 
-def variables(node: AST) -> Iterator[str]:
-    """Give the names of the variables in a piece of a rule."""
-    if node.ast_type == ASTType.Variable:
-        yield node.name
-    for key in node.child_keys:
-        child = getattr(node, key)
+def nodes(piece: AST) -> Iterator[AST]:
+    """Give a piece of a rule and all that is within it."""
+    yield piece
+    for key in piece.child_keys:
+        child = getattr(piece, key)
         for part in child if isinstance(child, ASTSequence) else [child]:
             if isinstance(part, AST):
-                yield from variables(part)
+                yield from nodes(part)
+
+
+def variables(piece: AST) -> Iterator[str]:
+    """Give the names of the variables in a piece of a rule."""
+    return (node.name for node in nodes(piece) if node.ast_type == ASTType.Variable)
 
 
 def literals(parts: Iterable[Part]) -> Iterator[Literal]:

@@ -185,13 +185,12 @@ class Analysis:
     def asks_for_one(self, part: Part) -> bool:
         """Whether a part of a body holds as long as the tree has no unit of a set."""
         if isinstance(part, Literal):
-            return part.negations == 1 and part.signature in self.lifted
+            return part.negations == 1 and part.signature in self.lifted and part.single
         if isinstance(part, Conditional):
             literal = part.literal
             return (
                 isinstance(literal, Literal)
-                and literal.negations == 1
-                and literal.signature in self.lifted
+                and self.asks_for_one(literal)
                 and not self.deciding(part.condition)
             )
         return (
