@@ -161,6 +161,7 @@ def test_conditions_with_variables_of_their_own(text: str) -> None:
         ":- not use(1..0).",  # none
         ":- not available(O..O+1), goal(O).",
         ":- not use(0..1) : goal(_).",
+        "must(0). must(1). :- must(U), not use(U).",
     ],
 )
 def test_claims_hold_of_odd_rules(text: str) -> None:

@@ -227,6 +227,8 @@ class FlatBodies:
         """Put the items of a way in order; ``subjects`` are filled with those of its variables."""
         bound = set(known)
         if way.unit is not None:
+            if way.unit in bound:
+                raise NotFlatError  # one unit that something else says, by its number
             bound.add(way.unit)
             subjects[way.unit] = Subject.UNIT
         self._find_subjects(way.items, subjects)
