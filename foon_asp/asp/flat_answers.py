@@ -114,7 +114,9 @@ class FlatAnswers:
                 motion = self._read(term)(self._values)
                 return [unit for unit, each in enumerate(network.motions) if each == motion]
             after = way.items[place + 1 :]
-            if name in sides and isinstance(term, Variable) and _is_apart(after, known):
+            if not isinstance(term, Variable) or term in known:
+                continue
+            if name in sides and _is_apart(after, known):
                 objects = self._true_of(term, range(len(network.objects)), after)
                 return [unit for unit, side in enumerate(sides[name]) if not objects.isdisjoint(side)]
             known |= bound_by([item])
@@ -152,7 +154,7 @@ class FlatAnswers:
             if (
                 pure
                 and isinstance(leads_to, Variable)
-                and leads_to not in so_far
+                and bound_by([item]) - so_far == {leads_to}
                 and _is_apart(items[place + 1 :], so_far)
             ):
                 then = _remembered(leads_to, then)

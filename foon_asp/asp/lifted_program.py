@@ -100,11 +100,15 @@ class LiftedProgram:
         self._lines.append(f"{head} :- {'; '.join(body)}." if body else f"{head}.")
 
 
-def stands_alone(clause: Clause) -> bool:
-    """Whether a requiring rule asks for one set, and not for one for each of some values of variables."""
-    return not any(
+def stands_alone(clauses: Sequence[Clause]) -> bool:
+    """Whether a requiring rule asks for one set.
+
+    It does not where pools make several rules of it, or where it asks for a set for each of some values of
+    variables.
+    """
+    return len(clauses) == 1 and not any(
         variable != "_"
-        for part in clause.body
+        for part in clauses[0].body
         for node in _global_nodes(part)
         for variable in variables(node)
     )

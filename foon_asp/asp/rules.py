@@ -174,7 +174,7 @@ class Rules:
             number
             for number, rule in enumerate(self.rules)
             if rule.kind in {Kind.FACT, Kind.DELETING}
-            or (rule.one_of and (number in self._flat or all(map(stands_alone, self._live[number]))))
+            or (rule.one_of and (number in self._flat or stands_alone(self._live[number])))
         ]
 
     @cached_property
