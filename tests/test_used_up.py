@@ -299,7 +299,7 @@ def test_other_questions_say_by_name_that_they_are_not_built_for_it(cli: Cli) ->
     [
         ("forbid_motion", {"forbidden_motion": "crush"}, 3),
         ("require_motion", {"required_motion": "pound"}, 3),
-        ("at_most_units", {"max_units": 2}, 2),
+        (":- #sum { N,U : times(U,N) } > 2.", {}, 2),
         (":- times(U,N), N > 1.", {}, 2),
         (':- use(U), motion(U,"crush").', {}, 3),
     ],
@@ -315,6 +315,8 @@ def test_rules_hold_for_plans(constraint: str, constants: dict[str, int | str], 
     [
         ("before", "the constraint before is not built"),
         ("require_intermediate", "the constraint require_intermediate is not built"),
+        ("at_most_units:max_units=2", "the constraint at_most_units is not built"),
+        ("at_most_price", "the constraint at_most_price is not built"),
         (":- available(1).", "rules over available/1 are not built"),
         (":- use(U), input(U,O), output(V,O), not use(V).", "looks at more than the units of a plan"),
     ],

@@ -25,8 +25,12 @@ Plan = tuple[int, ...]
 _TIMES = ("times", 2)
 _LARGEST = 10**9  # a cost that is not rounded
 _FINE = 10**6  # steps of the greatest cost, where costs are rounded
-# Constraints of ours about what is available before something else, and predicates of that kind.
-_NOT_BUILT = ("before", "require_intermediate")
+# Constraints of ours about what is available before something else, those that count units and not
+# executions, and predicates of the first kind.
+_NOT_BUILT = (
+    *("before", "require_intermediate"),
+    *("at_most_units", "at_most_motion", "at_most_utensil_uses", "at_most_price"),
+)
 _NOT_READ = frozenset({"available", "executes", "taken", "makes"})
 _MOST_COPIES = 4  # executions of a unit beyond its count, up to which a first plan is looked for
 
