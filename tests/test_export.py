@@ -392,6 +392,7 @@ def test_pyperplan_finds_our_costs(foon: Foon, tmp_path: Path, goal: str) -> Non
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::foon_asp.FoonWarning")
 @needs_fast_downward
 def test_fast_downward_finds_our_costs_on_the_real_network(universal: Path, tmp_path: Path) -> None:
     data = foon_asp.load(universal)
