@@ -2,13 +2,16 @@
 
 import random
 from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
 from foon_asp.asp import Proof, Settings, Status, solve
+from foon_asp.asp.constraint import given_constraint
 from foon_asp.asp.ranking import Ranked
+from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Objective, Problem
 from tests.test_reductions import LISTS, Measured, posed
 
@@ -106,3 +109,16 @@ def test_trees_come_in_order_and_none_is_missing(mix: list[str], seeds: range, t
         assert set(given) == {tree.units for tree in minimal}, (seed, file.read_text())
         keys = [tree.key(names) for units in given for tree in minimal if tree.units == units]
         assert keys == sorted(keys)
+
+
+def test_a_rate_of_a_unit_that_only_serves_what_cannot_be_made() -> None:
+    """No limit leaves a tree, so all units are looked at, the one that grinds for nothing among them."""
+    builder = NetworkBuilder()
+    start, rare, powder, end = map(ObjectNode.of, ("start", "rare", "powder", "end"))
+    builder.add("pour", [start], [end], Source("small", 1))
+    builder.add("grind", [start], [powder], Source("small", 2))
+    builder.add("mix", [powder, rare], [end], Source("small", 3))
+    rates = {"pour": Fraction(1, 2), "grind": Fraction(1, 5), "mix": Fraction(1, 3)}
+    problem = Problem(builder.build(), frozenset({0}), (1,), rates, frozenset())
+    rule = given_constraint(":- #count { U : use(U) } > 0.")
+    assert solve(problem, (Objective.SUCCESS,), Settings((rule,))).status is Status.INFEASIBLE

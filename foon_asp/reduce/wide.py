@@ -44,9 +44,11 @@ class Wide:
     def everything(self) -> frozenset[int]:
         """Give all units that a tree can have, whatever it costs."""
         graph = self.graph
+        among = self._all() if self.spare else graph.cone()[0]
+        # what cannot be made has no costs, and none are asked for here
+        made = derive(graph, among, lambda _: 0, added=False)
         if self.spare:
-            return self._units(derive(graph, self._all(), self.costs, added=False).before)
-        made = derive(graph, graph.cone()[0], self.costs, added=False)
+            return self._units(made.before)
         return self._units(graph.cone(made.before)[0])
 
     def within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
