@@ -11,6 +11,7 @@ import pytest
 
 from foon_asp import shopping_list
 from foon_asp.asp import Status
+from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.problem.shop import Shop
@@ -232,3 +233,10 @@ def test_what_is_for_sale() -> None:
 def test_a_limit_is_told(cli: Cli) -> None:
     ran = cli("shopping-list", "--goal", "hot cocoa", "--time-limit", "0")
     assert ran.code == 3
+
+
+def test_a_rule_that_says_something_else_once_things_are_bought() -> None:
+    """While everything is for sale, something can be fried; once flour is bought, nothing can."""
+    problem = kitchen_problem([], "dough", (["flour"], ["dough"]), (["egg"], ["omelet"]))
+    with pytest.raises(UserError, match="no shopping list can be found under it"):
+        shopping_list(problem, constraints=[":- use(U), #count { V : unit(V) } < 2."])

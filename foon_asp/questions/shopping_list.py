@@ -14,6 +14,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.facts import write_for_sale, write_list
 from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.prepared import Prepared, prepare
+from foon_asp.asp.program import Program
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document, fraction_json, nodes_json
 from foon_asp.errors import BugError, UserError
@@ -206,7 +207,8 @@ def shopping_list(
         The ``lists``, the ``items`` of the first one, and the best tree with these as its ``outcome``.
 
     Raises:
-        UserError: for a wrong argument or constraint, or a price list that cannot be read.
+        UserError: for a wrong argument or constraint, a price list that cannot be read, or a rule that says
+            something else once the items are bought.
 
     Example:
         >>> shopping = foon_asp.shopping_list(foon_asp.load().problem("hot cocoa"))
@@ -248,8 +250,20 @@ def shopping_list(
         stocked = replace(problem, kitchen=problem.kitchen.union(found[0].items))
         outcome = Answer._make(solve(stocked, chosen, how, reporter))
         if outcome.status is Status.INFEASIBLE:
+            _refuse_far_rules(program)
             raise BugError("the shopping list does not make a tree possible")
     return Shopping(problem, offer, tuple(found), complete, outcome, by_id, chosen)
+
+
+def _refuse_far_rules(program: Program) -> None:
+    """Raise :class:`UserError` for a rule that sees more units before it is settled what is bought."""
+    for rule in program.understood.rules if program.understood else ():
+        if rule.further:
+            raise UserError(
+                f"{rule.source}: {rule.further}, so what the rule says changes with the units that can be "
+                "made, and these with what is bought: no shopping list can be found under it; let it look at "
+                "units of the tree alone"
+            )
 
 
 def _given(prices: Mapping[str, Number]) -> list[Price]:
