@@ -41,7 +41,7 @@ from foon_asp.reduce import ALL, NONE
 from foon_asp.search import SEARCHES, Ending, SearchSettings
 from tests import oracle
 from tests.conftest import Cli
-from tests.handmade_certificate import check, older
+from tests.handmade_certificate import before_rules, check, older
 from tests.random_problems import random_problem
 
 WATER = ObjectNode.of("water", [], [("in", "pot")])
@@ -223,6 +223,8 @@ def forged(problem: Problem) -> dict[str, Any]:
 def test_a_certificate_of_the_old_rule_is_refused(version: int, words: str) -> None:
     problem = ask(POT)
     content = forged(problem) | {"version": version}
+    if version == 1:
+        content = before_rules(content)
     content["seal"] = seal(content)
     with pytest.raises(RefusedError, match=words):
         check(content, problem)
@@ -252,7 +254,7 @@ def test_version_1_holds_under_strict_containers() -> None:
     problem = ask(HOT, ContainerRule.STRICT, (WATER, POT))
     found = certify(problem, (Objective.UNITS,), [0])
     assert found is not None
-    old = found.content | {"version": 1, "digests": older(problem)}
+    old = before_rules(found.content) | {"version": 1, "digests": older(problem)}
     old["seal"] = seal(old)
     assert check(old, problem).claim == "optimal"
     for version in (0, VERSION + 1, True, "1", 1.0, None):

@@ -200,7 +200,9 @@ def test_equal_totals_of_different_costs_are_equal(
     assert {len(second[0]), len(third[0])} == {2}
 
 
-def test_programs_are_kept_for_objectives_that_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_programs_are_kept_for_objectives_that_are_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked: list[object] = []
     program = Session.program
 
@@ -209,7 +211,9 @@ def test_programs_are_kept_for_objectives_that_are_whole(monkeypatch: pytest.Mon
         return program(session, *given)
 
     monkeypatch.setattr(Session, "program", counted)
-    rule = Settings(constraints=(Path("at_most_units"),), constants=("max_units=9",), session=Session())
+    file = tmp_path / "other.lp"  # of no kind that is applied before the search
+    file.write_text("{ free }.\n:- free, use(U), not unit(U).\n", encoding="utf-8")
+    rule = Settings((file,), reductions=NONE, session=Session())
     problem = two_ways(["0.5", "0.5"], ["0.2"])
     for new, objective in NEW.items():
         asked.clear()

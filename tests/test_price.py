@@ -27,6 +27,7 @@ from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import find_data, read_data
 from tests import oracle
 from tests.conftest import Cli
+from tests.handmade_certificate import before_rules
 from tests.random_problems import (
     FREE,
     HUGE,
@@ -305,8 +306,10 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
         with pytest.raises(verify.RefusedError, match="the tree costs"):
             verify.verify(forged(problem, costs=costs), *given, prices)
     digests = {name: digest for name, digest in right["digests"].items() if name != "prices"}
+    old = before_rules(forged(problem, version=2, digests=digests))
+    old["seal"] = verify.seal(old)
     with pytest.raises(verify.RefusedError, match="a claim needs prices, but none are given"):
-        verify.verify(forged(problem, version=2, digests=digests), *given, prices)
+        verify.verify(old, *given, prices)
     one, two, other = problem.network.motions
     unit = problem.network.unit
     free = FunctionalUnit("one 0", unit(0).inputs, unit(0).inputs)  # of no unit here, and so of no account

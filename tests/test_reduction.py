@@ -476,7 +476,9 @@ def test_ctrl_c_at_the_very_end_takes_nothing_away(
     guards = count()
     found = reduce(problem, INPUTS, reductions, guard=lambda: struck({1}, guards))
     expected = reduce(problem, INPUTS, reductions)
-    assert found._replace(costs=None, cuts=None) == expected._replace(costs=None, cuts=None)
+    # but for what is never equal to others
+    found, expected = (each._replace(costs=None, cuts=None, wide=None) for each in (found, expected))
+    assert found == expected
     assert next(guards) == 2
 
 

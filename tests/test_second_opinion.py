@@ -412,7 +412,8 @@ def test_a_worse_tree_is_our_bug_with_all_that_is_needed(
 ) -> None:
     def worse(problem: Problem, *args: object) -> Outcome:
         outcome = solve(problem, *args)  # type: ignore[arg-type]
-        more = solve(problem, (Objective.UNITS,), Settings((Path("at_least.lp"),)))
+        files = Path("at_least.lp"), Path("mine.lp")
+        more = solve(problem, (Objective.UNITS,), Settings(files, constants=("name=freezer bag",)))
         assert more.units is not None
         return with_tree(outcome, more.units)
 

@@ -91,7 +91,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         for message in encoding.unset_constants(extra, settings.constants):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
-        theirs = [*extra, *parsed] if encodings else extra
+        theirs = [*extra, *(each for file, each in zip(base, parsed, strict=True) if not is_own(file))]
         looked_at = frozenset(signature for each in theirs for signature in each.used)
         named = frozenset(name for each in (*parsed, *extra) for name in each.constants)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))

@@ -149,7 +149,8 @@ class Problem:
     def plain(self) -> "Problem":
         """The same problem without the data it was posed of, as another process can be handed it."""
         rates = None if self.rates is None else dict(self.rates)
-        return replace(self, origin=None, rates=rates, own_rates=dict(self.own_rates))
+        own_rates, measures = dict(self.own_rates), dict(self.measures)
+        return replace(self, origin=None, rates=rates, own_rates=own_rates, measures=measures)
 
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
         """Give the same problem over a network that has some units, as far as the data has them.
