@@ -34,7 +34,7 @@ LIBRARY = {
     "not_both_motions": ([Kind.SHRINKING],) * 2,
     "only_sources": ([Kind.DELETING],) * 2,
     "require_ingredient": ([Kind.REQUIRING], [Kind.FACT]),
-    "require_intermediate": ([Kind.REQUIRING], [Kind.FACT]),
+    "require_intermediate": ([Kind.REQUIRING, Kind.REQUIRING], [Kind.FACT, Kind.FACT]),
     "require_motion": ([Kind.REQUIRING], [Kind.FACT]),
     "require_object": ([Kind.REQUIRING], [Kind.FACT]),
 }
@@ -198,7 +198,8 @@ def test_kinds_of_ready_made_constraints(name: str) -> None:
         found = [rule for rule in rules(constraint.file, *settings) if rule.kind is not Kind.HELPER]
         assert [rule.kind for rule in found] == kinds
         assert all(rule.local for rule in found)
-        assert all(rule.one_of == (name in ONE_OF and bool(settings)) for rule in found)
+        asks = [False, True] if name == "require_intermediate" else [name in ONE_OF] * len(found)
+        assert [rule.one_of for rule in found] == [bool(each and settings) for each in asks]
 
 
 def test_facts_are_known_or_unsure() -> None:
@@ -216,9 +217,9 @@ def test_every_predicate_that_a_rule_may_look_at_is_known_or_in_doubt() -> None:
         assert rule.kind is not Kind.FACT or (name, arity) in SUBJECTS
 
 
-def test_plans_in_which_items_are_used_up_have_rules_of_their_own() -> None:
+def test_rules_are_understood_but_for_replaced_encodings() -> None:
     settings = Settings((RuleText(':- use(U), motion(U,"fry").'),))
     assert assemble(settings, lambda _: None).understood is not None
-    assert assemble(settings, lambda _: None, used_up=True).understood is None
+    assert assemble(settings, lambda _: None, used_up=True).understood is not None
     by_need = settings._replace(encodings=Path("by_need"))
     assert assemble(by_need, lambda _: None).understood is None
