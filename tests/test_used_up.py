@@ -351,3 +351,25 @@ def test_steps_wait_for_what_makes_and_for_what_reads() -> None:
     assert all(earlier < step["step"] for step in steps for earlier in step["after"])
     cut = next(step for step in steps if step["motion"] == "cut")
     assert "knife" in {node["label"] for node in cut["acted_on"] + cut["tools"]}
+
+
+def test_rules_that_the_search_keeps_to_see_rates_and_sources() -> None:
+    network = foon_asp.NetworkBuilder()
+    egg, cake = parse_node("egg"), parse_node("cake")
+    network.add("bake", [egg], [cake], Source("by hand", 1))
+    problem = foon_asp.build(network.build(), kitchen=[egg], rates={"bake": 0.5}).problem(
+        cake, items="used-up"
+    )
+    assert foon_asp.solve(problem).units == (0,)
+    for fact in ("rate(U,500000)", 'source(U,"by hand")'):
+        rule = f":- use(U), use(V), {fact}."
+        assert foon_asp.solve(problem, constraints=[rule]).status is not Status.OPTIMAL
+
+
+def test_a_plan_without_steps_keeps_to_the_rules() -> None:
+    network = foon_asp.NetworkBuilder()
+    egg, cake = parse_node("egg"), parse_node("cake")
+    network.add("bake", [parse_node("flour"), egg], [cake], Source("by hand", 1))
+    problem = foon_asp.build(network.build(), kitchen=[egg]).problem(egg, items="used-up")
+    assert foon_asp.solve(problem).units == ()
+    assert foon_asp.solve(problem, constraints=[":- not use((0;0))."]).status is not Status.OPTIMAL

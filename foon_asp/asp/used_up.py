@@ -172,7 +172,7 @@ class _Solver:
         return sorted(chosen)
 
     def _search(self, units: list[int]) -> Outcome:
-        if not units:  # every goal is there
+        if not units and self.program.own:  # every goal is there
             self._take(())
             return self._outcome(Status.OPTIMAL, Proof.CUTS)
         counting = _Counting(self, units)
@@ -370,8 +370,9 @@ class _Counting:
         number = problem.network.unit_number
         # within fixed counts only the copies that are taken of a stock are left to choose
         wanted = solver.levels if best else [each for each in solver.levels if each is Objective.KITCHEN]
-        scales = Scales(problem, units, wanted) if best else None
-        text = facts.write_facts(problem, units, scales)
+        looked_at = None if solver.program.own else solver.program.looked_at
+        scales = Scales(problem, units, wanted) if best or looked_at is not None else None
+        text = facts.write_facts(problem, units, scales, looked_at)
         text += facts.write_times({number(self._units[a]): each for a, each in times.items()})
         text += facts.write_objectives(wanted)
         ended = search.run(
