@@ -136,6 +136,14 @@ def test_faults_of_the_second_rule_are_its_own(cli: Cli) -> None:
     assert ran.err.startswith("rule 2:1:12: error: a term has no value here: U+a")
 
 
+@pytest.mark.parametrize("fault", ["odd(M) :- not motion(1,M).", "odd(O+L) :- goal(O), label(O,L)."])
+def test_faults_are_said_though_other_rules_leave_no_tree(fault: str, cli: Cli) -> None:
+    ran = cli("solve", "--goal", "ice", "--rule", ":- use(U).", "--rule", fault)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.startswith("rule 2:1:")
+    assert cli("solve", "--goal", "ice", "--rule", ":- use(U).").code == 1
+
+
 def test_a_rule_where_a_file_is_meant_is_told_from_it(cli: Cli) -> None:
     ran = cli("solve", "--goal", "ice", "--constraint", CRUSH)
     assert ran.code == 2

@@ -150,6 +150,8 @@ class _Solver:
         if first.stopped:
             return self._outcome(Status.UNKNOWN, None, {})
         if first.tree is None:
+            if first.asked is not None:
+                first.keeps(Units())  # to say what is wrong with a rule, though no tree depends on it
             if not first.contradicted:
                 self.holds.no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
