@@ -103,6 +103,7 @@ def test_all_optimal_trees_and_the_best_in_order(rule: ContainerRule) -> None:
     assert several >= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 def test_constraints_hold_for_alternatives(rule: ContainerRule) -> None:
     for seed in range(7100, 7120):

@@ -187,7 +187,7 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(12)
 def test_the_answer_is_that_of_the_command_line(question: str, source: Path, cli: Cli) -> None:
     words, goals, containers, ask = QUESTIONS[question]
     named = [word for goal in goals for word in ("--goal", goal)]
@@ -223,6 +223,7 @@ def test_optima_of_several_goals(source: Path, cli: Cli) -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("containers", "objective"), [("strict", "success,kitchen"), ("implied", "inputs")])
 def test_every_goal_is_answered_as_on_the_command_line(
     containers: str, objective: str, foon: Foon, cli: Cli
@@ -234,6 +235,7 @@ def test_every_goal_is_answered_as_on_the_command_line(
         assert timeless(foon_asp.solve(problem, objective).json()) == timeless(shown)
 
 
+@pytest.mark.slow
 def test_prices_from_a_file_and_by_name(foon: Foon, tmp_path: Path) -> None:
     problem = foon.problem("hot cocoa", "apple pie")
     prices: dict[str, Any] = {

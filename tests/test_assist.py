@@ -135,7 +135,7 @@ def check_rows(
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("trees", [None, 0], ids=["one by one", "counted"])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_every_number_of_units(
     part: int, rule: ContainerRule, trees: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -234,6 +234,7 @@ def test_a_constraint_holds_whoever_does_a_unit(part: int, rule: ContainerRule, 
         check_rows(found, person, allowed)
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(3)
@@ -287,6 +288,7 @@ def test_no_tree_has_a_unit_twice(part: int, rule: ContainerRule, tmp_path: Path
     assert possible >= 2 // part
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
 def test_other_encodings(rule: ContainerRule) -> None:

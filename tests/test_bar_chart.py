@@ -73,6 +73,7 @@ def drawing(tmp_path_factory: pytest.TempPathFactory) -> Drawing:
     return Drawing(CHART, tmp_path_factory.mktemp("chart") / "chart.svg")
 
 
+@pytest.mark.slow
 def test_title_goals_series_and_ways_are_named(drawing: Drawing) -> None:
     together = " ".join(drawing.texts)
     for name in (CHART.title, OPTIMUM, *SEARCHES, *(group.goal for group in CHART.groups)):

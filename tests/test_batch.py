@@ -379,6 +379,7 @@ def test_a_cluster_gives_the_same_rows(cli: Cli, questions: Path, tmp_path: Path
     assert ours == theirs
 
 
+@pytest.mark.slow
 def test_no_scheduler_is_said(
     cli: Cli, questions: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

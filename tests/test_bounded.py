@@ -89,6 +89,7 @@ def test_bounds_beside_a_constraint_that_asks_for_units(part: int, rule: Contain
         assert_agrees(problem, ["success"], list(oracle.trees(problem, allowed)), settings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
 def test_trees_in_order_and_soft_constraints_keep_to_bounds_too(rule: ContainerRule, tmp_path: Path) -> None:

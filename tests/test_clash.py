@@ -188,6 +188,7 @@ def two_files(tmp_path: Path) -> tuple[Path, Path]:
     return one, two
 
 
+@pytest.mark.slow
 def test_a_clash_of_two_files(cli: Cli, two_files: tuple[Path, Path]) -> None:
     one, two = two_files
     words = ["--goal", "whipped cream", "--constraint", one, "--constraint", two]

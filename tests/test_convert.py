@@ -356,6 +356,7 @@ def test_an_empty_list_stays_or_is_listed_as_lost(target: Dialect) -> None:
     assert kept == (not lost)
 
 
+@pytest.mark.slow
 @steady
 @given(NETWORKS, st.sampled_from(Dialect))
 def test_whatever_is_lost_is_listed_and_nothing_else(text: str, target: Dialect) -> None:

@@ -65,7 +65,7 @@ def key(problem: Problem, tree: list[int], objectives: tuple[Objective, ...]) ->
 
 
 @pytest.mark.parametrize("pool", POOLS)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_every_optimum_is_proved(pool: str) -> None:
     branched = 0
     for seed in (*range(60), 152, 347):  # 3, 152 and 347 have weights of nothing that are not 0

@@ -171,6 +171,7 @@ def test_faults_of_a_question(cli: Cli) -> None:
     assert cli("diff", "nothing.txt", "solve --goal ice").code == 2
 
 
+@pytest.mark.slow
 def test_two_kitchens(cli: Cli, universal: Path) -> None:
     words = f"--data '{universal}' --goal 'greek salad'"
     ran = cli("diff", f"solve {words}", f"solve {words} --containers implied", "--format", "json")

@@ -143,6 +143,7 @@ def test_a_method_is_described(name: str) -> None:
     assert not [member for member in lacks.items() if member[1]]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", PUBLIC)
 def test_an_example_runs(name: str) -> None:
     assert not failures(name, PUBLIC[name].__doc__)

@@ -407,6 +407,7 @@ def test_no_tree_no_picture(cli: Cli, tmp_path: Path) -> None:
     assert not file.exists()
 
 
+@pytest.mark.slow
 def test_real_trees(cli: Cli, tmp_path: Path, universal: Path) -> None:
     for goal in ("macaroni", "greek salad", "sweet potato"):
         file = tmp_path / "tree.svg"

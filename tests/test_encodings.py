@@ -679,6 +679,7 @@ def quietly(ran: Ran) -> str:
     return ran.out
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", CONSTRAINTS)
 def test_example_call_changes_the_tree(
     name: str, cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

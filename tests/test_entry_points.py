@@ -391,6 +391,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow
 def test_an_engine_of_another_package_is_asked_too(cli: Cli, packages: Packages) -> None:
     install_example(packages)
     ran = cli("solve", "--goal", "ice", "--cross-check")

@@ -322,7 +322,7 @@ def test_rounding_alone_would_choose_the_worse_tree() -> None:
 
 @pytest.mark.parametrize("rule", list(ContainerRule))
 @pytest.mark.parametrize("scale", [1, 7])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_a_coarse_scale_still_gives_the_exact_optimum(
     scale: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -104,7 +104,7 @@ ROWS = [
 
 @pytest.mark.parametrize("row", ROWS, ids=range(len(ROWS)))
 @pytest.mark.parametrize("verb", ["batch", "compare"])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(12)
 def test_rows_of_another_make_no_file_of_ours(
     cli: Cli, questions: Path, tmp_path: Path, verb: str, row: str
 ) -> None:

@@ -213,6 +213,7 @@ def test_the_text_is_like_that_of_merged_recipes(family: str, written: Written) 
     assert len(text.splitlines()) > 10 * len(set(text.splitlines()))
 
 
+@pytest.mark.sampled(2)
 def test_goals_go_from_easy_to_hard(family: str, written: Written) -> None:
     folder = written(family, 6000)
     asked = goals(folder)

@@ -176,6 +176,7 @@ def interrupted(words: list[str], after: float) -> tuple[int, bytes, bytes]:
     return process.returncode, out, err
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_grounding(endless: Path) -> None:
     words = command("solve", "--goal", "ice", "--constraint", endless)
     with nothing_left():
@@ -294,6 +295,7 @@ def test_reading_stops_at_the_memory_limit(large: Path) -> None:
     assert b"unknown: stopped at the memory limit of 60M while reading" in ran.stderr
 
 
+@pytest.mark.slow
 @LINUX
 def test_the_process_of_clingo_ends_with_ours(endless: Path) -> None:
     with nothing_left():

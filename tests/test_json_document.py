@@ -147,6 +147,7 @@ def test_every_verb_that_answers_has_a_schema() -> None:
     assert {*schema_kinds()} == kinds | {"batch-row", "compare-row", "pddl-map", "steps"}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("verb", "words"), CASES)
 def test_what_is_printed_is_what_the_schema_says(printed: Any, verb: str, words: tuple[str, ...]) -> None:
     kind = "answer" if verb == "solve" else verb
@@ -225,6 +226,7 @@ def test_a_tree_is_read_from_every_document_that_has_one(cli: Cli, tmp_path: Pat
 # --- the schemas
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("kind", [*schema_kinds(), None])
 def test_a_schema_is_one(kind: str | None) -> None:
     file = SCHEMAS / f"{kind or 'defs'}.json"

@@ -34,6 +34,7 @@ class Recorder(Reporter):
         self.bounds.append(bound)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("objective", [Objective.UNITS, Objective.SUCCESS])
 @pytest.mark.parametrize("seconds", [0, 1])
 def test_time_limit(objective: Objective, seconds: float) -> None:
@@ -134,7 +135,7 @@ def test_progress_is_shown_on_a_terminal_only(hard_folder: Path, tmp_path: Path)
     assert json.loads(answer.read_bytes())["status"] == "feasible"
 
 
-ENDLESS = "p(0). p(f(X)) :- p(X).\n"
+ENDLESS = "p(0). p(f(X)) :- p(X). :- use(U), p(U), not p(f(U)).\n"
 
 
 def test_grounding_without_an_end_is_stopped(tmp_path: Path) -> None:

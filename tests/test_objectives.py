@@ -114,6 +114,7 @@ def test_trees_in_order_of_a_new_objective(new: str, monkeypatch: pytest.MonkeyP
         assert keys[:1] == ([] if best is None else [best])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("new", NEW)
 @pytest.mark.sampled(3)
 def test_other_engines_are_asked_about_a_new_objective(new: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -271,7 +272,7 @@ def criteria(problem: Problem, tree: list[int], objectives: list[Objective]) -> 
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("objective", Objective)
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(18)
 def test_encodings_and_rooms_measure_the_same(objective: Objective, rule: ContainerRule) -> None:
     """What cuts go by where no solver runs is what ``objectives.lp`` says, and what is counted by hand."""
     measured = 0

@@ -81,6 +81,7 @@ def answers(name: str) -> list[tuple[float | None, float | None]]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", OPPONENTS)
 @pytest.mark.sampled(3)
 def test_every_opponent_finds_known_optima(engine: Engine) -> None:

@@ -37,7 +37,7 @@ def assert_agrees(
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("first", range(0, NETWORKS, CHUNK))
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(20)
 def test_every_objective(first: int, rule: ContainerRule) -> None:
     for seed in range(first, first + CHUNK):
         problem = random_problem(seed, rule)

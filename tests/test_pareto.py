@@ -68,6 +68,7 @@ def assert_agrees(front: Front, trees: Sequence[tuple[FunctionalUnit, ...]]) -> 
     assert shown == sorted(nondominated(everything))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize(
     "seeds", [range(9300, 9330), pytest.param(range(9330, 9500), marks=pytest.mark.slow)]
@@ -113,7 +114,7 @@ def test_fronts_for_several_goals(part: int, rule: ContainerRule) -> None:
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("name", ["forbid", "require"])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_fronts_under_a_constraint(part: int, rule: ContainerRule, name: str) -> None:
     fewer = 0
     for seed in range(9600, 9600 + 30 // part):

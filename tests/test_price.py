@@ -121,7 +121,7 @@ def test_sums_are_compared_to_the_last_digit(
 @pytest.mark.parametrize("family", FAMILIES)
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("make", [random_problem, random_steps])
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(20)
 def test_the_best_are_those_of_brute_force_in_every_room(
     make: Callable[[int, ContainerRule], Problem], rule: ContainerRule, family: str
 ) -> None:

@@ -237,6 +237,7 @@ some_units = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True, max_examples=100)
 @given(some_units)
 def test_what_is_written_is_read_again(written: list[FunctionalUnit]) -> None:

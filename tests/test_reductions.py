@@ -66,7 +66,7 @@ def some(count: int) -> list[Any]:
 @pytest.mark.usefixtures("_sizes")
 @pytest.mark.parametrize("rule", ContainerRule)
 @pytest.mark.parametrize("seed", some(60))
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(20)
 def test_what_is_left_has_an_optimum(seed: int, rule: ContainerRule) -> None:
     problem = random_problem(seed, rule)
     found = list(trees(problem))

@@ -587,6 +587,7 @@ def cheapest(problem: foon_asp.Problem) -> int | None:
     return None
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("how", [{}, {"reductions": "none"}, {"reductions": "none", "encodings": "by_need"}])
 def test_units_may_need_nothing(seed: int, how: dict[str, Any]) -> None:

@@ -158,6 +158,7 @@ def test_a_required_set_is_one_more_node_to_make() -> None:
     assert best_left(problem, tuple(range(len(problem.network))), ["units"]) is not None
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.usefixtures("_sizes")
 @pytest.mark.parametrize("spare", [False, True])
 @pytest.mark.parametrize("seeds", [range(40), pytest.param(range(40, 400), marks=pytest.mark.slow)])

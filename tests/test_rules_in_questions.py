@@ -111,6 +111,7 @@ def drawn(seed: int, folder: Path) -> tuple[Problem, Rules]:
     return problem, {"constraints": [file]}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("ask", QUESTIONS)
 @pytest.mark.parametrize("seeds", [range(4), pytest.param(range(4, 80), marks=pytest.mark.slow)])
 def test_what_is_found_is_the_same(

@@ -141,6 +141,7 @@ def some_rules(rng: random.Random, folder: Path) -> str:
     return "\n".join(rng.sample(pool, rng.randint(1, 2)))
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
@@ -181,6 +182,7 @@ def test_answers_under_soft_rules_agree(part: int, tmp_path: Path) -> None:
     assert penalties > 3
 
 
+@pytest.mark.slow
 def test_a_coarse_scale_leaves_many_trees_to_look_at(monkeypatch: pytest.MonkeyPatch) -> None:
     """With weights of next to nothing nearly every tree is within the bound, and the answer still agrees."""
     monkeypatch.setattr("foon_asp.asp.exact_success._scale", lambda _: 1)
@@ -199,7 +201,7 @@ def test_a_coarse_scale_leaves_many_trees_to_look_at(monkeypatch: pytest.MonkeyP
         (["0.99999999999"], ["0.999999999"]),
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_products_that_differ_late_are_told_apart(better: list[str], worse: list[str]) -> None:
     problem = two_ways(better, worse)
     outcome = solve(problem, (Objective.SUCCESS,))

@@ -55,6 +55,7 @@ def change(problem: Problem, rng: random.Random, rules: list[ContainerRule]) -> 
             return replace(problem, containers=rng.choice(rules))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seeds", [range(5), pytest.param(range(5, 400), marks=pytest.mark.slow)])
 def test_random_sessions(seeds: range, tmp_path: Path) -> None:
     """Changes to kitchen, goals, rule, constraint and objectives, one after another; by brute force too."""

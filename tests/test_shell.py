@@ -460,6 +460,7 @@ def test_a_session_at_a_terminal(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_the_question_and_keeps_the_session(tmp_path: Path) -> None:
     problem = hard_problem()
     network = problem.network

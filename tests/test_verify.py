@@ -141,6 +141,7 @@ def subjects() -> list[tuple[Problem, Content]]:
     return found
 
 
+@pytest.mark.slow
 def test_the_subjects_are_of_all_kinds() -> None:
     claims = [content["claim"] for _, content in subjects()]
     assert claims.count("infeasible") == 4
