@@ -34,7 +34,7 @@ LIBRARY = {
     "not_both_motions": ([Kind.SHRINKING],) * 2,
     "only_sources": ([Kind.DELETING],) * 2,
     "require_ingredient": ([Kind.REQUIRING], [Kind.FACT]),
-    "require_intermediate": ([Kind.REQUIRING, Kind.REQUIRING], [Kind.FACT, Kind.FACT]),
+    "require_intermediate": ([Kind.REQUIRING], [Kind.FACT]),
     "require_motion": ([Kind.REQUIRING], [Kind.FACT]),
     "require_object": ([Kind.REQUIRING], [Kind.FACT]),
 }
@@ -198,7 +198,7 @@ def test_kinds_of_ready_made_constraints(name: str) -> None:
         found = [rule for rule in rules(constraint.file, *settings) if rule.kind is not Kind.HELPER]
         assert [rule.kind for rule in found] == kinds
         assert all(rule.local for rule in found)
-        asks = [False, True] if name == "require_intermediate" else [name in ONE_OF] * len(found)
+        asks = [name in ONE_OF] * len(found)
         assert [rule.one_of for rule in found] == [bool(each and settings) for each in asks]
 
 

@@ -148,3 +148,9 @@ def test_ready_made_constraints_have_the_answers_of_the_plain_program(seeds: ran
 def _by_need(names: list[str]) -> bool:
     """Whether a program whose trees have no spare units has the same optimum."""
     return not any(name.startswith("require") for name in names)
+
+
+@pytest.mark.parametrize("name", ["motion", "object", "ingredient", "intermediate"])
+def test_what_is_required_and_not_there_is_broken_once(name: str) -> None:
+    rule = f"require_{name}:required_{name}=dough"
+    assert foon_asp.solve_soft(foon_asp.load().problem("ice"), soft={rule: 3}).penalty == 3
