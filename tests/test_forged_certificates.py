@@ -560,7 +560,6 @@ def test_an_objective_that_has_no_cost_yet_is_refused(tmp_path: Path) -> None:
 SLOW = "_spend: to check it takes more than … steps"
 
 
-@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name == SLOW else ()) for name in FORGED]
 )

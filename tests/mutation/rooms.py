@@ -8,12 +8,14 @@ from tests.mutation.operators import mutants
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("proof", "reduce", "bounds", "certificate")
 FILES = ("asp/prepared.py", "asp/solver.py", "asp/ranking.py", "asp/exact_success.py", "asp/scales.py")
+NOT_YET = ("bounds/counts.py", "bounds/whole_program.py")  # for plans in which items are used up
 
 
 def texts() -> dict[str, str]:
     """Give the text of every file that is changed, by its path in the repository."""
     package = ROOT / "foon_asp"
     paths = [path for folder in FOLDERS for path in sorted((package / folder).rglob("*.py"))]
+    paths = [path for path in paths if path.relative_to(package).as_posix() not in NOT_YET]
     paths += [package / file for file in FILES]
     return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
