@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from clingo import Infimum, Supremum, parse_term
-from clingo.ast import AST, AggregateFunction, ASTSequence, ASTType, ComparisonOperator, Sign, UnaryOperator
+from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign, UnaryOperator
 from clingo.symbol import Number, Symbol, SymbolType
 
+from foon_asp.grounding.parsing import nodes
 from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.network import Source
 
@@ -200,19 +201,19 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
     return values
 
 
-def nodes(piece: AST) -> Iterator[AST]:
-    """Give a piece of a rule and all that is within it."""
-    yield piece
-    for key in piece.child_keys:
-        child = getattr(piece, key)
-        for part in child if isinstance(child, ASTSequence) else [child]:
-            if isinstance(part, AST):
-                yield from nodes(part)
+def variables(*pieces: AST) -> Iterator[str]:
+    """Give the names of the variables in pieces of a rule, but not ``_``, which is another one each time."""
+    within = (node for piece in pieces for node in nodes(piece))
+    return (node.name for node in within if node.ast_type == ASTType.Variable and node.name != "_")
 
 
-def variables(piece: AST) -> Iterator[str]:
-    """Give the names of the variables in a piece of a rule."""
-    return (node.name for node in nodes(piece) if node.ast_type == ASTType.Variable)
+def global_variables(part: Part) -> Iterator[str]:
+    """Give the variables of a part that the rule has as a whole; those in conditions may be of their own."""
+    if isinstance(part, Literal):
+        return variables(*part.arguments)
+    if isinstance(part, Test):
+        return variables(part.ast)
+    return variables(*(guard.term for guard in part.guards)) if isinstance(part, Aggregate) else iter(())
 
 
 def literals(parts: Iterable[Part]) -> Iterator[Literal]:

@@ -6,7 +6,7 @@ helpers that are derived from themselves, variables that nothing binds) is left 
 sees beyond one unit.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from itertools import product
 from typing import NamedTuple
@@ -23,6 +23,7 @@ from foon_asp.asp.clause import (
     Signature,
     Strange,
     Test,
+    global_variables,
     value,
     variables,
 )
@@ -303,7 +304,10 @@ class _Scope:
         self._named: dict[str, Term] = {}
         # those that a rule has as a whole; others are of their condition alone
         self._whole = {
-            name for part in (clause.head, *clause.body) if part is not None for name in _names(part)
+            name
+            for part in (clause.head, *clause.body)
+            if part is not None
+            for name in global_variables(part)
         }
         if not self._is_safe(clause.body):
             raise NotFlatError  # clingo says which variable nothing binds
@@ -311,7 +315,10 @@ class _Scope:
     def _is_safe(self, body: Sequence[Part]) -> bool:
         """Whether all variables are surely bound: by atoms that are not negated, or by what they equal."""
         bound = {
-            name for part in body if isinstance(part, Literal) and part.positive for name in _names(part)
+            name
+            for part in body
+            if isinstance(part, Literal) and part.positive
+            for name in global_variables(part)
         }
         before = -1
         while before != len(bound):
@@ -322,16 +329,16 @@ class _Scope:
         inner: list[tuple[Iterable[str], tuple[Part, ...]]] = []  # names that conditions have to bind
         for part in body:
             if isinstance(part, Conditional):
-                inner.append((_names(part.literal), part.condition))
+                inner.append((global_variables(part.literal), part.condition))
             elif isinstance(part, Aggregate):
-                inner += [(_in_terms(element.terms), element.condition) for element in part.elements]
+                inner += [(variables(*element.terms), element.condition) for element in part.elements]
         return bound >= self._whole and all(
             self._whole.union(
                 name
                 for each in condition
                 if isinstance(each, Literal) and each.positive
-                for name in _names(each)
-            ).issuperset((*names, *(name for each in condition for name in _names(each))))
+                for name in global_variables(each)
+            ).issuperset((*names, *(name for each in condition for name in global_variables(each))))
             for names, condition in inner
         )
 
@@ -450,11 +457,11 @@ class _Scope:
 
     def _having(self, literal: Literal) -> frozenset[Variable]:
         """Give the variables of a literal that gives none of them a value."""
-        return frozenset(_variables(self._named[name] for name in _names(literal)))
+        return frozenset(_variables(self._named[name] for name in global_variables(literal)))
 
     def _given(self, parts: Iterable[Part]) -> frozenset[Variable]:
         """Give the variables of the whole rule that parts of it have."""
-        names = {name for part in parts for name in _names(part)} & self._named.keys() & self._whole
+        names = {name for part in parts for name in global_variables(part)} & self._named.keys() & self._whole
         return frozenset(_variables(self._named[name] for name in names))
 
 
@@ -463,25 +470,12 @@ def bound_by(items: Iterable[Item]) -> set[Variable]:
     return {variable for item in items for variable in _variables(_terms(item))}
 
 
-def _names(part: Part) -> Iterator[str]:
-    """Give the variables of a part that the rule has as a whole; those in conditions may be of their own."""
-    if isinstance(part, Literal):
-        return _in_terms(part.arguments)
-    if isinstance(part, Test):
-        return _in_terms((part.ast,))
-    return _in_terms(guard.term for guard in part.guards) if isinstance(part, Aggregate) else iter(())
-
-
-def _in_terms(terms: Iterable[AST]) -> Iterator[str]:
-    return (name for term in terms for name in variables(term) if name != "_")
-
-
 def _equal(test: Test) -> set[str]:
     """Give the variables of a comparison that gives a variable the value of another, or of a constant."""
     if test.ast.sign or test.ast.atom.ast_type != ASTType.Comparison or len(test.ast.atom.guards) != 1:
         return set()
     is_equal = test.ast.atom.guards[0].comparison == ComparisonOperator.Equal
-    return set(_names(test)) if is_equal else set()
+    return set(global_variables(test)) if is_equal else set()
 
 
 def _terms(item: Item) -> tuple[Term, ...]:

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from clingo.ast import AST, ASTSequence, ASTType, parse_string
+from clingo.ast import AST, ASTType, parse_string
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.clause import place, written
+from foon_asp.asp.clause import place, variables, written
 from foon_asp.asp.constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.asp.encoding import located, read_encoding
 from foon_asp.asp.own_encodings import question_encoding
@@ -15,7 +15,7 @@ from foon_asp.asp.search import ground
 from foon_asp.asp.settings import Relaxed
 from foon_asp.asp.stating import loaded
 from foon_asp.deadline import Deadline
-from foon_asp.grounding.parsing import parse
+from foon_asp.grounding.parsing import nodes, parse
 from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError
@@ -144,26 +144,13 @@ def _global_variables(body: Sequence[AST]) -> Iterator[str]:
         if atom.ast_type in {ASTType.Aggregate, ASTType.BodyAggregate}:
             for guard in (atom.left_guard, atom.right_guard):
                 if guard is not None:
-                    yield from _variables(guard)
+                    yield from variables(guard)
         elif atom.ast_type != ASTType.TheoryAtom:
-            yield from _variables(atom)
-
-
-def _variables(node: AST) -> Iterator[str]:
-    return (part.name for part in _walk(node) if part.ast_type == ASTType.Variable and part.name != "_")
+            yield from variables(atom)
 
 
 def _names(statement: AST) -> Iterator[str]:
     """Give the names of what may be a constant in the terms of a statement."""
-    for part in _walk(statement):
+    for part in nodes(statement):
         if part.ast_type == ASTType.SymbolicTerm and part.symbol.type is SymbolType.Function:
             yield part.symbol.name
-
-
-def _walk(node: AST) -> Iterator[AST]:
-    yield node
-    for key in node.child_keys:
-        child = getattr(node, key)
-        for part in child if isinstance(child, ASTSequence) else [child]:
-            if isinstance(part, AST):
-                yield from _walk(part)

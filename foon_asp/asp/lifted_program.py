@@ -7,8 +7,6 @@ derives. What holds without any unit has ``NOBODY`` in its place.
 
 from collections.abc import Iterable, Sequence
 
-from clingo.ast import AST
-
 from foon_asp.asp.clause import (
     Aggregate,
     Clause,
@@ -16,9 +14,8 @@ from foon_asp.asp.clause import (
     Literal,
     Part,
     Signature,
-    Test,
+    global_variables,
     literals,
-    variables,
 )
 from foon_asp.asp.rule_kind import Analysis, Kind
 
@@ -107,19 +104,8 @@ def stands_alone(clauses: Sequence[Clause]) -> bool:
     variables.
     """
     return len(clauses) == 1 and not any(
-        variable != "_"
-        for part in clauses[0].body
-        for node in _global_nodes(part)
-        for variable in variables(node)
+        variable for part in clauses[0].body for variable in global_variables(part)
     )
-
-
-def _global_nodes(part: Part) -> list[AST]:
-    if isinstance(part, Literal):
-        return list(part.arguments)
-    if isinstance(part, Aggregate):
-        return [guard.term for guard in part.guards]
-    return [part.ast] if isinstance(part, Test) else []
 
 
 def _helping(part: Part) -> list[tuple[Part, ...]]:

@@ -1,6 +1,6 @@
 """The statements of files, and of rules that are in none, with their places."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from clingo import Control, MessageCode
 from clingo.ast import AST, ASTSequence, Location, ProgramBuilder, parse_files, parse_string
@@ -33,12 +33,18 @@ def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], N
         parse(rules, builder.add, logger)
 
 
-def _place(node: AST, place: str) -> None:
-    if "location" in node.keys():  # noqa: SIM118 (it is no mapping)
-        begin, end = node.location
-        node.location = Location(begin._replace(filename=place), end._replace(filename=place))
-    for key in node.child_keys:
-        child = getattr(node, key)
+def nodes(piece: AST) -> Iterator[AST]:
+    """Give a piece of a rule and all that is within it."""
+    yield piece
+    for key in piece.child_keys:
+        child = getattr(piece, key)
         for part in child if isinstance(child, ASTSequence) else [child]:
             if isinstance(part, AST):
-                _place(part, place)
+                yield from nodes(part)
+
+
+def _place(statement: AST, place: str) -> None:
+    for node in nodes(statement):
+        if "location" in node.keys():  # noqa: SIM118 (it is no mapping)
+            begin, end = node.location
+            node.location = Location(begin._replace(filename=place), end._replace(filename=place))
