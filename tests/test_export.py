@@ -311,6 +311,15 @@ def test_a_map_that_is_none_is_refused(
     assert "map.json" in ran.err
 
 
+def test_a_map_that_is_no_json_is_refused_with_its_place(folder: Path, cli: Cli) -> None:
+    file = folder / "map.json"
+    file.write_text('{\n"schema": 1,\n}\n')
+    (folder / "plan").write_text("(u26-twist)\n")
+    ran = cli("read-plan", folder / "plan", "--map", file)
+    assert ran.code == 2
+    assert f"{file}:2:12: error: not JSON: found a comma before }}, expected none" in ran.err
+
+
 def goals_of(data: Foon) -> list[str]:
     return [str(goal) for goal in data.goals]
 

@@ -8,6 +8,7 @@ from foon_asp.document.json_document import document, fraction_text, mention_jso
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.planning.planning_task import PlanningTask, taking
+from foon_asp.text.json_layout import check_json
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import Json, read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
@@ -80,9 +81,11 @@ def map_json(task: PlanningTask) -> Json:
 def read_name_map(file: Path) -> NameMap:
     """Read a map from a file.
 
-    Raises :class:`UserError` for a file that cannot be read, or is not what :func:`map_json` gives.
+    Raises :class:`UserError` for a file that cannot be read, or is not what :func:`map_json` gives, with the
+    place where it is not JSON.
     """
     text = read_plain_text(file)
+    check_json(text, str(file))
     try:
         found = read_json(text)
         if not isinstance(found, dict) or found.get("schema") != schema_name(KIND):
