@@ -22,8 +22,8 @@ from contest.page import table
 from generate import Family, generate
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.measure import read_measures
 from foon_asp.problem import Objective, Problem
+from foon_asp.rules.measure import read_measures
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
 

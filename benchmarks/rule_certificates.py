@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.constraint import given_constraint
 from foon_asp.certificate import certify_outcome
 from foon_asp.compare.many import makeable
 from foon_asp.deadline import Deadline
@@ -27,6 +26,7 @@ from foon_asp.network import UnitPrices
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verify import read_certificate, verify
 from foon_asp.report.certified import bound_text
+from foon_asp.rules.constraint import given_constraint
 from foon_asp.text.data_folder import find_data, read_data
 
 

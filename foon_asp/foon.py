@@ -6,7 +6,6 @@ from os import PathLike
 from pathlib import Path
 from typing import Self
 
-from foon_asp.asp.measure import read_measures
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.items import Stays, Stock, items_of
 from foon_asp.dataset.names import in_python
@@ -14,6 +13,7 @@ from foon_asp.dataset.paths import File, Files, files
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, UnitPrices
 from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
+from foon_asp.rules.measure import read_measures
 from foon_asp.text.data_folder import Data, find_data
 from foon_asp.text.goal_name import GoalError
 from foon_asp.warning import warn

@@ -21,7 +21,6 @@ from clingo import Control, Function, Number
 from clingo.symbol import Symbol
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.session import Session
 from foon_asp.asp.soft import solve_soft
 from foon_asp.engines import Asked, DisagreementError, cross_check
@@ -29,6 +28,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.reduce import parse_reductions
+from foon_asp.rules.constraint import Constraint
 from tests import oracle
 from tests.gap_problem import gap_problem
 from tests.hostile_files import hostile_files

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTSequence, ASTType, parse_files
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.facts import FACT_PREDICATES
+from foon_asp.encoding.facts import FACT_PREDICATES
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Objective
 

@@ -22,7 +22,9 @@ FLOORS = (
     {"network"},
     {"text", "problem", "bounds"},
     {"reduce", "grounding", "document", "offered"},
-    {"asp", "search", "proof", "store"},
+    {"encoding", "search", "proof", "store"},
+    {"rules"},
+    {"asp"},
     {"compare", "lint", "certificate", "engines", "dataset", "planning"},
     {"report"},
     {"batch"},
@@ -39,7 +41,6 @@ SIDEWAYS = {
     ("deadline", "errors"): "a limit that cannot be held is refused",
     ("python_process", "errors"): "where Python is not found, that is said",
     ("warning", "errors"): "what is warned of has a class of its own",
-    ("asp", "proof"): "every tree found is simulated before it is given out",
     ("engines", "certificate"): "which rules do no more than rule units out is asked of both",
 }
 
@@ -55,7 +56,7 @@ FORBIDDEN = {
 
 # The only rooms that may know a third-party library.
 LIBRARIES = {
-    "clingo": {"asp", "grounding"},
+    "clingo": {"asp", "encoding", "grounding", "rules"},
     "lark": {"text"},
     "click": {"cli"},
     "prompt_toolkit": {"cli"},

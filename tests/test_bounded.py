@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings
-from foon_asp.asp.facts import write_at_most
-from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.settings import Bounded
 from foon_asp.asp.soft import solve_soft
+from foon_asp.encoding.facts import write_at_most
+from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem

@@ -43,13 +43,13 @@ BESIDE = {
 # what a plain `solve` may import of ours, room by room: what it reads, cuts and shows needs no more, and each
 # module costs every start
 MAY_BE_LOADED = """
-asp: assembly constraint optimum outcome own_encodings postconditions prepared program settings
-    solver
+asp: assembly optimum outcome postconditions prepared program settings solver
 bounds: coprime_base hypergraph landmark_cuts lexicographic
 cli: asking click_option exit_code held main named_path options output output_file progress
     question_command verbs weighted_files
 dataset: dataset items names paths reading
 document: json_document
+encoding: own_encodings
 grounding: stated
 network: counted functional_unit level network node_pattern object_node source spelling
     task_tree unit_prices
@@ -59,6 +59,7 @@ questions: answer arguments caller contract docstring index options posing resul
 reduce: derivation dominance exact_costs forced graph narrow near reduction reductions
     upper_bound wide
 report: answer
+rules: constraint
 text: data_folder diagnostics exact_price goal_name grammar item_list json_fault json_list
     json_node json_object json_value label_list line listed_unit motion_times object_list
     plain_file provenance rate_table reader stated_prices table_rows unit_price_list writer

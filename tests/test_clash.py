@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings, Status
-from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.integrity import relax
 from foon_asp.asp.soft import solve_soft
 from foon_asp.dataset.paths import File
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.questions.clash import clash
+from foon_asp.rules.constraint import Constraint
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import MOTIONS, random_problem

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from foon_asp.asp.constraint_library import library_constraints
-from foon_asp.asp.encoding import read_encoding
+from foon_asp.encoding.encoding import read_encoding
+from foon_asp.rules.constraint_library import library_constraints
 from tests.conftest import ROOT, Cli
 
 FOLDER = ROOT / "encodings" / "constraints"

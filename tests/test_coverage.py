@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings
-from foon_asp.asp.constraint import given_constraint
-from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.certificate import Coverage, coverage
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Problem
 from foon_asp.proof.constraint import LIBRARY, Rule
 from foon_asp.resources import encodings_folder
+from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.constraint_library import library_constraints
 from tests.constraint_oracle import HEATS
 from tests.handmade_certificate import forbid
 

@@ -1,6 +1,6 @@
 """The encodings against their own documentation, and the ready-made constraints against a network by hand.
 
-The files are parsed here anew, with clingo's own parser and nothing of ``foon_asp.asp.encoding``.
+The files are parsed here anew, with clingo's own parser and nothing of ``foon_asp.encoding.encoding``.
 """
 
 import ast
@@ -19,10 +19,11 @@ from clingo import Control, Model, Number
 from clingo.ast import AST, ASTSequence, ASTType, parse_files, parse_string
 from clingo.symbol import SymbolType
 
-import foon_asp.asp
-from foon_asp.asp import Settings, encoding
+import foon_asp
+from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.asp.facts import FACT_PREDICATES
+from foon_asp.encoding import encoding
+from foon_asp.encoding.facts import FACT_PREDICATES
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen
@@ -315,10 +316,10 @@ def by_python() -> set[Signature]:
 
 def test_facts_are_those_of_the_headers() -> None:
     """What the Python side writes, be it in facts or in rules, by name; and it writes all of it."""
-    folder = Path(foon_asp.asp.__file__).parent
+    folder = Path(foon_asp.__file__).parent
     texts = [
         constant.value
-        for file in ("facts.py", "integrity.py")
+        for file in ("encoding/facts.py", "asp/integrity.py")
         for constant in ast.walk(ast.parse((folder / file).read_text(encoding="utf-8")))
         if isinstance(constant, ast.Constant) and isinstance(constant.value, str)
     ]

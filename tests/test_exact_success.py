@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from foon_asp.asp import Settings, Status, exact_success, solve
-from foon_asp.asp.exact_success import rate_scale
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.encoding import exact_success
+from foon_asp.encoding.exact_success import rate_scale
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives

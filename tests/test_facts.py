@@ -11,7 +11,7 @@ import pytest
 
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.asp.facts import write_product
+from foon_asp.encoding.facts import write_product
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem

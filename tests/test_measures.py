@@ -15,8 +15,6 @@ import pytest
 
 import foon_asp
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.measure import read_measures
-from foon_asp.asp.measure_rules import read_rules
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify
 from foon_asp.engines import Asked, cross_check
@@ -25,6 +23,8 @@ from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives, reach
 from foon_asp.proof import verify
 from foon_asp.reduce import ALL, NONE
+from foon_asp.rules.measure import read_measures
+from foon_asp.rules.measure_rules import read_rules
 from foon_asp.text.diagnostics import InputError
 from tests import oracle
 from tests.conftest import CORPUS, ROOT, Cli

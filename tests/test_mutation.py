@@ -122,6 +122,7 @@ def test_all_rooms_have_mutants_and_every_mutant_is_python() -> None:
         "bounds",
         "certificate",
         "asp",
+        "encoding",
     }
     assert found == sorted(found, key=lambda mutant: mutant.rank)
     assert len({mutant.rank for mutant in found}) == len(found)

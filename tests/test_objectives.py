@@ -11,12 +11,12 @@ import clingo
 import pytest
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.exact_success import problem_scale
-from foon_asp.asp.facts import write_facts, write_objectives
 from foon_asp.asp.ranking import Ranked
-from foon_asp.asp.scales import Scales
 from foon_asp.asp.session import Session
 from foon_asp.certificate import certify
+from foon_asp.encoding.exact_success import problem_scale
+from foon_asp.encoding.facts import write_facts, write_objectives
+from foon_asp.encoding.scales import Scales
 from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import UnitPrices

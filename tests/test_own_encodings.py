@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.asp import own_encodings
-from foon_asp.asp.own_encodings import digest, is_own
+from foon_asp.encoding import own_encodings
+from foon_asp.encoding.own_encodings import digest, is_own
 from foon_asp.resources import encodings_folder
 from tests.conftest import Cli
 
@@ -19,7 +19,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of our folder, which the program takes for its own."""
     copy = tmp_path / "encodings"
     shutil.copytree(encodings_folder(), copy)
-    for module in ("asp.assembly", "asp.constraint", "asp.settings", "asp.own_encodings", "asp.encoding"):
+    for module in (
+        "asp.assembly",
+        "rules.constraint",
+        "asp.settings",
+        "encoding.own_encodings",
+        "encoding.encoding",
+    ):
         monkeypatch.setattr(f"foon_asp.{module}.encodings_folder", lambda: copy)
     own_encodings._digests.cache_clear()
     monkeypatch.setattr(own_encodings, "_digests", own_encodings._digests.__wrapped__)

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from foon_asp.asp import exact_success
+from foon_asp.encoding import exact_success
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.questions.pareto import Front, pareto

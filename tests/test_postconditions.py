@@ -42,7 +42,7 @@ def outcome_of(problem: Problem, objectives: str = "units", **how: Any) -> Outco
 
 def break_wanted_product(patch: pytest.MonkeyPatch) -> None:
     """Let the search for what comes after success forget which product it was to keep."""
-    patch.setattr("foon_asp.asp.facts.write_wanted", lambda _: "")
+    patch.setattr("foon_asp.encoding.facts.write_wanted", lambda _: "")
 
 
 def break_models(patch: pytest.MonkeyPatch) -> None:
@@ -131,7 +131,7 @@ def test_other_objectives_in_our_own_encodings_are_a_bug(
         monkeypatch.setattr(f"foon_asp.asp.{module}.encodings_folder", lambda: folder)
     monkeypatch.setattr("foon_asp.asp.assembly.is_own", lambda _: True)
     monkeypatch.setattr("foon_asp.asp.settings.is_own", lambda _: True)
-    monkeypatch.setattr("foon_asp.asp.own_encodings.is_own", lambda _: True)
+    monkeypatch.setattr("foon_asp.encoding.own_encodings.is_own", lambda _: True)
     motions = FoonReader().read_network([bundled_kitchen() / "FOON.txt"]).motions
     (tmp_path / "prices.txt").write_text("".join(f"{motion}\t2\n" for motion in motions))
     words = ["--goal", "ice", "--objective", objective, "--unit-prices", str(tmp_path / "prices.txt")]
@@ -251,7 +251,7 @@ def test_trees_out_of_order_are_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(Ranked, "_is_settled", lambda *_: True)
         near = two_ways(["0.9999999895"], ["0.999999991"] * 5)
-        patch.setattr("foon_asp.asp.exact_success._scale", lambda _: 10**8)
+        patch.setattr("foon_asp.encoding.exact_success._scale", lambda _: 10**8)
         with pytest.raises(BugError, match="better than one that was given before"):
             list(Ranked(near, SUCCESS, Settings()))
     with monkeypatch.context() as patch:

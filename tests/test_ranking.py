@@ -8,9 +8,10 @@ from typing import Any
 
 import pytest
 
-from foon_asp.asp import Reporter, Settings, search
+from foon_asp.asp import Reporter, Settings
 from foon_asp.asp.ranking import Ranked
 from foon_asp.deadline import Deadline
+from foon_asp.encoding import search
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Costs, Objective, Problem

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import pytest
 
 from foon_asp.asp import Proof, Settings, Status, solve
-from foon_asp.asp.constraint import given_constraint
 from foon_asp.asp.ranking import Ranked
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Objective, Problem
+from foon_asp.rules.constraint import given_constraint
 from tests.test_reductions import LISTS, Measured, posed
 
 

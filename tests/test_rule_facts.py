@@ -9,12 +9,12 @@ import pytest
 import foon_asp
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.asp.constraint import given_constraint
-from foon_asp.asp.encoding_file import LARGEST
 from foon_asp.asp.session import Session
+from foon_asp.encoding.encoding_file import LARGEST
 from foon_asp.errors import UserError
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.rules.constraint import given_constraint
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import random_problem

@@ -6,13 +6,13 @@ import pytest
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.constraint import RuleText
-from foon_asp.asp.constraint_library import library_constraints
-from foon_asp.asp.encoding import PUBLIC, read_encoding
-from foon_asp.asp.fact_subject import SUBJECTS
-from foon_asp.asp.facts import FACT_PREDICATES
-from foon_asp.asp.rule_kind import Analysis, Kind, Rule
+from foon_asp.encoding.encoding import PUBLIC, read_encoding
+from foon_asp.encoding.facts import FACT_PREDICATES
 from foon_asp.grounding.stated import Loaded, Stated
+from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.constraint_library import library_constraints
+from foon_asp.rules.fact_subject import SUBJECTS
+from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
 LOCAL, FAR = True, False
 

@@ -12,9 +12,9 @@ import foon_asp
 from foon_asp import clash
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.encoding_file import included_files
 from foon_asp.asp.session import Session
 from foon_asp.asp.soft import solve_soft
+from foon_asp.encoding.encoding_file import included_files
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen, encodings_folder

@@ -6,17 +6,17 @@ from functools import cache
 import pytest
 from clingo import Control
 
-from foon_asp.asp.encoding import read_encoding
-from foon_asp.asp.facts import write_facts
-from foon_asp.asp.lifted_program import stands_alone
-from foon_asp.asp.rule_kind import Kind
-from foon_asp.asp.rules import Contradiction, Rules
-from foon_asp.asp.scales import Scales
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.encoding import read_encoding
+from foon_asp.encoding.facts import write_facts
+from foon_asp.encoding.scales import Scales
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Problem, reach
 from foon_asp.resources import encodings_folder
+from foon_asp.rules.lifted_program import stands_alone
+from foon_asp.rules.rule_kind import Kind
+from foon_asp.rules.rules import Contradiction, Rules
 from tests.random_problems import random_problem, random_steps
 from tests.random_rules import RandomRules
 

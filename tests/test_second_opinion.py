@@ -17,10 +17,9 @@ import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.asp.constraint import Constraint
-from foon_asp.asp.exact_success import rate_scale
 from foon_asp.asp.soft import solve_soft
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.exact_success import rate_scale
 from foon_asp.engines import (
     Asked,
     Check,
@@ -32,6 +31,7 @@ from foon_asp.engines import (
 )
 from foon_asp.engines.bare_clingo import check_with_bare_clingo, greatest_weight
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.rules.constraint import Constraint
 from tests import oracle
 from tests.conftest import Cli
 from tests.gap_problem import gap_problem
@@ -185,7 +185,7 @@ def test_answers_under_soft_rules_agree(part: int, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_coarse_scale_leaves_many_trees_to_look_at(monkeypatch: pytest.MonkeyPatch) -> None:
     """With weights of next to nothing nearly every tree is within the bound, and the answer still agrees."""
-    monkeypatch.setattr("foon_asp.asp.exact_success._scale", lambda _: 1)
+    monkeypatch.setattr("foon_asp.encoding.exact_success._scale", lambda _: 1)
     for seed in range(6):
         problem = random_problem(seed, RULES[seed % 2])
         agrees(solve(problem, (Objective.SUCCESS, Objective.KITCHEN)))

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.asp import Outcome, Settings, Status, exact_success, solve
+from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.session import OpenProgram, Session
 from foon_asp.deadline import Deadline
+from foon_asp.encoding import exact_success
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from foon_asp.reduce import ALL, NONE
 from tests import oracle

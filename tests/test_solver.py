@@ -14,9 +14,9 @@ import pytest
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.asp.scales import Scales
 from foon_asp.asp.session import Session
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.scales import Scales
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.grounded import Grounded
 from foon_asp.grounding.run import Run
@@ -251,7 +251,7 @@ def test_options_of_clingo_are_looked_at_though_there_is_nothing_to_ask(
     assert solve(problem, (UNITS,), Settings(clingo_options=("--configuration=trendy",))).proof is Proof.CUTS
     with pytest.raises(UserError, match="no-such-option"):
         solve(problem, (UNITS,), Settings(clingo_options=("--no-such-option",)))
-    monkeypatch.delattr("foon_asp.asp.search.check")
+    monkeypatch.delattr("foon_asp.encoding.search.check")
     assert optimum(problem) == (0,)
 
 
@@ -438,7 +438,7 @@ def test_without_time_there_is_a_tree_and_nothing_is_proved(
 ) -> None:
     heard = Heard()
     problem = ways(["0.5"], ["0.5", "0.5"])
-    monkeypatch.delattr("foon_asp.asp.search.ground")
+    monkeypatch.delattr("foon_asp.encoding.search.ground")
     outcome = solve(problem, objectives, SEARCHED._replace(deadline=Deadline(0)), heard)
     assert outcome.status is Status.FEASIBLE
     assert outcome.bounds == bounds
@@ -761,7 +761,7 @@ def test_where_all_rates_are_1_nothing_is_rounded(monkeypatch: pytest.MonkeyPatc
 
 def test_every_product_within_the_band_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a coarse scale five ways weigh the same, and each is looked at once."""
-    monkeypatch.setattr("foon_asp.asp.exact_success._scale", lambda _: 10)
+    monkeypatch.setattr("foon_asp.encoding.exact_success._scale", lambda _: 10)
     problem = ways(["0.501"], ["0.505"], ["0.503"], ["0.504"], ["0.502"])
     leave(monkeypatch, problem, (SUCCESS,), (0,))
     searches = Searches(monkeypatch, Answer(Run(numbers(problem, 0), (6, 1), True)))

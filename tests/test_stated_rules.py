@@ -13,18 +13,18 @@ import pytest
 
 import foon_asp
 from foon_asp.asp import Settings, solve
-from foon_asp.asp.constraint import LibraryUse, RuleText, given_constraint, named_constraint
-from foon_asp.asp.encoding import EXTENDED, PUBLIC, read_encoding
 from foon_asp.asp.integrity import relax
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.asp.stating import loaded
 from foon_asp.certificate import coverage
+from foon_asp.encoding.encoding import EXTENDED, PUBLIC, read_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
 from foon_asp.report.disagreement import _Rules
 from foon_asp.resources import encodings_folder
+from foon_asp.rules.constraint import LibraryUse, RuleText, given_constraint, named_constraint
+from foon_asp.rules.stating import loaded
 from tests import oracle
 from tests.conftest import ROOT, Cli
 from tests.handmade_certificate import forbid

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.constraint import given_constraint
 from foon_asp.certificate import certify_outcome
 from foon_asp.certificate.own_rules import check_with_clingo
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof.verify import seal, trusted, verify
+from foon_asp.rules.constraint import given_constraint
 from tests import oracle
 from tests.conftest import Cli
 from tests.constraint_oracle import keeps

@@ -1,4 +1,4 @@
-"""The bridge to clingo: facts, programs, searches and their outcome."""
+"""The search for the best tree with clingo: programs, searches, sessions and their outcome."""
 
 from foon_asp.asp.optimum import solve as solve
 from foon_asp.asp.outcome import Outcome as Outcome

@@ -4,16 +4,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.constraint import Constraint, LibraryUse, find_constraint
-from foon_asp.asp.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
+from foon_asp.encoding.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
 from foon_asp.errors import UserError
 from foon_asp.grounding.stated import Loaded
 from foon_asp.resources import encodings_folder
+from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
-    from foon_asp.asp.rules import Rules
+    from foon_asp.rules.rules import Rules
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
@@ -75,7 +75,8 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out where every file is ours
-        from foon_asp.asp import encoding, stating  # noqa: PLC0415
+        from foon_asp.encoding import encoding  # noqa: PLC0415
+        from foon_asp.rules import stating  # noqa: PLC0415
 
         if endless:
             from foon_asp.grounding.worker_process import prepare  # noqa: PLC0415
@@ -103,12 +104,12 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
             and not any(each.assigns for each in extra)
         )
         if extra and not encodings and relaxed is None:
-            from foon_asp.asp import rules as user_rules  # noqa: PLC0415
+            from foon_asp.rules import rules as user_rules  # noqa: PLC0415
 
             understood = user_rules.Rules(extra, constants[1::2], endless)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # looked at now, since clingo may have nothing to do
-        from foon_asp.asp.search import check  # noqa: PLC0415
+        from foon_asp.encoding.search import check  # noqa: PLC0415
 
         check(arguments)
     return Program(

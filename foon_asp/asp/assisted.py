@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
-from foon_asp.asp.constraint import Constraint, find_constraint
-from foon_asp.asp.facts import write_assisted
-from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.settings import Bounded
+from foon_asp.encoding.facts import write_assisted
+from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.rules.constraint import Constraint, find_constraint
 
 _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
@@ -22,12 +22,12 @@ def assisted(twins: Mapping[int, int], most: int) -> Bounded:
 def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
     """Whether constraints look at who does a unit: at success rates, or at units done by a person.
 
-    Raises what :func:`foon_asp.asp.encoding.read_encoding` does.
+    Raises what :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     if not constraints:
         return False
-    from foon_asp.asp.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
-    from foon_asp.asp.stating import loaded  # noqa: PLC0415
+    from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
+    from foon_asp.rules.stating import loaded  # noqa: PLC0415
 
     files = loaded([*map(find_constraint, constraints)]).values()
     return any(_OF_DOERS & read_encoding(rules).used.keys() for rules in files)

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.constraint import Constraint
-from foon_asp.asp.facts import write_least_penalty, write_objectives
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.settings import Settings
+from foon_asp.encoding.facts import write_least_penalty, write_objectives
 from foon_asp.grounding.stated import Stated
 from foon_asp.problem import Objective, Problem, levels, reach, relevant
+from foon_asp.rules.constraint import Constraint
 
 
 class BareProgram(NamedTuple):

@@ -7,17 +7,17 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTType, parse_string
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.clause import place, variables, written
-from foon_asp.asp.constraint import Constraint, LibraryUse, find_constraint
-from foon_asp.asp.encoding import located, read_encoding
-from foon_asp.asp.own_encodings import question_encoding
-from foon_asp.asp.search import ground
 from foon_asp.asp.settings import Relaxed
-from foon_asp.asp.stating import loaded
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.encoding import located, read_encoding
+from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.search import ground
 from foon_asp.grounding.parsing import nodes, parse
 from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
+from foon_asp.rules.clause import place, variables, written
+from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+from foon_asp.rules.stating import loaded
 from foon_asp.text.diagnostics import Diagnostic, InputError
 
 _TEXT = "<block>"  # what clingo calls text that is in no file
@@ -50,7 +50,7 @@ def relax(
     (``questions/clash.lp``). With it, it is a rule for ``_broken(C,Way)``, where ``Way`` has the values of
     its variables (``questions/soft.lp``).
     Other rules stay as they are. ``before`` are constraints that messages count first. Raises what
-    :func:`foon_asp.asp.encoding.read_encoding` does.
+    :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     found: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}

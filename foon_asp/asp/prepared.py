@@ -7,19 +7,19 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
 
 if TYPE_CHECKING:  # often there is nothing left to ask clingo
-    from foon_asp.asp.rules import Rules
-    from foon_asp.asp.scales import Scales
+    from foon_asp.encoding.scales import Scales
     from foon_asp.grounding.run import Run
+    from foon_asp.rules.rules import Rules
 
 
 _BY_PERSON = ("_by_person", 1)  # what rules look at that are about who does a unit
@@ -60,7 +60,7 @@ class Prepared:
     @cached_property
     def scales(self) -> "Scales":
         """How the units that are left are measured in clingo; raises like :class:`Scales`."""
-        from foon_asp.asp.scales import Scales  # noqa: PLC0415
+        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         return Scales(self.problem, self.units, self.levels)
 
@@ -70,7 +70,7 @@ class Prepared:
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
-        from foon_asp.asp.facts import write_below, write_facts, write_required  # noqa: PLC0415
+        from foon_asp.encoding.facts import write_below, write_facts, write_required  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
             looked_at = None if self.program.own else self.program.looked_at
@@ -88,7 +88,7 @@ class Prepared:
 
         ``None`` where that is not known at a limit. Raises :class:`UserError` for what is wrong with a rule.
         """
-        from foon_asp.asp.facts import write_given  # noqa: PLC0415
+        from foon_asp.encoding.facts import write_given  # noqa: PLC0415
 
         program = self.asked or self.program
         tree = replace(self, units=tuple(sorted(units)), program=program, rest=True)
@@ -115,10 +115,10 @@ class Prepared:
     ) -> "Run":
         """Ask clingo with additional facts and encodings.
 
-        As :func:`foon_asp.asp.search.run` does; nothing is known where a limit comes before.
+        As :func:`foon_asp.encoding.search.run` does; nothing is known where a limit comes before.
         """
         from foon_asp.asp.integrity import placed  # noqa: PLC0415 (all of it takes clingo along)
-        from foon_asp.asp.search import run  # noqa: PLC0415
+        from foon_asp.encoding.search import run  # noqa: PLC0415
         from foon_asp.grounding.run import Run  # noqa: PLC0415
 
         program, relaxed = self.program, self.settings.relaxed
@@ -210,7 +210,7 @@ def _applied(first: Prepared, rules: "Rules") -> tuple[Prepared, bool]:
 
     Also tells whether a tree that keeps to the rest may need units that lead to no goal.
     """
-    from foon_asp.asp.rule_kind import Kind  # noqa: PLC0415 (takes clingo along)
+    from foon_asp.rules.rule_kind import Kind  # noqa: PLC0415 (takes clingo along)
 
     if first.program.bounded and _BY_PERSON in first.program.looked_at:
         rules = rules.varying({_BY_PERSON})  # bounds may come with it

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from foon_asp.asp.own_encodings import question_encoding
+from foon_asp.encoding.own_encodings import question_encoding
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
-    from foon_asp.asp.rules import Rules
+    from foon_asp.rules.rules import Rules
 
 from foon_asp.grounding.stated import Loaded
 

@@ -8,11 +8,11 @@ fact: searches with the whole kitchen left open were up to a hundred times as lo
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
-from foon_asp.asp.facts import described, write_exponents, write_open_facts, write_product
 from foon_asp.asp.program import Program
-from foon_asp.asp.scales import Scales
-from foon_asp.asp.search import ground, refused
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.facts import described, write_exponents, write_open_facts, write_product
+from foon_asp.encoding.scales import Scales
+from foon_asp.encoding.search import ground, refused
 from foon_asp.grounding.run import ProgramError, Run
 from foon_asp.network import Network
 from foon_asp.problem import Objective, Problem
@@ -45,7 +45,7 @@ class Session:
         """Give a ground program for a question: a kept one, or a new one if none fits.
 
         ``units`` are those that there are, by id, and ``levels`` the objectives as optimized. Raises like
-        :func:`foon_asp.asp.search.ground`.
+        :func:`foon_asp.encoding.search.ground`.
         """
         cases = frozenset(_cases(problem, units))
         like = next((kept for kept in self._programs if kept.is_like(program, problem)), None)
@@ -163,8 +163,8 @@ class OpenProgram:
         """Search for the best answer by those of the levels that are among ``objectives``.
 
         ``products`` of success rates, by exponents, are ruled out; with ``wanted`` the one of that number is
-        asked for instead. ``opt_mode`` is as for :func:`foon_asp.asp.search.run`, its bounds those of the
-        ``objectives``.
+        asked for instead. ``opt_mode`` is as for :func:`foon_asp.encoding.search.run`, its bounds those of
+        the ``objectives``.
         """
         numbers = [self._product(product, deadline) for product in products]
         network = problem.network

@@ -5,14 +5,14 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from foon_asp.asp.constraint import Constraint
-from foon_asp.asp.own_encodings import ENCODING_FILES, is_own
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.own_encodings import ENCODING_FILES, is_own
 from foon_asp.grounding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.problem import Objective
 from foon_asp.reduce import ALL, Reduction
 from foon_asp.resources import encodings_folder
+from foon_asp.rules.constraint import Constraint
 
 if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import Session

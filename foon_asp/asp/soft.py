@@ -4,16 +4,16 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.constraint import Constraint, find_constraint
-from foon_asp.asp.facts import write_greatest_penalty, write_least_penalty, write_soft, write_tree
 from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.outcome import Outcome, Status
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.settings import Relaxed, Settings
 from foon_asp.asp.solver import Reporter, solve_prepared
+from foon_asp.encoding.facts import write_greatest_penalty, write_least_penalty, write_soft, write_tree
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective, Problem
+from foon_asp.rules.constraint import Constraint, find_constraint
 
 
 class Broken(NamedTuple):

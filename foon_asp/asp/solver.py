@@ -16,8 +16,8 @@ from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.reduce import ExactCosts, Listener, Reduced, Reduction, Wide
 
 if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
-    from foon_asp.asp.scales import Scales
     from foon_asp.asp.session import OpenProgram
+    from foon_asp.encoding.scales import Scales
     from foon_asp.grounding.grounded import Grounded
     from foon_asp.grounding.run import Run
 
@@ -316,7 +316,7 @@ class _Solver:
             if before == asked:
                 return program
             program.close()
-        from foon_asp.asp import facts  # noqa: PLC0415 (often there is nothing left to ask)
+        from foon_asp.encoding import facts  # noqa: PLC0415 (often there is nothing left to ask)
 
         began = time.perf_counter()
         text = self.first.facts + self.rules + facts.write_objectives(objectives)
@@ -327,7 +327,7 @@ class _Solver:
             text += facts.write_exponents(self.problem, self._scaled())
             text += "".join(itertools.starmap(facts.write_product, enumerate(products)))
             text += facts.write_seen(range(len(products))) if wanted is None else facts.write_wanted(wanted)
-        from foon_asp.asp.search import ground  # noqa: PLC0415 (slow to import)
+        from foon_asp.encoding.search import ground  # noqa: PLC0415 (slow to import)
 
         began = time.perf_counter()
         try:

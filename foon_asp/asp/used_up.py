@@ -10,11 +10,11 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.exact_success import RateScale, rate_scale
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import Reporter
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
+from foon_asp.encoding.exact_success import RateScale, rate_scale
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, Restriction, levels, multiplies, reach
 from foon_asp.proof.replay import replay_for
@@ -362,8 +362,8 @@ class _Counting:
         return None
 
     def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
-        from foon_asp.asp import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
-        from foon_asp.asp.scales import Scales  # noqa: PLC0415
+        from foon_asp.encoding import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
+        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         solver, problem = self._solver, self._problem
         units = [self._units[a] for a in times]

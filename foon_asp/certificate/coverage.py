@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from foon_asp.asp import Settings
-from foon_asp.asp.constraint import Constraint, LibraryUse, RuleText, find_constraint
-from foon_asp.asp.own_encodings import is_own
+from foon_asp.encoding.own_encodings import is_own
 from foon_asp.problem import Problem
 from foon_asp.proof.constraint import LIBRARY, OWN, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.proof.verify import canonical
+from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
 
 # Values that are listed in facts, of a file of the user's as well: the constant that gives one, if one does.
 _LISTED = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
@@ -129,14 +129,15 @@ def _value(written: str, kind: type) -> Any:
 def _text(written: str) -> str:
     if not written.startswith('"'):
         return written
-    from foon_asp.asp.encoding import string_constant  # noqa: PLC0415 - it loads clingo
+    from foon_asp.encoding.encoding import string_constant  # noqa: PLC0415 - it loads clingo
 
     return string_constant(written)
 
 
 def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
     """Give the values that rules list by predicate; empty where they say anything else, unless they may."""
-    from foon_asp.asp import encoding, stating  # noqa: PLC0415 - they load clingo
+    from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
+    from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
 
     found: dict[str, set[str]] = {}
     for line in encoding.read_encoding(stating.loaded((constraint,))[constraint]).text.splitlines():

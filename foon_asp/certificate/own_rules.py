@@ -7,19 +7,19 @@ from typing import Any
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.constraint import Constraint, LibraryUse, RuleText, find_constraint, named_constraint
-from foon_asp.asp.encoding import read_encoding
-from foon_asp.asp.encoding_file import included_files
-from foon_asp.asp.own_encodings import is_own
-from foon_asp.asp.rules import Contradiction
 from foon_asp.asp.settings import Bounded
 from foon_asp.certificate.coverage import Coverage
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.encoding import read_encoding
+from foon_asp.encoding.encoding_file import included_files
+from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem
 from foon_asp.proof.constraint import OWN, Rule
 from foon_asp.proof.verify import LimitError, RefusedError, canonical
 from foon_asp.reduce import NONE
+from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint, named_constraint
+from foon_asp.rules.rules import Contradiction
 
 
 def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> Coverage | None:

@@ -72,7 +72,7 @@ def measured(named: dict[str, Any]) -> Collection[str]:
     files = named["measures"]
     if not files:
         return ()
-    from foon_asp.asp.measure import read_measures
+    from foon_asp.rules.measure import read_measures
 
     return read_measures(files)
 

@@ -6,12 +6,12 @@ from typing import Any, TypeVar
 
 import click
 
-from foon_asp.asp.constraint import Constraint, named_constraint
 from foon_asp.cli import held
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.deadline import memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.questions.contract import Kind, Option, Part
+from foon_asp.rules.constraint import Constraint, named_constraint
 
 Command = TypeVar("Command", bound=Callable[..., object])
 

@@ -4,8 +4,6 @@ import click
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.constraint import Constraint, RuleText
-from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
@@ -14,6 +12,8 @@ from foon_asp.errors import UserError
 from foon_asp.questions.contract import Part
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
 from foon_asp.report.constraint_list import constraints_json, constraints_text
+from foon_asp.rules.constraint import Constraint, RuleText
+from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.json_value import json_text
 
 _EXPLAIN = CONSTRAINTS._replace(

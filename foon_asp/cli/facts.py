@@ -6,7 +6,6 @@ import click
 
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.asp.constraint import Constraint
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
@@ -14,6 +13,7 @@ from foon_asp.cli.output import write_data
 from foon_asp.document.json_document import document
 from foon_asp.problem import parse_objectives
 from foon_asp.questions.options import CONSTRAINTS, CONTAINERS, ENCODINGS, GOALS, OBJECTIVES, RULE, SOFT
+from foon_asp.rules.constraint import Constraint
 from foon_asp.text.json_value import json_text
 
 

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from foon_asp.asp.constraint import Constraint, RuleText
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
+from foon_asp.rules.constraint import Constraint, RuleText
 
 if TYPE_CHECKING:  # clingo, which often is not needed
     from foon_asp.asp.session import Session

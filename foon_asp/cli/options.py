@@ -159,7 +159,7 @@ def read_dataset(
         files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
         dataset = read_data(files, lenient, level)
         if measures:
-            from foon_asp.asp.measure import read_measures
+            from foon_asp.rules.measure import read_measures
 
             dataset = dataset.measured(read_measures(measures))
     context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import click
 
-from foon_asp.asp.constraint import Constraint
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
@@ -16,6 +15,7 @@ from foon_asp.cli.shell_session import Leave, ShellSession
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.rules.constraint import Constraint
 
 
 @click.command("shell")

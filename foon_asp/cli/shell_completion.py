@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import click
 
-from foon_asp.asp.constraint_library import library_constraints
 from foon_asp.cli.shell_line import quoted, take_apart
 from foon_asp.cli.shell_session import QUESTIONS, WORDS, ShellSession
 from foon_asp.cli.verbs import verb_command
 from foon_asp.problem import ContainerRule, Objective
+from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.goal_name import NodeNames, nodes_beginning, notation
 
 _MOST = 200  # candidates shown

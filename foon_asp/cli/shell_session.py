@@ -10,11 +10,7 @@ import click
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.constraint import Constraint, RuleText, find_constraint, named_constraint
-from foon_asp.asp.constraint_library import library_constraints
-from foon_asp.asp.encoding import read_encoding
 from foon_asp.asp.session import Session
-from foon_asp.asp.stating import loaded
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.held import Held
 from foon_asp.cli.named_path import NamedPath
@@ -23,9 +19,13 @@ from foon_asp.cli.shell_line import quoted, take_apart
 from foon_asp.cli.verbs import verb_command
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline, memory_size, seconds, size_text
+from foon_asp.encoding.encoding import read_encoding
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, parse_objectives
 from foon_asp.questions.index import INDEX
+from foon_asp.rules.constraint import Constraint, RuleText, find_constraint, named_constraint
+from foon_asp.rules.constraint_library import library_constraints
+from foon_asp.rules.stating import loaded
 from foon_asp.text.goal_name import Wording, notation
 
 # The verbs that ask something of a network and a kitchen.

@@ -157,7 +157,7 @@ class Dataset:
         dataset = self.valued(rates, unit_prices)
         if measures is not None:
             # takes the facts for rules along, which most questions do without
-            from foon_asp.asp.measure import read_measures  # noqa: PLC0415
+            from foon_asp.rules.measure import read_measures  # noqa: PLC0415
 
             dataset = dataset.measured(read_measures(measures))
         if kitchen is None and not adding and not without:

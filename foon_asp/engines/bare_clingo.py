@@ -25,8 +25,8 @@ from typing import Any, NamedTuple
 
 from foon_asp.asp import Status
 from foon_asp.asp.bare_program import BareProgram, bare_program
-from foon_asp.asp.facts import write_exactly_alike, write_given, write_most_alike, write_same_rates
-from foon_asp.asp.own_encodings import question_encoding
+from foon_asp.encoding.facts import write_exactly_alike, write_given, write_most_alike, write_same_rates
+from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.engines.engine import (
     Asked,
     DisagreementError,

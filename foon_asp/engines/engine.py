@@ -6,9 +6,9 @@ from fractions import Fraction
 from typing import NamedTuple, Protocol
 
 from foon_asp.asp import Outcome, Settings
-from foon_asp.asp.constraint import Constraint
 from foon_asp.problem import Objective, Problem, backwards, executable_order, multiplies
 from foon_asp.proof.simulation import Verdict, simulate_for
+from foon_asp.rules.constraint import Constraint
 
 _GREATEST = 10**9  # of what a unit costs: beside more, floats lose costs that count
 

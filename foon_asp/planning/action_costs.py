@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.asp.exact_success import problem_scale
+from foon_asp.encoding.exact_success import problem_scale
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, multiplies
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
-from foon_asp.asp.facts import write_distances
-from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.ranking import Ranked
-from foon_asp.asp.search import run
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import costs_json, document, steps_json
+from foon_asp.encoding.facts import write_distances
+from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.search import run
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies

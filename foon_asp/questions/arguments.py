@@ -7,12 +7,12 @@ from pathlib import Path
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import GREATEST_WEIGHT
-from foon_asp.asp.constraint import Constraint, find_constraint, given_constraint
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, parse_objectives
 from foon_asp.questions.caller import caller
+from foon_asp.rules.constraint import Constraint, find_constraint, given_constraint
 
 Objectives = str | Iterable[str]
 """An objective, a list by commas, or several: the first counts most."""

@@ -5,15 +5,14 @@ from dataclasses import dataclass, replace
 
 from foon_asp.asp import Settings, Status
 from foon_asp.asp.assembly import CLINGO_OPTIONS, assemble
-from foon_asp.asp.constraint import Constraint, find_constraint
-from foon_asp.asp.facts import write_constraints, write_corrections
 from foon_asp.asp.integrity import IntegrityConstraint, relax
-from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.prepared import prepare
-from foon_asp.asp.search import run
 from foon_asp.asp.solver import solve_prepared
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document
+from foon_asp.encoding.facts import write_constraints, write_corrections
+from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.encoding.search import run
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
@@ -32,6 +31,7 @@ from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import goal_lines, headline
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
+from foon_asp.rules.constraint import Constraint, find_constraint
 
 
 @dataclass(frozen=True, repr=False)

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from foon_asp.asp import Settings, Status
-from foon_asp.asp.constraint import Constraint
 from foon_asp.dataset.paths import File, Files
 from foon_asp.engines import Asked, Check, DisagreementError, Engine, find_engines
 from foon_asp.engines import cross_check as ask_engines
@@ -26,6 +25,7 @@ from foon_asp.questions.contract import described
 from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.solve_soft import SoftAnswer, softly_answered
 from foon_asp.report.disagreement import write_disagreement
+from foon_asp.rules.constraint import Constraint
 from foon_asp.text.json_value import Json
 
 

@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 from foon_asp.asp import Status, solve
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.facts import write_for_sale, write_list
-from foon_asp.asp.own_encodings import question_encoding
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document, fraction_json, nodes_json
+from foon_asp.encoding.facts import write_for_sale, write_list
+from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Number, Objective, Problem, exact

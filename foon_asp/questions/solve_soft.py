@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from foon_asp.asp import Settings, Status
-from foon_asp.asp.constraint import Constraint
 from foon_asp.asp.soft import Broken
 from foon_asp.asp.soft import solve_soft as find
 from foon_asp.dataset.paths import File, Files
@@ -25,6 +24,7 @@ from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import headline, outcome_text
 from foon_asp.report.integrity_constraint import constraint_json, constraint_lines
+from foon_asp.rules.constraint import Constraint
 from foon_asp.text.json_value import Json
 
 

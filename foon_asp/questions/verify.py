@@ -181,7 +181,7 @@ def verify(
 
 def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:
     """Check what units are said to cost; raises :class:`RefusedError` where the rules say otherwise."""
-    from foon_asp.asp.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
+    from foon_asp.rules.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
 
     for measure in verified.trusted:
         rules = Measure(measure.name, measure.rules, f"the rules of {measure.name}")

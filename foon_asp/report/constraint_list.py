@@ -4,8 +4,8 @@ import shlex
 import textwrap
 from collections.abc import Sequence
 
-from foon_asp.asp.constraint_library import LibraryConstraint
 from foon_asp.document.json_document import document
+from foon_asp.rules.constraint_library import LibraryConstraint
 from foon_asp.text.json_value import Json
 
 _WIDTH = 100

@@ -6,11 +6,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from foon_asp.asp import Outcome
-from foon_asp.asp.constraint import Constraint, RuleText, find_constraint
-from foon_asp.asp.encoding import read_encoding
-from foon_asp.asp.own_encodings import ENCODING_FILES
 from foon_asp.certificate import coverage
 from foon_asp.document.json_document import costs_json
+from foon_asp.encoding.encoding import read_encoding
+from foon_asp.encoding.own_encodings import ENCODING_FILES
 from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import printed_command
 from foon_asp.errors import UserError
@@ -18,6 +17,7 @@ from foon_asp.proof.verify import digests
 from foon_asp.report.answer import answer_json
 from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import encodings_folder
+from foon_asp.rules.constraint import Constraint, RuleText, find_constraint
 from foon_asp.text.exact_price import decimal_text
 from foon_asp.text.json_value import json_text
 from foon_asp.text.unit_price_list import write_unit_prices

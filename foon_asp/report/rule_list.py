@@ -4,10 +4,10 @@ import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
-from foon_asp.asp.rule_kind import Kind
-from foon_asp.asp.rules import Rules, Together, Told
 from foon_asp.document.json_document import document
 from foon_asp.network import Source
+from foon_asp.rules.rule_kind import Kind
+from foon_asp.rules.rules import Rules, Together, Told
 from foon_asp.text.json_value import Json
 
 _WIDTH = 60

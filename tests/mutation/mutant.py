@@ -47,7 +47,7 @@ class Mutant(NamedTuple):
     def room(self) -> str:
         """The folder of its file, or the file where only some files of a folder are tried."""
         folder = self.file.split("/")[1]
-        return self.file if folder == "asp" else f"foon_asp/{folder}"
+        return self.file if folder in {"asp", "encoding"} else f"foon_asp/{folder}"
 
     def applied(self, text: str) -> str:
         """Give the text of the file with the change."""

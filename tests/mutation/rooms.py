@@ -7,7 +7,13 @@ from tests.mutation.operators import mutants
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("proof", "reduce", "bounds", "certificate")
-FILES = ("asp/prepared.py", "asp/solver.py", "asp/ranking.py", "asp/exact_success.py", "asp/scales.py")
+FILES = (
+    "asp/prepared.py",
+    "asp/solver.py",
+    "asp/ranking.py",
+    "encoding/exact_success.py",
+    "encoding/scales.py",
+)
 NOT_YET = ("bounds/counts.py", "bounds/whole_program.py")  # for plans in which items are used up
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from clingo.ast import AST, ASTType, ComparisonOperator, Location, Transformer
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.encoding_file import LARGEST, check_text, excerpt, included_files
-from foon_asp.asp.facts import FACT_PREDICATES, quote
+from foon_asp.encoding.encoding_file import LARGEST, check_text, excerpt, included_files
+from foon_asp.encoding.facts import FACT_PREDICATES, quote
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import listener
 from foon_asp.grounding.parsing import parse
@@ -95,7 +95,7 @@ class Encoding:
 def read_encoding(rules: Loaded) -> Encoding:
     """Parse an encoding, the files it includes with it; raises :class:`InputError` for a syntax error.
 
-    Raises what :func:`foon_asp.asp.encoding_file.included_files` and ``check_text`` there do, too.
+    Raises what :func:`foon_asp.encoding.encoding_file.included_files` and ``check_text`` there do, too.
     """
     encoding = Encoding(rules)
     collector = _Collector(encoding)

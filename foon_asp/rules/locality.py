@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 from clingo.ast import AST, ASTType
 
-from foon_asp.asp.clause import Aggregate, Clause, Conditional, Literal, Part, Signature, Strange
-from foon_asp.asp.dependence import Dependence
-from foon_asp.asp.fact_subject import DECISIONS, SUBJECTS, Subject
 from foon_asp.network import Source
+from foon_asp.rules.clause import Aggregate, Clause, Conditional, Literal, Part, Signature, Strange
+from foon_asp.rules.dependence import Dependence
+from foon_asp.rules.fact_subject import DECISIONS, SUBJECTS, Subject
 
 _FACTS = {**SUBJECTS, **DECISIONS}
 _Known = dict[str, set[Subject]]  # what terms are known to be, of the tree

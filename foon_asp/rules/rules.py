@@ -9,19 +9,19 @@ from typing import NamedTuple
 
 from clingo.ast import AST, ASTType
 
-from foon_asp.asp.clause import Clause, Signature, written
-from foon_asp.asp.encoding import Encoding, read_encoding
-from foon_asp.asp.facts import hundredths, write_facts_read
-from foon_asp.asp.flat_answers import FlatAnswers
-from foon_asp.asp.flat_body import Asking, FlatBodies, NotFlatError, Way
-from foon_asp.asp.lifted_program import NOBODY, LiftedProgram, stands_alone
-from foon_asp.asp.rule_kind import Analysis, Kind, Rule
-from foon_asp.asp.search import run
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.encoding import Encoding, read_encoding
+from foon_asp.encoding.facts import hundredths, write_facts_read
+from foon_asp.encoding.search import run
 from foon_asp.errors import UserError
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.problem import Problem, Restriction, reach
+from foon_asp.rules.clause import Clause, Signature, written
+from foon_asp.rules.flat_answers import FlatAnswers
+from foon_asp.rules.flat_body import Asking, FlatBodies, NotFlatError, Way
+from foon_asp.rules.lifted_program import NOBODY, LiftedProgram, stands_alone
+from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
 _DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}
 _SHRINKING = _DELETING | {Kind.SHRINKING}

@@ -10,20 +10,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from foon_asp.asp.constraint import exists
-from foon_asp.asp.facts import OBJECT_FACTS, object_facts, quote, write_worlds
 from foon_asp.deadline import Deadline
+from foon_asp.encoding.facts import OBJECT_FACTS, object_facts, quote, write_worlds
 from foon_asp.errors import UserError
 from foon_asp.grounding.run import ProgramError
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Network, Source
 from foon_asp.problem import Problem
+from foon_asp.rules.constraint import exists
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import read_plain_text
 
 if TYPE_CHECKING:  # clingo, which is not needed before there is a measure
-    from foon_asp.asp.measure_rules import MeasureRules, Statement
     from foon_asp.grounding.derived import Value
+    from foon_asp.rules.measure_rules import MeasureRules, Statement
 
 Cost = int | Fraction
 
@@ -53,7 +53,7 @@ class Measure:
 
         Raises :class:`InputError` for rules that give a unit two costs, or one that is no number from 0.
         """
-        from foon_asp.asp.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
+        from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
         rules = read_rules(self.text, self.place)
         seen = problem.as_seen or problem
@@ -77,7 +77,7 @@ def wrong_cost(
 
     Each unit is looked at by itself, whatever others are like it. Raises as :meth:`Measure.costs` does.
     """
-    from foon_asp.asp.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
+    from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
     everything = measure.costs(problem, deadline)
     rules = read_rules(measure.text, measure.place)
@@ -172,9 +172,9 @@ class _Evaluation:
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
         """Let clingo derive costs of units; raises :class:`InputError` for what it would leave out."""
-        from foon_asp.asp.encoding import fault  # noqa: PLC0415 (takes clingo along)
-        from foon_asp.asp.measure_rules import COST, WORLD  # noqa: PLC0415
+        from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (takes clingo along)
         from foon_asp.grounding import derived  # noqa: PLC0415
+        from foon_asp.rules.measure_rules import COST, WORLD  # noqa: PLC0415
 
         statements = list(statements)
         problem, reads = self._problem, self._rules.reads
@@ -205,7 +205,7 @@ class _Evaluation:
         )
 
     def _remark(self, code: str, message: str, source: Source) -> Diagnostic:
-        from foon_asp.asp.encoding import located  # noqa: PLC0415 (takes clingo along)
+        from foon_asp.encoding.encoding import located  # noqa: PLC0415 (takes clingo along)
 
         stated = Stated(self._measure.place, self._measure.text)
         return located(Severity.ERROR, code, message, source, [stated])
@@ -270,7 +270,7 @@ def read_measures(given: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
     given = [given] if isinstance(given, str | PathLike) else list(given)
     if not given:
         return {}
-    from foon_asp.asp.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
+    from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
     found: dict[str, Measure] = {}
     texts = [

@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import NamedTuple
 
-from foon_asp.asp.clause import Signature
+from foon_asp.rules.clause import Signature
 
 
 class Subject(StrEnum):

@@ -14,7 +14,8 @@ from clingo import Number
 from clingo.ast import AST, AggregateFunction, ASTType, parse_string
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.clause import (
+from foon_asp.network import Source
+from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
@@ -30,9 +31,8 @@ from foon_asp.asp.clause import (
     place,
     value,
 )
-from foon_asp.asp.dependence import AVAILABLE, USE, Dependence, Depends, Doubt
-from foon_asp.asp.locality import Locality
-from foon_asp.network import Source
+from foon_asp.rules.dependence import AVAILABLE, USE, Dependence, Depends, Doubt
+from foon_asp.rules.locality import Locality
 
 
 class Kind(StrEnum):

@@ -5,8 +5,8 @@ from fractions import Fraction
 from functools import cache
 from pathlib import PurePath
 
-from foon_asp.asp.encoding_file import LARGEST
-from foon_asp.asp.scales import Scales
+from foon_asp.encoding.encoding_file import LARGEST
+from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
 from foon_asp.network import ObjectNode, Source

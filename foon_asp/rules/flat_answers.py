@@ -7,9 +7,11 @@ from typing import Any, NamedTuple
 from clingo.ast import ComparisonOperator
 from clingo.symbol import Number, String, Symbol
 
-from foon_asp.asp.clause import Signature, compared
-from foon_asp.asp.facts import millionths, source_names
-from foon_asp.asp.flat_body import (
+from foon_asp.encoding.facts import millionths, source_names
+from foon_asp.escapes import encodable
+from foon_asp.problem import Problem
+from foon_asp.rules.clause import Signature, compared
+from foon_asp.rules.flat_body import (
     Asking,
     Compare,
     Constant,
@@ -24,8 +26,6 @@ from foon_asp.asp.flat_body import (
     Way,
     bound_by,
 )
-from foon_asp.escapes import encodable
-from foon_asp.problem import Problem
 
 _Values = list[Any]  # of variables, by number: ids, texts, numbers, symbols
 _Step = Callable[[_Values], bool]

@@ -12,7 +12,9 @@ from typing import NamedTuple
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.clause import (
+from foon_asp.encoding.encoding import PUBLIC
+from foon_asp.network import Source
+from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
@@ -25,9 +27,7 @@ from foon_asp.asp.clause import (
     literals,
     value,
 )
-from foon_asp.asp.encoding import PUBLIC
-from foon_asp.asp.fact_subject import SUBJECTS
-from foon_asp.network import Source
+from foon_asp.rules.fact_subject import SUBJECTS
 
 USE, AVAILABLE = ("use", 1), ("available", 1)
 

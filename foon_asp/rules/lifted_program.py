@@ -7,7 +7,7 @@ derives. What holds without any unit has ``NOBODY`` in its place.
 
 from collections.abc import Iterable, Sequence
 
-from foon_asp.asp.clause import (
+from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
@@ -17,7 +17,7 @@ from foon_asp.asp.clause import (
     global_variables,
     literals,
 )
-from foon_asp.asp.rule_kind import Analysis, Kind
+from foon_asp.rules.rule_kind import Analysis, Kind
 
 NOBODY = -1
 

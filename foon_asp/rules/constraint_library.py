@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.asp.encoding import read_encoding
+from foon_asp.encoding.encoding import read_encoding
 from foon_asp.resources import encodings_folder
 
 _SECTION = re.compile(r"(\w+): +(\S.*)$")

@@ -41,7 +41,7 @@ def run(
     ``predicates``, by name and arity, have atoms that are wanted besides ``use``, which begin with a number.
     ``products`` says how many products of rates the facts describe, ``endless`` that nobody knows whether the
     grounding comes to an end. Stopped at a limit, or at ctrl-C, it gives what is known by then. Raises what
-    :func:`foon_asp.asp.encoding.fault` makes of clingo's messages where a program is at fault.
+    :func:`foon_asp.encoding.encoding.fault` makes of clingo's messages where a program is at fault.
     """
     began = time.perf_counter()
     try:
@@ -75,6 +75,6 @@ def ground(
 
 def refused(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
     """Turn clingo's messages into one error with places and source lines."""
-    from foon_asp.asp.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
+    from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
     return fault(error.messages, error.otherwise, files)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
 from clingo.symbol import Symbol, SymbolType
 
-from foon_asp.asp.clause import (
+from foon_asp.rules.clause import (
     Aggregate,
     Clause,
     Conditional,
@@ -27,9 +27,9 @@ from foon_asp.asp.clause import (
     value,
     variables,
 )
-from foon_asp.asp.dependence import AVAILABLE, USE
-from foon_asp.asp.fact_subject import SUBJECTS, Subject
-from foon_asp.asp.rule_kind import Analysis
+from foon_asp.rules.dependence import AVAILABLE, USE
+from foon_asp.rules.fact_subject import SUBJECTS, Subject
+from foon_asp.rules.rule_kind import Analysis
 
 _OFTEN = {"input", "output", "needs", "gives", "state", "ingredient", "located", "source", "video"}
 _READ = _OFTEN | {"motion", "label", "inputs", "ingredients", "rate", "price"}

@@ -24,9 +24,9 @@ from clingo.ast import (
 )
 from clingo.symbol import SymbolType
 
-from foon_asp.asp.encoding import PUBLIC_NAMES, Signature, fault, located, undefined
-from foon_asp.asp.encoding_file import check_text
-from foon_asp.asp.facts import FACT_PREDICATES, OBJECT_FACTS
+from foon_asp.encoding.encoding import PUBLIC_NAMES, Signature, fault, located, undefined
+from foon_asp.encoding.encoding_file import check_text
+from foon_asp.encoding.facts import FACT_PREDICATES, OBJECT_FACTS
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import listener
 from foon_asp.grounding.parsing import parse

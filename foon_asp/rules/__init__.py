@@ -1,0 +1,1 @@
+"""Rules of the user: constraints and measures, and what they do to the trees of a question."""
