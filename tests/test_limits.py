@@ -95,14 +95,35 @@ def command(folder: Path, *more: str) -> list[str]:
     return [sys.executable, "-m", "foon_asp", "solve", *goal, *more]
 
 
-def test_ctrl_c_gives_the_best_tree_and_exits_with_3(hard_folder: Path) -> None:
-    with subprocess.Popen(
-        command(hard_folder, "--format", "json"), stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as process:
-        time.sleep(2.5)
+def read_terminal(terminal: int, until: bytes) -> bytes:
+    """Read what a program writes on a terminal, until these words are on it or the program ends."""
+    seen = b""
+    while until not in seen:
+        try:
+            chunk = os.read(terminal, 4096)
+        except OSError:  # the terminal is closed when the program ends
+            break
+        if not chunk:
+            break
+        seen += chunk
+    return seen
+
+
+def test_ctrl_c_gives_the_best_tree_and_exits_with_3(hard_folder: Path, tmp_path: Path) -> None:
+    terminal, its_end = pty.openpty()
+    wide = {**os.environ, "COLUMNS": "200"}  # so that no words are on two lines
+    answer = tmp_path / "answer.json"  # a pipe that nobody reads meanwhile would be full
+    arguments = command(hard_folder, "--format", "json")
+    with (
+        answer.open("wb") as output,
+        subprocess.Popen(arguments, stdout=output, stderr=its_end, env=wide) as process,
+    ):
+        os.close(its_end)
+        assert b"best tree" in read_terminal(terminal, b"best tree")
         process.send_signal(signal.SIGINT)
-        output, errors = process.communicate(timeout=20)
-    result = json.loads(output)
+        errors = read_terminal(terminal, b"there are no such words")
+    os.close(terminal)
+    result = json.loads(answer.read_bytes())
     assert process.returncode == 3, errors
     assert result["status"] == "feasible"
     assert 0 < result["lower_bound"]["units"] <= result["costs"]["units"] == len(result["units"])
@@ -115,21 +136,13 @@ def test_progress_is_shown_on_a_terminal_only(hard_folder: Path, tmp_path: Path)
     assert piped.returncode == 3
     assert b"best tree" not in piped.stderr
 
-    master, slave = pty.openpty()
+    terminal, its_end = pty.openpty()
     wide = {**os.environ, "COLUMNS": "200"}  # so that no words are on two lines
     answer = tmp_path / "answer.json"  # a pipe that nobody reads meanwhile would be full
-    with answer.open("wb") as output, subprocess.Popen(arguments, stdout=output, stderr=slave, env=wide):
-        os.close(slave)
-        seen = b""
-        while True:
-            try:
-                chunk = os.read(master, 4096)
-            except OSError:  # the terminal is closed when the program ends
-                break
-            if not chunk:
-                break
-            seen += chunk
-    os.close(master)
+    with answer.open("wb") as output, subprocess.Popen(arguments, stdout=output, stderr=its_end, env=wide):
+        os.close(its_end)
+        seen = read_terminal(terminal, b"there are no such words")
+    os.close(terminal)
     assert b"best tree" in seen
     assert b"units at least" in seen
     assert json.loads(answer.read_bytes())["status"] == "feasible"
