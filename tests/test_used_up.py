@@ -6,14 +6,17 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+import clingo
 import pytest
 
 import foon_asp
 from foon_asp import ObjectNode, Source, UserError, parse_node
-from foon_asp.asp import Status, solve
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.bare_program import bare_program
 from foon_asp.problem import Fate, Objective, UsedUp, levels
 from foon_asp.problem.items import fate
 from foon_asp.proof.replay import replay_for
+from foon_asp.resources import bundled_kitchen
 from foon_asp.text.item_list import read_stays, read_stock
 from tests.conftest import Cli
 from tests.used_up_oracle import UTENSILS, key, plans, random_problem, stays
@@ -373,3 +376,101 @@ def test_a_plan_without_steps_keeps_to_the_rules() -> None:
     problem = foon_asp.build(network.build(), kitchen=[egg]).problem(egg, items="used-up")
     assert foon_asp.solve(problem).units == ()
     assert foon_asp.solve(problem, constraints=[":- not use((0;0))."]).status is not Status.OPTIMAL
+
+
+# --- Other questions.
+
+
+def test_other_questions_answer_for_plans_too(cli: Cli, tmp_path: Path) -> None:
+    store = tmp_path / "bundled.foon"
+    assert cli("import", "--data", bundled_kitchen(), "--store", store).code == 0
+    asked = ("--network", store, "--goal", "greek salad", "--items", "used-up")
+    answers = json.loads(cli("optima", *asked, "--format", "json").out)
+    assert answers["items"] == "used-up"
+    assert [answer["costs"]["units"] for answer in answers["answers"]] == [33, 33, 36]
+    compared = json.loads(cli("compare", *asked, "--search", "bfs", "--format", "json").out)
+    (row,) = compared["comparisons"]
+    assert (compared["items"], row["optimum"]["units"]["value"]) == ("used-up", 33)
+    assert row["searches"][0]["verdict"] == "does not execute"
+    questions = tmp_path / "questions.jsonl"
+    questions.write_text(
+        '{"goal": "greek salad", "items": ["lasting", "used-up"]}\n'
+        '{"goal": "ice", "items": "used-up", "stock": "stock.txt", "stays": "stays.txt"}',
+        encoding="utf-8",
+    )
+    (tmp_path / "stock.txt").write_text("ice; cubed; in [ice cube tray]\t0\n", encoding="utf-8")
+    (tmp_path / "stays.txt").write_text("knife\tstays\n", encoding="utf-8")
+    rows = tmp_path / "rows.jsonl"
+    assert cli("batch", questions, "--results", rows, "--network", store).code == 0
+    found = [json.loads(line) for line in rows.read_text(encoding="utf-8").splitlines()[1:]]
+    assert [(row["items"], row["costs"] and row["costs"]["units"]) for row in found] == [
+        ("lasting", 29),
+        ("used-up", 33),
+        ("used-up", None),
+    ]
+    questions.write_text('{"goal": "ice", "stays": "stays.txt"}', encoding="utf-8")
+    assert 'add "items": "used-up"' in cli("batch", questions, "--results", rows).err
+
+
+def test_a_drawn_plan_has_a_box_for_each_copy() -> None:
+    network = foon_asp.NetworkBuilder()
+    egg, knife, dirty, cut, cake = map(parse_node, ("egg", "knife", "knife; dirty", "egg; cut", "cake"))
+    network.add("wash", [dirty], [knife], Source("by hand", 1))
+    network.add("cut", [egg, knife], [cut, dirty], Source("by hand", 2))
+    network.add("bake", [cut, knife], [cake], Source("by hand", 3))
+    foon = foon_asp.build(network.build(), kitchen=[egg, dirty])
+    problem = foon.problem(cake, items="used-up")
+    plan = foon_asp.solve(problem).tree
+    assert plan is not None
+    for drawn in (foon_asp.draw(problem), foon_asp.draw(problem, tree=plan)):
+        picture = drawn.drawing()
+        assert picture is not None
+        heads = {box.name: "/".join((*box.head, *box.details)) for box in picture.boxes}
+        between = [name for name, head in heads.items() if head == "knife"]
+        makers = [heads[tail] for tail, head in picture.arrows if head in between]
+        takers = [heads[head] for tail, head in picture.arrows if tail in between]
+        assert sorted(makers) == ["1. wash", "2. wash"]
+        assert sorted(takers) == ["3. cut", "4. bake"]
+    broken = foon_asp.draw(problem, tree=plan.units[1:]).drawing()
+    assert broken is not None
+    assert "does not run for want of knife" in broken.caption[1]
+
+
+def test_a_search_whose_tree_runs_in_another_order_is_judged_by_that() -> None:
+    network = foon_asp.NetworkBuilder()
+    egg, knife, dirty, cut, cake = map(parse_node, ("egg", "knife", "knife; dirty", "egg; cut", "cake"))
+    network.add("mix", [cut, egg], [cake], Source("by hand", 1))
+    network.add("cut", [egg, knife], [cut, dirty], Source("by hand", 2))
+    foon = foon_asp.build(network.build(), kitchen=[egg, knife])
+    problem = foon.problem(cake, items="used-up", stock={egg: 2})
+    (row,) = foon_asp.compare_searches(problem, ["bfs", "dfs"]).comparisons
+    assert row.conditions == "strict containers, items used up"
+    assert {judgement.executes for judgement in row.judgements} <= {
+        "executes as listed",
+        "executes in another order",
+    }
+    one = foon.problem(cake, items="used-up", stock={egg: 1})
+    (row,) = foon_asp.compare_searches(one, ["bfs"]).comparisons
+    assert (row.judgements[0].executes, row.optima[Objective.UNITS].status) == (
+        "does not execute",
+        "infeasible",
+    )
+
+
+@pytest.mark.parametrize("seed", [3, 5, 8, 13, 21, 34])
+def test_bare_clingo_finds_the_same_optimum_from_the_facts(seed: int) -> None:
+    problem = random_problem(seed)
+    outcome = solve(problem, (Objective.UNITS,))
+    given = bare_program(problem, (Objective.UNITS,), Settings(), {})
+    control = clingo.Control(["--opt-mode=opt", "0"])
+    for file in given.files:
+        control.load(str(file))
+    control.add("base", [], given.text)
+    control.ground([("base", [])])
+    counts: list[int] = []
+    control.solve(
+        on_model=lambda model: counts.append(
+            sum(a.arguments[1].number for a in model.symbols(shown=True) if a.name == "times")
+        )
+    )
+    assert counts[-1:] == ([] if outcome.costs is None else [outcome.costs.units])

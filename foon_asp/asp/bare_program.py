@@ -7,8 +7,12 @@ from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import prepare
+from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
-from foon_asp.encoding.facts import write_least_penalty, write_objectives
+from foon_asp.asp.used_up import most_executions
+from foon_asp.encoding.facts import write_facts, write_least_penalty, write_objectives, write_times
+from foon_asp.encoding.scales import Scales
+from foon_asp.errors import UserError
 from foon_asp.grounding.stated import Stated
 from foon_asp.problem import Objective, Problem, levels, reach, relevant
 from foon_asp.rules.constraint import Constraint
@@ -51,13 +55,25 @@ def bare_program(
         _, _, relaxed = soft_rules(settings, soft)
         settings = settings._replace(relaxed=relaxed)
         penalty = write_least_penalty(len(levels(tuple(objectives))) + 1)
-    program = assemble(settings, lambda _: None)
+    program = assemble(settings, lambda _: None, used_up=problem.items is not None)
+    if problem.items is not None:
+        if soft:
+            raise UserError("soft constraints are not built for items that are used up")
+        most = most_executions(problem, objectives, settings)
+        asked = levels(tuple(objectives))
+        scales = Scales(problem, list(most), asked)
+        facts = write_facts(problem, list(most), scales, program.looked_at) + write_objectives(asked)
+        number = problem.network.unit_number
+        return _written(program, facts + write_times({number(unit): each for unit, each in most.items()}))
     first = prepare(problem, objectives, settings, program._replace(understood=None))
     if first.tree is None:  # bare clingo is to see for itself that a goal cannot be made
         everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
         units = relevant(problem, everything) if program.own else everything.units
         first = replace(first, units=units)
-    facts = first.facts + write_objectives(first.levels) + penalty
+    return _written(program, first.facts + write_objectives(first.levels) + penalty)
+
+
+def _written(program: Program, facts: str) -> BareProgram:
     files = tuple(file for file in program.files if isinstance(file, Path))
     stated = (rules.text.strip() for rules in program.files if isinstance(rules, Stated))
     return BareProgram(files, program.constants, facts, program.rules + "".join(map("{}\n".format, stated)))

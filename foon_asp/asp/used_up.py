@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -45,11 +46,43 @@ def solve_used_up(
 
     Raises :class:`UserError` for what is not built for items that are used up, by name.
     """
-    settings, reporter = settings or Settings(), reporter or Reporter()
+    return _solver(problem, tuple(objectives), settings or Settings(), reporter or Reporter()).solve()
+
+
+def _solver(
+    problem: Problem, objectives: tuple[Objective, ...], settings: Settings, reporter: Reporter
+) -> "_Solver":
     _require_built(settings)
-    asked = levels(tuple(objectives))
+    asked = levels(objectives)
     problem.require_known_for(asked)
-    return _Solver(problem, tuple(objectives), asked, settings, reporter).solve()
+    return _Solver(problem, objectives, asked, settings, reporter)
+
+
+def most_executions(
+    problem: Problem, objectives: Sequence[Objective], settings: Settings
+) -> dict[int, tuple[int, int]]:
+    """Give how often each unit that can matter is executed, at least and at most, by any best plan.
+
+    Where it is proved that there is no plan, each of all units is executed once at most. Raises
+    :class:`UserError` where neither is proved.
+    """
+    solver = _solver(problem, tuple(objectives), settings, Reporter())
+    outcome = solver.solve()
+    if outcome.status is Status.INFEASIBLE:
+        return dict.fromkeys(range(len(problem.network)), (0, 1))
+    if outcome.status is not Status.OPTIMAL or outcome.costs is None:
+        raise UserError("no plan is proved the best, so nothing bounds how often units are executed")
+    units = solver._cut() or []
+    counting = _Counting(solver, units)
+    caps = counting.bound.caps(counting.level(Objective.UNITS, outcome.costs))
+    return {u: (0, outcome.costs.units if cap is None else cap) for u, cap in zip(units, caps, strict=True)}
+
+
+def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
+    """Give units, repeats included, in an order in which a plan runs; ``None`` where none does."""
+    solver = _solver(problem, (Objective.UNITS,), Settings(), Reporter())
+    counted = Counter(units)
+    return _Counting(solver, list(counted)).order(dict(enumerate(counted.values())))
 
 
 def _require_built(settings: Settings) -> None:

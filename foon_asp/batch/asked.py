@@ -12,7 +12,8 @@ class Asked(NamedTuple):
     """One question of a batch, by names.
 
     ``goals`` are made by one tree. ``kitchen`` is a file, or ``None`` for that of the data. ``objective`` is
-    a list by commas of which the first counts most. ``time_limit`` is in seconds.
+    a list by commas of which the first counts most. ``time_limit`` is in seconds. ``items`` may be used up,
+    with files for what is in ``stock`` and what ``stays``.
     """
 
     goals: tuple[str, ...]
@@ -20,6 +21,9 @@ class Asked(NamedTuple):
     containers: str = "strict"
     kitchen: Path | None = None
     time_limit: float | None = None
+    items: str = "lasting"
+    stock: Path | None = None
+    stays: Path | None = None
 
     @property
     def key(self) -> str:
@@ -28,11 +32,13 @@ class Asked(NamedTuple):
 
     def shown(self) -> dict[str, object]:
         """Give what was asked, in plain values."""
+        files = {"kitchen": self.kitchen, "stock": self.stock, "stays": self.stays}
         return {
             "goal": self.goals[0] if len(self.goals) == 1 else list(self.goals),
             "objective": self.objective,
             "containers": self.containers,
-            "kitchen": None if self.kitchen is None else str(self.kitchen),
+            "items": self.items,
+            **{key: None if file is None else str(file) for key, file in files.items()},
             "time_limit": self.time_limit,
         }
 

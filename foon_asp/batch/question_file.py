@@ -9,14 +9,14 @@ from typing import NamedTuple
 from foon_asp.batch.asked import Asked, Asker
 from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.problem import ContainerRule, parse_objectives
+from foon_asp.problem import ITEMS, ContainerRule, parse_objectives
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_fault import json_fault
 from foon_asp.text.json_value import json_line, read_json
 from foon_asp.text.plain_file import read_plain_text
 
 _LONGEST = 1e9  # seconds, some thirty years
-_KEYS = ("goal", "objective", "containers", "kitchen", "time_limit")
+_KEYS = ("goal", "objective", "containers", "items", "stock", "stays", "kitchen", "time_limit")
 
 
 class QuestionLine(NamedTuple):
@@ -31,6 +31,14 @@ class QuestionLine(NamedTuple):
     containers: tuple[str, ...]
     kitchens: tuple[Path | None, ...]
     time_limit: float | None
+    items: tuple[str, ...]
+    stocks: tuple[Path | None, ...]
+    stays: tuple[Path | None, ...]
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files that it names."""
+        return tuple(filter(None, (*self.kitchens, *self.stocks, *self.stays)))
 
 
 def read_questions(
@@ -73,8 +81,10 @@ def each_question(lines: Iterable[QuestionLine], asker: Asker) -> Iterator[Asked
                     goals += [(name,) for name in asker.named(names[0], rule, kitchen)]
                 else:
                     goals.append(names)
-            for objective, names in itertools.product(line.objectives, goals):
-                asked = Asked(names, objective, rule, kitchen, line.time_limit)
+            for objective, names, items, stock, stays in itertools.product(
+                line.objectives, goals, line.items, line.stocks, line.stays
+            ):
+                asked = Asked(names, objective, rule, kitchen, line.time_limit, items, stock, stays)
                 if asked not in seen:
                     seen.add(asked)
                     yield asked
@@ -89,19 +99,28 @@ def _line(value: object, folder: Path, time_limit: float | None, measures: Colle
     objectives = tuple(_name(o, "objective") for o in _several(value.get("objective", "units")))
     for objective in objectives:
         parse_objectives([objective], measures)
-    rules = tuple(_name(rule, "containers") for rule in _several(value.get("containers", "strict")))
-    for rule in rules:
-        if rule not in {str(known) for known in ContainerRule}:
-            raise ValueError(f"found the containers {rule!r}, expected {' or '.join(ContainerRule)}")
-    kitchens = tuple(
-        None if kitchen is None else folder / _name(kitchen, "kitchen")
-        for kitchen in _several(value.get("kitchen"))
+    rules = _known(value.get("containers", "strict"), "containers", tuple(ContainerRule))
+    items = _known(value.get("items", "lasting"), "items", ITEMS)
+    kitchens, stocks, stays = (
+        tuple(None if file is None else folder / _name(file, key) for file in _several(value.get(key)))
+        for key in ("kitchen", "stock", "stays")
     )
+    if "lasting" in items and any((*stocks, *stays)):
+        raise ValueError('a stock, and what stays, are for items that are used up: add "items": "used-up"')
     limit = value.get("time_limit", time_limit)
     is_number = isinstance(limit, int | float) and not isinstance(limit, bool)
     if not (limit is None or (is_number and 0 <= limit <= _LONGEST)):
         raise ValueError(f"found the time_limit {str(limit)[:40]}, expected seconds, at most {_LONGEST:g}")
-    return QuestionLine(goals, objectives, rules, kitchens, None if limit is None else float(limit))
+    limit = None if limit is None else float(limit)
+    return QuestionLine(goals, objectives, rules, kitchens, limit, items, stocks, stays)
+
+
+def _known(value: object, key: str, known: Collection[str]) -> tuple[str, ...]:
+    names = tuple(_name(name, key) for name in _several(value))
+    for name in names:
+        if name not in known:
+            raise ValueError(f"found the {key} {name!r}, expected {' or '.join(known)}")
+    return names
 
 
 def _several(value: object) -> list[object]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pyarrow
 
 _ROWS_IN_PART = 1000
-_ASKED = ("goal", "objective", "containers", "kitchen", "time_limit")
+_ASKED = ("goal", "objective", "containers", "items", "kitchen", "stock", "stays", "time_limit")
 _ANSWERED = ("status", "error", "proof", "costs", "lower_bound", "units", "seconds")
 KIND = "batch-row"
 _QUESTION, _WAITING = "_question.jsonl", "_waiting.jsonl"
@@ -43,12 +43,12 @@ class _Kept(NamedTuple):
 
 def _kept(row: dict[str, Any]) -> _Kept:
     """Look at a row that was there; raises an error that :class:`RowsFile` knows for what is none of ours."""
-    goal, kitchen, limit, status = row["goal"], row["kitchen"], row["time_limit"], row["status"]
+    goal, limit, status = row["goal"], row["time_limit"], row["status"]
     goals = (goal,) if isinstance(goal, str) else tuple(goal)
-    asked = Asked(
-        goals, row["objective"], row["containers"], None if kitchen is None else Path(kitchen), limit
-    )
-    names = (*goals, asked.objective, asked.containers)
+    files = (row[key] for key in ("kitchen", "stock", "stays"))
+    kitchen, stock, stays = (None if file is None else Path(file) for file in files)
+    asked = Asked(goals, row["objective"], row["containers"], kitchen, limit, row["items"], stock, stays)
+    names = (*goals, asked.objective, asked.containers, asked.items)
     is_limit = limit is None or (type(limit) in {int, float} and limit >= 0)
     known = status == "failed" or status in set(Status)
     is_ours = goals and row.keys() == {*_ASKED, *_ANSWERED} and all(isinstance(name, str) for name in names)
@@ -202,7 +202,10 @@ def _table(rows: list[dict[str, Any]]) -> "pyarrow.Table":
             "goal": pyarrow.list_(texts),
             "objective": texts,
             "containers": texts,
+            "items": texts,
             "kitchen": texts,
+            "stock": texts,
+            "stays": texts,
             "time_limit": pyarrow.float64(),
             "status": texts,
             "error": texts,

@@ -63,10 +63,12 @@ def command(
     {"goal": ["ice", "macaroni"], "objective": ["units", "success,units"]}
     {"goal": "@makeable", "containers": ["strict", "implied"], "kitchen": "small.json"}
     {"goal": [["ice", "macaroni"]], "time_limit": 10}
+    {"goal": "@goals", "items": "used-up", "stock": "stock.txt"}
 
     @goals stands for the goals file, @makeable for everything that can be made; a list within the list is one
-    tree for several goals; kitchens are files in the folder of the questions. --time-limit is for each
-    question without a limit of its own, --memory-limit for each process that answers.
+    tree for several goals; kitchens, stocks and what stays are files in the folder of the questions.
+    --time-limit is for each question without a limit of its own, --memory-limit for each process that
+    answers.
 
     When the same command is run again, it continues: what has an answer is not asked again. A question that
     fails becomes a row with the reason. Exits with 0 when every answer is proved, 1 when some failed, and
@@ -74,8 +76,7 @@ def command(
     """
     check_outputs()
     lines = read_questions(questions, time_limit, measured(data))
-    kitchens = [kitchen for line in lines for kitchen in line.kitchens if kitchen]
-    opening = Opening(tuple(data.items()), digest(data, kitchens))
+    opening = Opening(tuple(data.items()), digest(data, [file for line in lines for file in line.files]))
     asked = list(each_question(lines, opening(quiet=False)))
     interrupted = False
     began = time.monotonic()

@@ -12,6 +12,7 @@ from foon_asp.batch.asked import Asked
 from foon_asp.cli import options
 from foon_asp.compare.many import makeable
 from foon_asp.dataset import Dataset
+from foon_asp.dataset.items import items_of
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
@@ -56,7 +57,8 @@ class BatchData:
     def problem(self, asked: Asked) -> Problem:
         """Pose a question."""
         dataset = self._with(asked.kitchen)
-        return dataset.problem(dataset.goals(asked.goals), asked.containers)
+        items = items_of(dataset, asked.items, asked.stock, asked.stays)
+        return dataset.problem(dataset.goals(asked.goals), asked.containers, items=items)
 
     def _with(self, kitchen: Path | None) -> Dataset:
         dataset = self._datasets.get(kitchen)
@@ -77,13 +79,13 @@ def measured(named: dict[str, Any]) -> Collection[str]:
     return read_measures(files)
 
 
-def digest(named: dict[str, Any], kitchens: Iterable[Path]) -> str:
-    """Give a digest of all files that the options name, and of the kitchens."""
+def digest(named: dict[str, Any], beside: Iterable[Path]) -> str:
+    """Give a digest of all files that the options name, and of those that questions name."""
     measures = named["measures"]
     named = {key: value for key, value in named.items() if key not in {"level", "lenient", "measures"}}
     files = find_data(**named)
     found = hashlib.sha256()
-    for file in (*files.network, *filter(None, files[1:]), *sorted(set(kitchens)), *measures):
+    for file in (*files.network, *filter(None, files[1:]), *sorted(set(beside)), *measures):
         if not file.is_file():
             raise UserError(f"{file}: expected a file, since every process reads it again")
         with file.open("rb") as opened:

@@ -10,21 +10,34 @@ from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
+from foon_asp.dataset.items import items_of
 from foon_asp.document.json_document import document
 from foon_asp.problem import parse_objectives
-from foon_asp.questions.options import CONSTRAINTS, CONTAINERS, ENCODINGS, GOALS, OBJECTIVES, RULE, SOFT
+from foon_asp.questions.options import (
+    CONSTRAINTS,
+    CONTAINERS,
+    ENCODINGS,
+    GOALS,
+    ITEMS,
+    OBJECTIVES,
+    RULE,
+    SOFT,
+)
 from foon_asp.rules.constraint import Constraint
 from foon_asp.text.json_value import json_text
 
 
 @click.command("facts")
-@click_options(GOALS, OBJECTIVES, CONTAINERS, CONSTRAINTS, RULE, ENCODINGS, SOFT)
+@click_options(GOALS, OBJECTIVES, CONTAINERS, *ITEMS, CONSTRAINTS, RULE, ENCODINGS, SOFT)
 @options.format_option("text", "json")
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
     objectives: tuple[str, ...],
     containers: str,
+    items: str,
+    stock: Path | None,
+    stays: Path | None,
     constraints: tuple[Constraint, ...],
     encodings: Path | None,
     soft: dict[Constraint, int],
@@ -46,12 +59,18 @@ def command(
     \b
     foon-asp facts --goal ice --soft mine.lp=3 > facts.lp
     python -m clingo encodings/*.lp encodings/questions/soft.lp facts.lp
+
+    \b
+    foon-asp facts --goal ice --items used-up > facts.lp
+    python -m clingo encodings/used_up/*.lp facts.lp
+
+    With items used up, they say how often the best plan can execute each unit, for which it is solved first.
     """
     dataset = options.read_dataset(**data)  # type: ignore[arg-type]
     chosen = parse_objectives(objectives, dataset.measures)
-    problem = dataset.problem(
-        dataset.goals(goals_named), containers, everything=bool(constraints or encodings or soft)
-    )
+    goals, how = dataset.goals(goals_named), items_of(dataset, items, stock, stays)
+    everything = bool(constraints or encodings or soft)
+    problem = dataset.problem(goals, containers, everything=everything, items=how)
     facts = bare_program(problem, chosen, Settings(constraints, encodings), soft).text
     if format_ == "json":
         lines = facts.rstrip("\n").split("\n")  # a name may hold what other letters end a line

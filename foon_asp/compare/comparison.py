@@ -1,14 +1,18 @@
 """One goal: what each search returned, whether it executes, and how far it is from the optimum."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.used_up import order_that_runs
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError
+from foon_asp.network import TaskTree
 from foon_asp.problem import ContainerRule, Objective, Problem, conditions, multiplies
-from foon_asp.proof.simulation import Verdict, simulate_for
+from foon_asp.proof.replay import replay_for
+from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_for
 from foon_asp.search import Ending, Search, SearchSettings
 
 # The objectives whose optima a tree is compared with.
@@ -43,18 +47,23 @@ class Judgement(NamedTuple):
 
 
 class Comparison(NamedTuple):
-    """The searches and the optimum for one goal (in one-line notation) under one rule, at one level."""
+    """The searches and the optimum for one goal (in one-line notation) under one rule, at one level.
+
+    ``items`` says whether they last; where they are used up, a tree executes if it runs as a plan.
+    """
 
     goal: str
     containers: str
     optima: dict[Objective, Optimum]
     judgements: tuple[Judgement, ...]
     level: int = 3
+    items: str = "lasting"
 
     @property
     def conditions(self) -> str:
         """What all of it holds under, in a few words: ``strict containers``."""
-        return conditions(ContainerRule(self.containers), self.level)
+        said = conditions(ContainerRule(self.containers), self.level)
+        return said if self.items == "lasting" else f"{said}, items used up"
 
     def ratio(self, judgement: Judgement, objective: Objective) -> Fraction | None:
         """Give the measure of a tree over the proved optimum; ``None`` where either is not known or 0."""
@@ -93,6 +102,7 @@ def compare(
         optima,
         tuple(judge(problem, search, settings) for search in searches),
         problem.network.level,
+        "lasting" if problem.items is None else "used-up",
     )
     _require_consistent(comparison)
     return comparison
@@ -115,12 +125,12 @@ def _require_consistent(comparison: Comparison) -> None:
 def judge(problem: Problem, search: Search, settings: SearchSettings) -> Judgement:
     """Run one search and simulate the tree it returns."""
     objects = problem.network.objects
-    retrieval = search.run(problem, settings)
+    retrieval = search.run(replace(problem, items=None), settings)
     if retrieval.ending is not Ending.TREE:
         stuck_at = None if retrieval.stuck_at is None else str(objects[retrieval.stuck_at])
         return Judgement(search.name, str(retrieval.ending), stuck_at=stuck_at)
     tree = problem.tree(retrieval.units)
-    simulation = simulate_for(problem, tree)
+    simulation = _simulated(problem, retrieval.units, tree)
     obstacle = None
     if simulation.obstacle is not None:
         place, missing, cycle = simulation.obstacle
@@ -141,3 +151,19 @@ def judge(problem: Problem, search: Search, settings: SearchSettings) -> Judgeme
         simulation.order,
         obstacle,
     )
+
+
+def _simulated(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
+    """Simulate a tree; where items are used up, it has to run as a plan, in whatever order."""
+    simulation = simulate_for(problem, tree)
+    if problem.items is None or simulation.verdict is Verdict.NEVER:
+        return simulation
+    shortage = replay_for(problem, tree).shortage
+    if shortage is None:
+        return Simulation(Verdict.AS_LISTED, tuple(range(len(units))), None, None)
+    obstacle = Obstacle(shortage.step, shortage.node)
+    plan = order_that_runs(problem, units)
+    if plan is None:
+        return Simulation(Verdict.NEVER, (), obstacle, obstacle)
+    places = {unit: [n for n, each in enumerate(units) if each == unit] for unit in units}
+    return Simulation(Verdict.REORDERED, tuple(places[unit].pop(0) for unit in plan), obstacle, None)

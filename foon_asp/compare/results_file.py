@@ -10,7 +10,7 @@ from foon_asp.asp import Status
 from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.compare.rows_file import RowsFile
 from foon_asp.document.json_document import figure_json, figures_json, fraction_json
-from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.problem import ITEMS, ContainerRule, Objective, Problem
 from foon_asp.proof.simulation import Verdict
 from foon_asp.search import Ending, Search, SearchSettings
 from foon_asp.text.json_value import Json, json_line
@@ -23,6 +23,7 @@ def comparison_json(comparison: Comparison) -> Json:
     return {
         "goal": comparison.goal,
         "containers": comparison.containers,
+        "items": comparison.items,
         "level": comparison.level,
         "optimum": {
             str(objective): {"status": optimum.status, "value": figure_json(objective, optimum.value)}
@@ -67,8 +68,13 @@ def read_comparison(row: Json) -> Comparison:
         },
         tuple(map(_judgement, row["searches"])),
         _of(row["level"], int),
+        _of(row["items"], str),
     )
-    if comparison.level not in {1, 2, 3} or comparison_json(comparison) != row:
+    if (
+        comparison.level not in {1, 2, 3}
+        or comparison.items not in ITEMS
+        or comparison_json(comparison) != row
+    ):
         raise ValueError("more than what is written, or something else")
     return comparison
 
@@ -120,11 +126,17 @@ def results_question(
         sorted(problem.utensils),
         sorted((motion, str(rate)) for motion, rate in (problem.rates or {}).items()),
         *([list(map(str, problem.prices))] if problem.unit_prices else []),
+        *(
+            []
+            if problem.items is None
+            else [problem.flows, sorted(map(problem.stock_of, problem.kitchen), key=repr)]
+        ),
     ):
         digest.update(json_line(part).encode())
     return {
         "data": digest.hexdigest()[:16],
         "containers": str(problem.containers),
+        **({} if problem.items is None else {"items": "used-up"}),
         "level": problem.network.level,
         "searches": [search.name for search in searches],
         **({"packages": packages} if packages else {}),

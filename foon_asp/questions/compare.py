@@ -9,6 +9,7 @@ from foon_asp.compare.comparison import Comparison
 from foon_asp.compare.many import compare_goals, makeable
 from foon_asp.compare.results_file import ResultsFile, comparison_json, results_question
 from foon_asp.compare.summary import all_proved, summarize_comparisons
+from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.document.json_document import document, goals_json, nodes_json
 from foon_asp.errors import UserError
@@ -16,7 +17,7 @@ from foon_asp.problem import Problem
 from foon_asp.questions.arguments import at_least, limits
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, JOBS
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import SEARCHING, search_settings, searched
@@ -101,7 +102,7 @@ class Compared(Result):
         rows = list(map(comparison_json, self.comparisons))
         for row, goal in zip(rows, goals_json(network, self.problem.goals), strict=True):
             row["goal"] = goal
-            del row["containers"], row["level"]
+            del row["containers"], row["items"], row["level"]
             for search in row["searches"]:
                 name(search, "stuck_at")
                 name(search["obstacle"], "missing")
@@ -140,6 +141,9 @@ def _posed(
     all_makeable: bool,
     published: bool,
     charts: Sequence[Path],
+    items: str,
+    stock: File | None,
+    stays: File | None,
 ) -> tuple[Problem]:
     """Pose the goals, and refuse what cannot be laid beside them before anything is solved."""
     if published:
@@ -153,9 +157,10 @@ def _posed(
                 f"add --containers {table.containers}"
             )
     if all_makeable:
-        problem = _everything_makeable(command.dataset.problem((0,), containers, everything=True))
+        how = items_of(command.dataset, items, stock, stays)
+        problem = _everything_makeable(command.dataset.problem((0,), containers, everything=True, items=how))
     else:
-        (problem,) = each_goal(command, goals_named, containers)
+        (problem,) = each_goal(command, goals_named, containers, items, stock, stays)
     if charts:
         _hold_readable(problem)
     return (problem,)
@@ -200,6 +205,7 @@ def _hold_readable(problem: Problem) -> None:
         default=False,
     ),
     CONTAINERS,
+    *ITEMS,
     *EACH_LIMITS,
     JOBS,
     Option(

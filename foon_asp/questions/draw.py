@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from foon_asp.asp import solve as find
 from foon_asp.dataset.paths import File
@@ -15,16 +16,16 @@ from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question, question_of
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
-from foon_asp.questions.tree import read_listed
+from foon_asp.questions.tree import Tree, read_listed
 from foon_asp.report.dot import dot_text
 from foon_asp.report.drawing import Drawing, draw_network
 from foon_asp.report.mermaid import mermaid_markdown, mermaid_text
 from foon_asp.report.notebook import picture_bundle
 from foon_asp.report.picture import png_picture, svg_picture
-from foon_asp.report.tree_drawing import given_tree, solved_tree
+from foon_asp.report.tree_drawing import given_tree, plan_drawing, solved_tree
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.data_folder import Data
 
@@ -124,12 +125,19 @@ class Drawn(Result):
 
 
 def _posed(
-    command: Command, goals_named: Sequence[str], containers: str, tree: File | None, units: Sequence[int]
+    command: Command,
+    goals_named: Sequence[str],
+    containers: str,
+    tree: File | None,
+    units: Sequence[int],
+    **items: Any,
 ) -> tuple[Problem | Foon]:
     """Pose the goals that are named; without any it is about the data."""
+    if not goals_named and command.given("items"):
+        raise UserError("--items is for a plan for a --goal: name one")
     if command.given("objectives") and (not goals_named or tree is not None or units):
         raise UserError("--objective is for the best tree for a --goal; nothing is solved here")
-    return one_problem(command, goals_named, containers) if goals_named else the_data(command)
+    return one_problem(command, goals_named, containers, **items) if goals_named else the_data(command)
 
 
 @question(
@@ -146,6 +154,7 @@ def _posed(
     ),
     OBJECTIVES,
     CONTAINERS._replace(part=Part.PROBLEM | Part.QUESTION),
+    *ITEMS,
     *LIMITS,
     help_="""
     \b
@@ -202,6 +211,10 @@ def draw(
         how = settings(time_limit=time_limit, memory_limit=memory_limit)
         outcome = Answer._make(find(about, chosen_objectives(about, objectives), how, caller().reporter))
         return Drawn(None if outcome.units is None else solved_tree(outcome, outcome.units), outcome)
+    if isinstance(about, Problem) and about.items is not None and tree is not None:
+        read = Tree.read(about, tree) if isinstance(tree, str | PathLike) else Tree.given(about, tree)
+        name = Path(tree).name if isinstance(tree, str | PathLike) else ""
+        return Drawn(plan_drawing(read.problem, read.units, name))
     foon, goals, rule = _data(about, containers)
     if tree is not None:
         return Drawn(_given_tree(foon, goals, rule, tree))

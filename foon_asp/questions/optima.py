@@ -11,7 +11,7 @@ from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import chosen_objectives, limits, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, OBJECTIVES
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import each_goal
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.optima_table import optima_table
@@ -64,6 +64,7 @@ class Optima(Result):
         default=("units", "inputs", "success"),
     ),
     CONTAINERS,
+    *ITEMS,
     *EACH_LIMITS,
     help_="""
     The limits are for each answer. Exits with 0 when every answer is proved, a goal without a tree

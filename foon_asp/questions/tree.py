@@ -12,7 +12,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.result import NoTreeError
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.notebook import picture_bundle, svg_text
-from foon_asp.report.tree_drawing import given_tree
+from foon_asp.report.tree_drawing import given_tree, plan_drawing
 from foon_asp.text.answer_file import read_listed_tree
 from foon_asp.text.diagnostics import summarize
 from foon_asp.text.reader import FoonReader
@@ -85,6 +85,8 @@ class Tree(TaskTree):
 
     def drawing(self) -> Drawing:
         """Give what the picture shows; units of a tree without a claim are numbered as they execute."""
+        if self.problem.items is not None:
+            return plan_drawing(self.problem, self.units, caption=self.claim)
         network = self.problem.network
         met = {node for unit in self.units for side in (unit.inputs, unit.outputs) for node in side}
         kitchen = {node for node in met.union(self.problem.goal_nodes) if self.problem.at_hand(node)}

@@ -71,13 +71,13 @@ def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
-        ["goal", "containers", "level", "search", "ending", "executes", "cycle", "missing"]
+        ["goal", "containers", "items", "level", "search", "ending", "executes", "cycle", "missing"]
         + [f"{objective}{what}" for objective in MEASURED for what in ("", "_optimum", "_status", "_ratio")]
     )
     for comparison in comparisons:
         for judgement in comparison.judgements:
             _, missing, cycle = judgement.obstacle or ("", "", False)
-            row = [comparison.goal, comparison.containers, str(comparison.level)]
+            row = [comparison.goal, comparison.containers, comparison.items, str(comparison.level)]
             row += [judgement.search, judgement.ending]
             row += [judgement.executes or "", "yes" if cycle else "no", missing or judgement.stuck_at or ""]
             for objective in MEASURED:

@@ -1,7 +1,7 @@
 """What a picture shows: boxes with a role and text, and arrows between them, whatever the format."""
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from enum import StrEnum
 from textwrap import wrap
 from typing import NamedTuple
@@ -83,6 +83,34 @@ def draw_tree(
     return canvas.drawing(caption)
 
 
+def draw_plan(
+    units: Sequence[FunctionalUnit],
+    taken: Sequence[Mapping[ObjectNode, int | None]],
+    kept: Mapping[ObjectNode, int | None],
+    kitchen: Collection[ObjectNode],
+    caption: Iterable[str],
+) -> Drawing:
+    """Draw the steps of a plan in which items are used up: a copy that a later step takes is a box.
+
+    Copies are known by the step that made them, counted from 0, and ``None`` is the kitchen. ``taken`` says
+    for each step where the copies of its inputs come from, and ``kept`` those of the goals. All others are
+    boxes of their own at every use.
+    """
+    canvas = _Canvas(kitchen, kept)
+    wanted = {copy for step in (*taken, kept) for copy in step.items()}
+    for number, (unit, copies) in enumerate(zip(units, taken, strict=True)):
+        motion = canvas.motion(f"{number + 1}. {unit.motion}")
+        for node in unit.inputs:
+            made, role = copies.get(node), Role.KITCHEN if node in kitchen else Role.OBJECT
+            canvas.arrow(canvas.copy(node, role) if made is None else canvas.shared(node, made), motion)
+        for node in unit.outputs:
+            box = canvas.shared(node, number) if (node, number) in wanted else None
+            canvas.arrow(motion, box or canvas.copy(node, Role.BY_PRODUCT))
+    for goal, made in kept.items():
+        canvas.shared(goal, made)
+    return canvas.drawing(caption)
+
+
 def draw_network(
     units: Iterable[tuple[int, FunctionalUnit]],
     kitchen: Collection[ObjectNode],
@@ -108,22 +136,22 @@ class _Canvas:
         self._goals = goals
         self._boxes: list[Box] = []
         self._arrows: list[tuple[str, str]] = []
-        self._names: dict[ObjectNode, str] = {}
+        self._names: dict[tuple[ObjectNode, int | None], str] = {}
 
     def motion(self, *text: str) -> str:
         """Add a motion and give the name of its box."""
         return self._box("m", Role.MOTION, *text)
 
-    def shared(self, node: ObjectNode) -> str:
-        """Give the name of the one box of a node."""
-        if node not in self._names:
+    def shared(self, node: ObjectNode, made: int | None = None) -> str:
+        """Give the name of the one box of a node, or of the copy of it that a step made."""
+        if (node, made) not in self._names:
             role = Role.OBJECT
             if node in self._goals:
                 role = Role.GOAL
             elif node in self._kitchen:
                 role = Role.KITCHEN
-            self._names[node] = self.copy(node, role)
-        return self._names[node]
+            self._names[node, made] = self.copy(node, role)
+        return self._names[node, made]
 
     def copy(self, node: ObjectNode, role: Role) -> str:
         """Add a box for a node, also where it has one, and give the new one's name."""

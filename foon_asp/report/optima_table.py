@@ -21,10 +21,12 @@ _STYLES = {
 
 def optima_table(outcomes: Sequence[Outcome]) -> Table:
     """Lay out the table; outcomes of one goal stand together, and equal trees share a row."""
+    problem = outcomes[0].problem
+    trees, tree = ("task trees", "tree") if problem.items is None else ("plans", "plan")
     table = Table(
-        title=f"The best task trees ({outcomes[0].problem.conditions})",
+        title=f"The best {trees} ({problem.conditions})",
         caption="optimal: proved best by the objective named, whose figure is bold\n"
-        "infeasible: proved that no tree exists",
+        f"infeasible: proved that no {tree} exists",
         box=SIMPLE_HEAD,
         pad_edge=False,
         show_edge=False,

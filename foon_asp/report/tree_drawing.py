@@ -3,11 +3,12 @@
 from collections.abc import Collection, Iterable, Sequence
 
 from foon_asp.asp import Outcome
-from foon_asp.network import Network, ObjectNode, TaskTree, counted
+from foon_asp.network import FunctionalUnit, Network, ObjectNode, TaskTree, counted
 from foon_asp.problem import ContainerRule, Problem, conditions, given_outputs
+from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Verdict, simulate
 from foon_asp.report.answer import headline
-from foon_asp.report.drawing import Drawing, draw_tree
+from foon_asp.report.drawing import Drawing, draw_plan, draw_tree
 
 
 def solved_tree(outcome: Outcome, units: tuple[int, ...]) -> Drawing:
@@ -17,6 +18,8 @@ def solved_tree(outcome: Outcome, units: tuple[int, ...]) -> Drawing:
 
 def listed_tree(problem: Problem, units: Sequence[int], caption: str) -> Drawing:
     """Draw units by id, in an order that executes, as a tree for the goals of a problem."""
+    if problem.items is not None:
+        return plan_drawing(problem, problem.tree(units).units, caption=caption)
     objects = problem.network.objects
     goals = [objects[o] for o in problem.goals]
     met = {o for unit in units for o in (*problem.network.inputs[unit], *problem.network.outputs[unit])}
@@ -24,6 +27,22 @@ def listed_tree(problem: Problem, units: Sequence[int], caption: str) -> Drawing
     tree = problem.tree(units)
     gives = [[objects[o] for o in problem.gives[unit]] for unit in units]
     return draw_tree(tree.units, kitchen, goals, (f"Task tree for {_joined(goals)}", caption), gives)
+
+
+def plan_drawing(
+    problem: Problem, units: Sequence[FunctionalUnit], name: str = "", caption: str = ""
+) -> Drawing:
+    """Draw a plan in which items are used up; without a caption, it says whether the plan runs."""
+    replay = replay_for(problem, units)
+    taken = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]
+    taken += [{} for _ in units[len(taken) :]]
+    left = {copy.node: copy.made for copy in replay.left}
+    kept = {goal: left.get(goal) for goal in problem.goal_nodes}
+    kitchen = {node for unit in units for node in unit.inputs if problem.at_hand(node)}
+    runs = "runs" if replay.shortage is None else f"does not run for want of {replay.shortage.node}"
+    caption = caption or f"{runs} ({problem.conditions}), {counted(len(units), 'unit')}"
+    title = f"Plan {name} for {_joined(kept)}" if name else f"Plan for {_joined(kept)}"
+    return draw_plan(units, taken, kept, kitchen.union(filter(problem.at_hand, kept)), (title, caption))
 
 
 def given_tree(
