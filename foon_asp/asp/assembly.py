@@ -1,6 +1,7 @@
 """Assembling a program: the built-in encodings or a replacement, and what the user adds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -130,6 +131,31 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         understood=understood,
         named=named,
     )
+
+
+class ReachOfRules(Enum):
+    """Which units rules are about, beside those of a tree: ``NEEDED`` ones, which lead to a goal.
+
+    Under ``TREE`` they look at no others than those of the tree, and may ask for units that no goal needs.
+    """
+
+    NEEDED = auto()
+    TREE = auto()
+    ALL = auto()
+
+
+def reach_of_rules(settings: Settings, varied: Collection[tuple[str, int]] = ()) -> ReachOfRules:
+    """Say which units the rules that are added are about.
+
+    ``varied`` are the facts that the question derives or varies. Raises as :func:`assemble` does.
+    """
+    rules = assemble(settings, lambda _: None).understood
+    if rules is None:
+        return ReachOfRules.ALL
+    rules = rules.varying(varied) if varied else rules
+    if not rules.local:
+        return ReachOfRules.ALL
+    return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:

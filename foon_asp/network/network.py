@@ -188,6 +188,16 @@ class Network:
             ids[node.label].append(object_id)
         return {label: tuple(found) for label, found in ids.items()}
 
+    @cached_property
+    def by_ingredient(self) -> dict[str, tuple[int, ...]]:
+        """Node ids by what the nodes contain, in order."""
+        ids: defaultdict[str, list[int]] = defaultdict(list)
+        for object_id, node in enumerate(self.objects):
+            if node.contents:
+                for ingredient in {item for each in node.contents for item in each.ingredients}:
+                    ids[ingredient].append(object_id)
+        return {ingredient: tuple(found) for ingredient, found in ids.items()}
+
     def node(self, object_id: int) -> ObjectNode:
         """Give a node as a value.
 

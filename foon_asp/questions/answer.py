@@ -4,8 +4,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
+from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, levels
+from foon_asp.questions.arguments import asked_with
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
@@ -104,8 +106,34 @@ def answered(
     problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
 ) -> Answer:
     """Solve a problem, and note how long reading took, if known."""
-    who = caller()
-    answer = Answer._make(find(problem, objectives, how, reporter or who.reporter))
-    if who.read_seconds is not None:
-        answer.seconds["read"] = who.read_seconds
+    return _noted(find(problem, objectives, how, reporter or caller().reporter))
+
+
+def answered_under(
+    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+) -> Answer:
+    """Solve a problem under rules of the user's, which may be about units that no goal needs.
+
+    Of a store, the part that the goals can need is asked about first, where no rule looks beyond a tree. A
+    tree with a unit from elsewhere has one more than its goals need: where that makes it no better than what
+    was found, no more is read.
+    """
+    part = problem.network.object_numbers and problem.items is None and how.constraints
+    if part and how.replaced is None and reach_of_rules(how) is ReachOfRules.TREE:
+        free = find(problem, objectives, how._replace(constraints=(), constants=()), Reporter())
+        here = find(problem, objectives, how, Reporter()) if free.status is Status.OPTIMAL else free
+        if here.status is Status.OPTIMAL and free.costs and here.costs:
+            order = levels(tuple(objectives))
+            least = list(free.costs.key(order))
+            least[order.index(Objective.UNITS)] += 1
+            if here.costs.key(order) <= tuple(least):
+                return _noted(here)
+    return answered(asked_with(problem, how), objectives, how, reporter)
+
+
+def _noted(outcome: Outcome) -> Answer:
+    """Make an answer of an outcome, with how long reading took, if known."""
+    answer, read = Answer._make(outcome), caller().read_seconds
+    if read is not None:
+        answer.seconds["read"] = read
     return answer

@@ -1,12 +1,12 @@
 """What callers write, turned into what the rooms take; errors use the words of Python."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from os import PathLike
 from pathlib import Path
 
 from foon_asp.asp import Settings
-from foon_asp.asp.assembly import GREATEST_WEIGHT
+from foon_asp.asp.assembly import GREATEST_WEIGHT, ReachOfRules, reach_of_rules
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
@@ -70,9 +70,16 @@ def begin(time_limit: float | None, memory_limit: int | str | None) -> Deadline:
     return Deadline(*limits(time_limit, memory_limit), within=within)
 
 
-def asked_with(problem: Problem, how: Settings) -> Problem:
-    """Give the whole problem if the settings have rules, which may be about any unit."""
-    return whole(problem) if how.constraints or how.replaced is not None else problem
+def asked_with(problem: Problem, how: Settings, varied: Collection[tuple[str, int]] = ()) -> Problem:
+    """Give the whole problem if the settings have rules that may be about any unit.
+
+    Of a store, the part that the goals can need is enough where no rule looks beyond the tree or asks for
+    units that no goal needs. ``varied`` are the facts, by name and arity, that the question varies.
+    """
+    if not how.constraints and how.replaced is None:
+        return problem
+    part = problem.network.object_numbers and problem.items is None
+    return problem if part and reach_of_rules(how, varied) is ReachOfRules.NEEDED else whole(problem)
 
 
 def whole(problem: Problem) -> Problem:

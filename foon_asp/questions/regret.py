@@ -146,7 +146,7 @@ def regret(
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     more = tuple(units)
-    problem = whole(problem) if more else asked_with(problem, how)
+    problem = whole(problem) if more else asked_with(problem, how, {("kitchen", 1)})
     found = [problem.network.unit_of_number(number) for number in more]
     if None in found:
         raise UserError(f"there is no unit {more[found.index(None)]} in the network")

@@ -7,11 +7,10 @@ from foon_asp.asp import Reporter
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.questions.answer import Answer, answered
+from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
-    asked_with,
     chosen_objectives,
     constraint_weights,
     settings,
@@ -76,7 +75,7 @@ def solve_and_more(
 
         found = certified(problem, chosen, how).written(certificate_file)
     else:
-        found = answered(asked_with(problem, how), chosen, how)
+        found = answered_under(problem, chosen, how)
     if not cross_check:
         return found
     from foon_asp.questions.cross_check import checked_or_reported  # noqa: PLC0415
@@ -175,4 +174,4 @@ def solve(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
-    return answered(asked_with(problem, how), chosen, how, reporter)
+    return answered_under(problem, chosen, how, reporter)

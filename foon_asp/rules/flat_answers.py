@@ -100,8 +100,8 @@ class FlatAnswers:
         network = self._problem.network
         sides: dict[str, Sequence[tuple[int, ...]]] = {
             "input": network.inputs,
-            "output": network.outputs,
             "needs": self._problem.needs,
+            "output": network.outputs,
             "gives": self._problem.gives,
         }
         known = set(bound) if way.unit is None else {*bound, way.unit}
@@ -117,10 +117,23 @@ class FlatAnswers:
             if not isinstance(term, Variable) or term in known:
                 continue
             if name in sides and _is_apart(after, known):
-                objects = self._true_of(term, range(len(network.objects)), after)
+                objects = self._true_of(term, self._likely(term, after), after)
+                if name in {"output", "gives"}:
+                    return sorted({unit for o in objects for unit in network.producers[o]})
                 return [unit for unit, side in enumerate(sides[name]) if not objects.isdisjoint(side)]
             known |= bound_by([item])
         return range(len(network))
+
+    def _likely(self, variable: Variable, items: Sequence[Item]) -> Iterable[int]:
+        """Give some object nodes, among them all of which items hold: by a label or ingredient they name."""
+        network = self._problem.network
+        indexes = {"label": network.by_label, "ingredient": network.by_ingredient}
+        for item in items:
+            if isinstance(item, Fact) and item.signature[0] in indexes and item.terms[0] == variable:
+                match item.terms[1]:
+                    case Constant(str(name)):
+                        return indexes[item.signature[0]].get(name, ())
+        return range(len(network.objects))
 
     def _true_of(
         self, variable: Variable, among: Iterable[int], items: Sequence[Item], bound: Iterable[Variable] = ()

@@ -1,0 +1,93 @@
+"""Questions under rules, asked of a store: the part that is read has the answers of the whole."""
+
+import random
+from collections.abc import Callable
+from decimal import Decimal, localcontext
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import foon_asp
+from foon_asp.problem import ContainerRule, Problem, levels
+from foon_asp.store.store import Store
+from tests.random_problems import random_problem
+from tests.test_restricted_answers import CLASSES, rules
+from tests.test_rules_in_questions import alternatives, library, pareto
+from tests.test_store import import_problem
+
+Rules = dict[str, Any]
+Asked = Callable[[Problem, Rules], object]
+
+
+def best(problem: Problem, rules: Rules) -> object:
+    answer = foon_asp.solve(problem, "inputs,success", **rules)
+    return answer.status, answer.costs and answer.costs.key(levels(answer.objectives))
+
+
+def optima(problem: Problem, rules: Rules) -> object:
+    found = foon_asp.alternatives(problem, "units", **rules)
+    number = found.problem.network.unit_number
+    return found.complete, {frozenset(map(number, tree.units)) for tree in found.trees}
+
+
+def assist(problem: Problem, rules: Rules) -> object:
+    found = foon_asp.assist(problem, person={"pour": 1, "cut": 1}, **rules)
+    return [(row.most, row.status, row.costs and row.costs.success) for row in found.rows]
+
+
+def sensitivity(problem: Problem, rules: Rules) -> object:
+    found = foon_asp.sensitivity(problem, **rules)
+    ends = [(each.motion, each.below.at, each.above.at) for each in found.intervals]
+    return found.outcome.status, [each for each in ends if each[1:] != (None, None)]
+
+
+def posed(seed: int, folder: Path) -> tuple[Problem, Problem, Rules]:
+    """Give a problem over a network that was read whole, and over a store, and rules for it."""
+    drawn = random_problem(seed, list(ContainerRule)[seed % 2], units=10, readable=True)
+    assert drawn.rates is not None
+    store = import_problem(drawn, folder)
+    rates = folder / "motion.txt"
+    with localcontext(prec=400):
+        rates.write_text(
+            "".join(f"{m}\t{Decimal(r.numerator) / r.denominator:f}\n" for m, r in drawn.rates.items())
+        )
+    utensils = folder / "utensils.txt"
+    utensils.write_text("".join(f"{label}\n" for label in sorted(drawn.utensils)))
+    [text, part] = [
+        foon_asp.load(file, kitchen=folder / "kitchen.txt", rates=rates, utensils=utensils).problem(
+            *drawn.goal_nodes, containers=str(drawn.containers)
+        )
+        for file in (folder / "FOON.txt", store)
+    ]
+    rng = random.Random(f"stored {seed}")
+    if rng.random() < 0.5:
+        names, constants = library(rng, text)
+        return text, part, {"constraints": names, "constants": constants}
+    some = rules(seed, len(text.network), sorted(CLASSES))
+    return text, part, {"constraints": [rule.text for rule in some]}
+
+
+QUESTIONS: list[Asked] = [best, optima, alternatives, pareto, assist, sensitivity]
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 300), marks=pytest.mark.slow)])
+def test_a_store_has_the_answers_of_the_whole(
+    seeds: range, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[Store] = []
+    whole = Store.whole
+
+    def noted(store: Store) -> object:
+        read.append(store)
+        return whole(store)
+
+    monkeypatch.setattr(Store, "whole", noted)
+    asked = 0
+    for seed in seeds:
+        text, part, some = posed(seed, tmp_path)
+        for ask in QUESTIONS if seed % 2 else QUESTIONS[:1]:
+            assert ask(part, some) == ask(text, some), (seed, some)
+            asked += 1
+    assert len(read) < asked / 2
