@@ -42,6 +42,23 @@ def sensitivity(problem: Problem, rules: Rules) -> object:
     return found.outcome.status, [each for each in ends if each[1:] != (None, None)]
 
 
+def menu(problem: Problem, rules: Rules) -> object:
+    data = foon_asp.Foon.of(problem)
+    goals = sorted({*problem.goal_nodes, *data.nodes("dough"), *data.nodes("salt")}, key=str)[:3]
+    if len(goals) < 2:
+        return None
+    found = foon_asp.menu(problem.vary(goals=goals), **rules)
+    answers = (found.together, *found.separate)
+    return [(answer.status, answer.costs and answer.costs.units) for answer in answers]
+
+
+def regret(problem: Problem, rules: Rules) -> object:
+    found = foon_asp.regret(problem, "inputs", **rules)
+    objects = found.outcome.problem.network.objects
+    items = [each for each in found.regrets if each.part == "item"]
+    return sorted((str(objects[each.id]), each.status, each.costs and each.costs.inputs) for each in items)
+
+
 def posed(seed: int, folder: Path) -> tuple[Problem, Problem, Rules]:
     """Give a problem over a network that was read whole, and over a store, and rules for it."""
     drawn = random_problem(seed, list(ContainerRule)[seed % 2], units=10, readable=True)
@@ -68,7 +85,7 @@ def posed(seed: int, folder: Path) -> tuple[Problem, Problem, Rules]:
     return text, part, {"constraints": [rule.text for rule in some]}
 
 
-QUESTIONS: list[Asked] = [best, optima, alternatives, pareto, assist, sensitivity]
+QUESTIONS: list[Asked] = [best, optima, alternatives, pareto, assist, sensitivity, regret, menu]
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -88,6 +105,7 @@ def test_a_store_has_the_answers_of_the_whole(
     for seed in seeds:
         text, part, some = posed(seed, tmp_path)
         for ask in QUESTIONS if seed % 2 else QUESTIONS[:1]:
-            assert ask(part, some) == ask(text, some), (seed, some)
+            for chosen in (some, {}) if ask is regret else (some,):
+                assert ask(part, chosen) == ask(text, chosen), (seed, chosen)
             asked += 1
     assert len(read) < asked / 2

@@ -1,6 +1,6 @@
 """Assembling a program: the built-in encodings or a replacement, and what the user adds."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -144,16 +144,10 @@ class ReachOfRules(Enum):
     ALL = auto()
 
 
-def reach_of_rules(settings: Settings, varied: Collection[tuple[str, int]] = ()) -> ReachOfRules:
-    """Say which units the rules that are added are about.
-
-    ``varied`` are the facts that the question derives or varies. Raises as :func:`assemble` does.
-    """
+def reach_of_rules(settings: Settings) -> ReachOfRules:
+    """Say which units the rules that are added are about; raises as :func:`assemble` does."""
     rules = assemble(settings, lambda _: None).understood
-    if rules is None:
-        return ReachOfRules.ALL
-    rules = rules.varying(varied) if varied else rules
-    if not rules.local:
+    if rules is None or not rules.local:
         return ReachOfRules.ALL
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
 

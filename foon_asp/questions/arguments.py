@@ -1,6 +1,6 @@
 """What callers write, turned into what the rooms take; errors use the words of Python."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from os import PathLike
 from pathlib import Path
@@ -70,16 +70,16 @@ def begin(time_limit: float | None, memory_limit: int | str | None) -> Deadline:
     return Deadline(*limits(time_limit, memory_limit), within=within)
 
 
-def asked_with(problem: Problem, how: Settings, varied: Collection[tuple[str, int]] = ()) -> Problem:
+def asked_with(problem: Problem, how: Settings) -> Problem:
     """Give the whole problem if the settings have rules that may be about any unit.
 
     Of a store, the part that the goals can need is enough where no rule looks beyond the tree or asks for
-    units that no goal needs. ``varied`` are the facts, by name and arity, that the question varies.
+    units that no goal needs.
     """
     if not how.constraints and how.replaced is None:
         return problem
     part = problem.network.object_numbers and problem.items is None
-    return problem if part and reach_of_rules(how, varied) is ReachOfRules.NEEDED else whole(problem)
+    return problem if part and reach_of_rules(how) is ReachOfRules.NEEDED else whole(problem)
 
 
 def whole(problem: Problem) -> Problem:

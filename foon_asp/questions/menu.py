@@ -136,7 +136,7 @@ def menu(
         raise UserError("a menu has several goals: name two or more")
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    problem = asked_with(problem, how, {("goal", 1)})
+    problem = asked_with(problem, how)
     together = solve(problem, chosen, how, caller().reporter)
     separate = [solve(replace(problem, goals=(goal,)), chosen, how, Reporter()) for goal in problem.goals]
     if how.constraints == () and how.replaced is None:  # else goals may have rules of their own

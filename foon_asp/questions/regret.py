@@ -146,7 +146,7 @@ def regret(
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     more = tuple(units)
-    problem = whole(problem) if more else asked_with(problem, how, {("kitchen", 1)})
+    problem = whole(problem) if more else asked_with(problem, how)
     found = [problem.network.unit_of_number(number) for number in more]
     if None in found:
         raise UserError(f"there is no unit {more[found.index(None)]} in the network")
@@ -171,7 +171,11 @@ def regret(
         alone = how._replace(session=None)  # another network: a program kept for it would be of no use
         without(Part.UNIT, unit, fewer, alone)
     for o in taken:
-        without(Part.ITEM, o, replace(problem, kitchen=problem.kitchen - {o}), how)
+        if problem.network.object_numbers and problem.origin is not None:  # what makes the item is read
+            fewer = problem.vary(without=problem.network.objects[o])
+        else:
+            fewer = replace(problem, kitchen=problem.kitchen - {o})
+        without(Part.ITEM, o, fewer, how)
     order = (*chosen, Objective.UNITS)
     regrets.sort(key=lambda each: _worst_first(each, order))
     return Regrets(Answer._make(outcome), tuple(regrets))
