@@ -28,6 +28,7 @@ demo: $(VENV)/installed
 	@$(BIN)/foon-asp optima
 	@echo
 	@$(BIN)/foon-asp draw --goal macaroni -o demo/macaroni.svg
+	@$(BIN)/foon-asp view --goal macaroni -o demo/macaroni.html
 
 test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES)

@@ -92,6 +92,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.units import units as units
     from foon_asp.questions.verify import VerifiedCertificate as VerifiedCertificate
     from foon_asp.questions.verify import verify as verify
+    from foon_asp.questions.view import View as View
+    from foon_asp.questions.view import view as view
     from foon_asp.questions.why_not import Explanation as Explanation
     from foon_asp.questions.why_not import why_not as why_not
     from foon_asp.text.line import parse_node as parse_node

@@ -7,7 +7,8 @@ from foon_asp.text.json_value import Json, json_line, read_json
 
 SCHEMAS = Path(__file__).resolve().parent / "schemas"
 _SHARED = "defs"  # the file with what several schemas say
-_REFERENCE = re.compile(r'"#/\$defs/(\w+)"')
+_REFERENCE = re.compile(r'"#/\$defs/([\w-]+)"')
+_WHOLE = re.compile(r'"\$ref": "([\w-]+)\.json"')  # to a document of another kind
 
 
 def schema_kinds() -> tuple[str, ...]:
@@ -16,14 +17,28 @@ def schema_kinds() -> tuple[str, ...]:
 
 
 def schema(kind: str) -> Json:
-    """Give the schema of a kind, with all that it refers to in it."""
-    text = (SCHEMAS / f"{kind}.json").read_text(encoding="utf-8").replace(f"{_SHARED}.json#", "#")
-    shared = read_json((SCHEMAS / f"{_SHARED}.json").read_text(encoding="utf-8"))["$defs"]
-    left, found = _REFERENCE.findall(text), set[str]()
+    """Give the schema of a kind, with all that it refers to in it: what is shared, and other kinds."""
+    shared = read_json(_text(_SHARED))["$defs"]
+    text = _text(kind)
+    left, found = _REFERENCE.findall(text), dict[str, Json]()
     while left:
         name = left.pop()
         if name not in found:
-            found.add(name)
-            left += _REFERENCE.findall(json_line(shared[name]))
+            found[name] = shared.get(name) or _part(_text(name))
+            left += _REFERENCE.findall(json_line(found[name]))
     given: Json = read_json(text)
-    return given | ({"$defs": {name: shared[name] for name in shared if name in found}} if found else {})
+    names = [*(name for name in shared if name in found), *sorted(found.keys() - shared.keys())]
+    return given | ({"$defs": {name: found[name] for name in names}} if found else {})
+
+
+def _text(kind: str) -> str:
+    """Give the file of a kind, with its references as they are once all is in one piece."""
+    text = (SCHEMAS / f"{kind}.json").read_text(encoding="utf-8")
+    return _WHOLE.sub(r'"$ref": "#/$defs/\1"', text.replace(f"{_SHARED}.json#", "#"))
+
+
+def _part(text: str) -> Json:
+    """Give a schema as a part of another one."""
+    part: Json = read_json(text)
+    del part["$schema"]
+    return part

@@ -16,6 +16,7 @@ from foon_asp.text.json_value import Json, json_text
 if TYPE_CHECKING:  # what a command that prints an answer can do without
     from foon_asp.questions.tree import Tree
     from foon_asp.report.drawing import Drawing
+    from foon_asp.report.page import Page
 
 
 def of_status(status: Status) -> Ending:
@@ -83,6 +84,15 @@ class Answer(Result, Outcome):
         from foon_asp.report.tree_drawing import solved_tree  # noqa: PLC0415
 
         return None if self.units is None else solved_tree(self, self.units)
+
+    def view(self) -> "Page":
+        """Give the page that shows the tree in any browser; ``write`` writes it, and a notebook shows it."""
+        from foon_asp.report.page import Page, view_json  # noqa: PLC0415
+
+        goals = " + ".join(map(str, self.problem.goal_nodes))
+        return Page(
+            f"{goals} - foon-asp", self.text(), view_json(self.problem, self.units or (), self.json_dict())
+        )
 
     def _in_notebook(self) -> dict[str, str]:
         """Give what a notebook shows by media type: the picture with its claim, or the text."""

@@ -112,6 +112,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Draw an optimal task tree, a given one, some functional units, or a whole network.",
         ("draw", "Drawn"),
     ),
+    "view": Entry(
+        "Show",
+        "Show a tree on a page for any browser: one file, which walks through the plan.",
+        ("view", "View"),
+    ),
     "trace": Entry(
         "Check",
         "Show what is in the kitchen after each step of a plan, and plan anew where a step failed.",

@@ -1,0 +1,218 @@
+"""Pages in a real browser: what a person sees, clicks and hears read out."""
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+import foon_asp
+from tests.browser import CHROMIUM, Browser, browser
+from tests.test_view import strange
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium is installed (apt-get install chromium)"),
+]
+
+WINDOWS = [(1440, 900, False), (390, 844, True)]
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    with browser() as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def macaroni(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("pages") / "macaroni.html"
+    foon_asp.view(foon_asp.load().problem("macaroni")).write(file)
+    return file
+
+
+@pytest.fixture
+def page(chromium: Browser, macaroni: Path) -> Iterator[Browser]:
+    """Open the page, and hold against it that it asked for nothing and complained of nothing."""
+    chromium.size(1440, 900)
+    chromium.open(macaroni)
+    yield chromium
+    assert chromium.complaints == []
+    assert chromium.requests == [macaroni.resolve().as_uri()]
+
+
+DATA = "JSON.parse(document.getElementById('data').textContent)"
+
+
+def texts(page: Browser, selector: str) -> list[str]:
+    found: list[str] = page.run(f"[...document.querySelectorAll({selector!r})].map(each => each.textContent)")
+    return found
+
+
+def test_every_node_of_the_json_is_drawn(page: Browser) -> None:
+    answer: Any = page.run(f"{DATA}.answer")
+    drawn = page.run("[...document.querySelectorAll('.picture title')].map(each => each.textContent)")
+    units = {f"{unit['step']}. {unit['motion']}" for unit in answer["units"]}
+    nodes = {
+        node["node"] for unit in answer["units"] for side in ("inputs", "outputs") for node in unit[side]
+    }
+    assert set(drawn) == units | nodes
+    assert [text for text in drawn if text in units] == [
+        f"{unit['step']}. {unit['motion']}" for unit in answer["units"]
+    ]
+
+
+def test_nothing_lies_on_anything_else(page: Browser) -> None:
+    boxes: list[list[float]] = page.run(
+        "[...document.querySelectorAll('.picture .box > rect:first-child')].map(each => {"
+        "const r = each.getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]})"
+    )
+    assert len(boxes) > 15
+    for i, (left, top, right, bottom) in enumerate(boxes):
+        for a, b, c, d in boxes[:i]:
+            assert right <= a or c <= left or bottom <= b or d <= top
+
+
+def test_the_slider_goes_from_the_kitchen_to_the_goal(page: Browser) -> None:
+    page.press("Home")
+    assert "no step: 7 objects" in texts(page, "aside summary")[0]
+    for _ in range(9):
+        page.press("ArrowRight")
+    assert page.run("document.querySelector('input[type=range]').value") == "9"
+    assert texts(page, ".bar output") == ["step 9 of 9"]
+    assert texts(page, "aside h2")[0] == "Step 9: tilt"
+    assert any("macaroni cooked" in text for text in texts(page, "aside details:first-of-type .plus"))
+    assert page.run("document.querySelectorAll('.picture .ahead').length") == 0
+    page.press("ArrowLeft")
+    assert page.run("document.querySelectorAll('.picture .unit.ahead').length") == 1
+
+
+def test_the_play_button_plays(page: Browser) -> None:
+    page.run("document.querySelector('.bar button').click()")
+    time.sleep(2.8)
+    page.run("document.querySelector('.bar button').click()")
+    step = page.run("Number(document.querySelector('input[type=range]').value)")
+    assert 1 <= step <= 3
+
+
+def test_a_click_says_who_makes_and_needs_a_node_and_where_it_was_read(page: Browser) -> None:
+    x, y = page.run(
+        "(() => { const r = document.querySelector('.picture .goal').getBoundingClientRect();"
+        "return [r.left + r.width / 2, r.top + r.height / 2] })()"
+    )
+    page.click(x, y)
+    said = page.run("document.querySelector('aside section:nth-of-type(2)').innerText")
+    assert "macaroni; cooked; in [pot]" in said
+    assert "step 9: tilt" in said
+    assert "it is the goal" in said
+    x, y = page.run(
+        "(() => { const r = document.querySelector('.picture .unit .head').getBoundingClientRect();"
+        "return [r.left + r.width / 2, r.top + r.height / 2] })()"
+    )
+    page.click(x, y)
+    said = page.run("document.querySelector('aside section:nth-of-type(2)').innerText")
+    assert "Unit 78: open" in said
+    assert "rate" in said
+    assert "FOON.txt:" in said
+
+
+def test_by_products_go_and_come(page: Browser) -> None:
+    rows = "document.querySelectorAll('.picture .row.left').length"
+    there = page.run(rows)
+    button = "[...document.querySelectorAll('.bar button')].find(b => b.textContent === 'By-products')"
+    assert there > 0
+    page.run(f"{button}.click()")
+    assert page.run(rows) == 0
+    page.run(f"{button}.click()")
+    assert page.run(rows) == there
+
+
+def test_the_keyboard_alone_suffices(page: Browser) -> None:
+    reached = set()
+    for _ in range(60):
+        page.press("Tab")
+        reached.add(page.run("document.activeElement.textContent.trim() || document.activeElement.tagName"))
+    assert {text.strip() for text in texts(page, "aside ol .item")} <= reached
+    assert {"▶ Play", "By-products", "SVG", "Print", "INPUT", "Tree"} <= reached
+    page.run("document.querySelector('aside ol .item').focus()")
+    page.press("Enter")
+    assert texts(page, "aside h2")[0] == "Step 1: open"
+    assert "Unit 78: open" in texts(page, "aside h2")
+
+
+def test_a_screen_reader_gets_the_steps_as_a_list(page: Browser) -> None:
+    nodes = page.tree_for_readers()
+    assert {"role": "list", "name": "Steps"} in nodes
+    buttons = [node["name"] for node in nodes if node["role"] == "button"]
+    for number, motion in ((1, "open"), (9, "tilt")):
+        assert any(name.startswith(f"{number}.") and motion in name for name in buttons)
+    assert any(node["role"] == "slider" and node["name"] == "Step" for node in nodes)
+    assert any(node["role"] in {"image", "img"} and "macaroni" in node["name"] for node in nodes)
+    assert not [node for node in nodes if node["role"] in {"button", "tab"} and not node["name"]]
+
+
+CONTRAST = """(() => {
+  const numbers = (text) => text.match(/[\\d.]+/g).map(Number);
+  const part = (c) => (c / 255 <= 0.03928 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4);
+  const light = (text) => numbers(text).slice(0, 3)
+    .reduce((sum, c, i) => sum + part(c) * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = (element) => {
+    for (let at = element; at; at = at.parentElement) {
+      const back = getComputedStyle(at).backgroundColor;
+      if (numbers(back)[3] !== 0) return back;
+    }
+    return "rgb(255, 255, 255)";
+  };
+  const found = [];
+  const add = (text, front, back) => {
+    const [a, b] = [light(front), light(back)];
+    found.push([(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), text]);
+  };
+  for (const element of document.querySelectorAll("header *, aside *, .bar *"))
+    if ([...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim()))
+      add(element.textContent, getComputedStyle(element).color, behind(element));
+  for (const text of document.querySelectorAll(".picture text")) {
+    const box = text.closest(".box");
+    const on = box.querySelector(text.matches(".head-text") ? ".head" : "rect");
+    add(text.textContent, getComputedStyle(text).fill, getComputedStyle(on).fill);
+  }
+  return found;
+})()"""
+
+
+@pytest.mark.parametrize(("width", "height", "dark"), WINDOWS)
+def test_text_has_contrast(page: Browser, width: int, height: int, dark: bool) -> None:
+    page.size(width, height, dark)
+    measured = page.run(CONTRAST)
+    assert len(measured) > 60
+    assert [each for each in measured if each[0] < 4.5] == []
+
+
+def test_a_narrow_window_is_not_wider_than_itself(page: Browser) -> None:
+    page.size(390, 844)
+    assert page.run("document.documentElement.scrollWidth") <= 390
+
+
+def test_the_picture_is_saved_whole_and_alone(page: Browser) -> None:
+    page.run(
+        "URL.createObjectURL = blob => { window.saved = blob.text(); return 'blob:x' };"
+        "HTMLAnchorElement.prototype.click = () => {};"
+        "[...document.querySelectorAll('.bar button')].find(b => b.textContent === 'SVG').click()"
+    )
+    svg = page.run("window.saved")
+    classes = [each.get("class", "") for each in ElementTree.fromstring(svg).iter()]
+    drawn = page.run("document.querySelectorAll('.picture .box').length")
+    assert sum("box" in each.split() for each in classes) == drawn
+    assert "var(" not in svg
+
+
+@pytest.mark.parametrize("name", ["</script><b>x</b>", "<img src=x onerror=boom()>", "a\u202eb"])
+def test_names_of_strangers_are_shown_as_text(chromium: Browser, tmp_path: Path, name: str) -> None:
+    file = tmp_path / "strange.html"
+    foon_asp.solve(strange(name)).view().write(file)
+    chromium.open(file)
+    assert chromium.complaints == []
+    assert chromium.run("document.querySelectorAll('b, img').length") == 0
+    assert texts(chromium, "h1 span") == [name.replace("\u202e", "\ufffd")]

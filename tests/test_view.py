@@ -1,0 +1,139 @@
+"""Pages for a browser, without a browser: one file that is whole in itself, whatever names the data have."""
+
+import base64
+import hashlib
+import html
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import foon_asp
+from foon_asp import UserError
+from foon_asp.report.page import WEB, Page
+from tests.conftest import CORPUS, Cli, valid
+
+CALLS = r"\b(innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval|Function|fetch|XMLHttpRequest)\b"
+EVIL = "</script><img src=x onerror=alert(1)>\u202e"
+
+
+class Parts(HTMLParser):
+    """Collects what a page is made of."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: dict[str, list[str]] = {}
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.texts.setdefault(self.tags[-1][0] if self.tags else "", []).append(data)
+
+    @property
+    def policy(self) -> str:
+        (found,) = [attrs["content"] for tag, attrs in self.tags if "http-equiv" in attrs]
+        return found or ""
+
+
+def strange(name: str) -> foon_asp.Problem:
+    """Pose a problem whose motion and product have a strange name."""
+    flour, product = foon_asp.parse_node("flour"), foon_asp.ObjectNode.of(name)
+    builder = foon_asp.NetworkBuilder()
+    builder.add(name, [flour], [product], foon_asp.Source(name, 1))
+    return foon_asp.build(builder.build(), kitchen=[flour]).problem(product)
+
+
+def in_page(page: str) -> Any:
+    """Give the data of a page."""
+    (found,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
+    return valid(json.loads(found))
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    return foon_asp.view(foon_asp.load().problem("macaroni")).html()
+
+
+def test_the_page_has_the_answer_as_it_is(page: str) -> None:
+    problem = foon_asp.load().problem("macaroni")
+    answer, ours = in_page(page)["answer"], foon_asp.solve(problem).json()
+    assert {**answer, "seconds": 0} == {**ours, "seconds": 0}
+    assert {rate["unit"] for rate in in_page(page)["rates"]} == {unit["id"] for unit in ours["units"]}
+
+
+def test_the_policy_allows_what_is_in_the_page_and_nothing_else(page: str) -> None:
+    parts = Parts(page)
+    rules = dict(rule.strip().split(" ", 1) for rule in parts.policy.split(";"))
+    assert rules.keys() == {"default-src", "script-src", "style-src", "base-uri", "form-action"}
+    assert {rules[name] for name in ("default-src", "base-uri", "form-action")} == {"'none'"}
+    for name, tag in (("script-src", "script"), ("style-src", "style")):
+        found = re.findall(rf"<{tag}(?: id=\"\w+\")?>(.*?)</{tag}>", page, re.DOTALL)
+        digests = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in found]
+        assert rules[name] == " ".join(f"'sha256-{digest}'" for digest in digests)
+        assert found
+
+
+def test_nothing_is_asked_of_any_other_place(page: str) -> None:
+    for tag, attributes in Parts(page).tags:
+        assert tag not in {"link", "img", "iframe", "object", "embed", "base", "form"}
+        assert not {"src", "href", "srcset", "action", "style"} & attributes.keys(), tag
+        assert not [name for name in attributes if name.startswith("on")]
+    for file in sorted(WEB.iterdir()):
+        text = file.read_text(encoding="utf-8")
+        assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", text), file.name
+        calls = (
+            r"\b(innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval|Function|fetch|XMLHttpRequest)\b"
+        )
+        assert not re.search(calls, text), file.name
+        assert not re.search(r"url\(|@import|importScripts|setAttribute\(\"style", text), file.name
+
+
+def test_names_of_strangers_are_text() -> None:
+    page = foon_asp.solve(strange(EVIL)).view().html()
+    assert [tag for tag, _ in Parts(page).tags].count("img") == 0
+    assert page.count("</script>") == 2
+    assert "\u202e" not in page.partition('id="data">')[0]
+    assert in_page(page)["answer"]["units"][0]["motion"] == EVIL
+
+
+def test_a_page_without_scripts_has_the_steps_in_words(page: str) -> None:
+    (text,) = re.findall(r"<noscript><pre>(.*?)</pre></noscript>", page, re.DOTALL)
+    said = html.unescape(text)
+    assert "optimal by units" in said
+    assert "  9  tilt" in said
+
+
+def test_a_page_is_written_and_read(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "ice.html"
+    ran = cli("view", "--goal", "ice", "-o", file)
+    assert (ran.code, ran.out) == (0, "")
+    assert f"wrote {file}" in ran.err
+    shown = cli("view", "--goal", "ice", "--format", "json").json
+    written = in_page(file.read_text(encoding="utf-8"))
+    assert {**written["answer"], "seconds": 0} == {**shown["answer"], "seconds": 0}
+    assert "end it in .html" in cli("view", "--goal", "ice", "-o", tmp_path / "ice.pdf").err
+    with pytest.raises(UserError, match="expected one of html, json"):
+        foon_asp.view(foon_asp.load().problem("ice")).write(file, "pdf")
+
+
+def test_a_notebook_shows_the_page_in_a_frame() -> None:
+    shown: Page = foon_asp.solve(foon_asp.load().problem("ice")).view()
+    (tag, frame), *_ = Parts(shown._repr_mimebundle_()["text/html"]).tags
+    assert tag == "iframe"
+    assert frame["sandbox"] == "allow-scripts allow-downloads allow-modals"
+    assert frame["srcdoc"] == shown.html()
+
+
+@pytest.mark.skipif(not CORPUS.is_dir(), reason="the real universal FOON is not here")
+@pytest.mark.slow
+def test_the_page_of_a_tree_of_30_units_is_small(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "salad.html"
+    cli("view", "--data", CORPUS / "universal", "--goal", "greek salad", "-o", file)
+    assert len(in_page(file.read_text(encoding="utf-8"))["answer"]["units"]) == 30
+    assert file.stat().st_size < 700_000
