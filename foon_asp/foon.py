@@ -40,7 +40,8 @@ def load(
     Parameters:
         source: A folder with all files; or a network (FOON text or JSON), several networks to merge, or a
             store. Without it, the bundled kitchen is loaded.
-        kitchen: The file with the object nodes at hand, instead of that of the folder.
+        kitchen: The file with the object nodes at hand, instead of that of the folder; or ``"@starting"``
+            for what no unit makes out of other things, which is also at hand where there is no kitchen.
         rates: The file with the success rates of motions, instead of that of the folder.
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
@@ -287,4 +288,7 @@ class Foon:
         return f"<Foon of {self._name}>"
 
 
-_NO_KITCHEN = "no kitchen is given, so nothing is at hand: load(..., kitchen=FILE)"
+_NO_KITCHEN = (
+    "no kitchen is given, so what no unit makes is at hand (Foon.kitchen, for one question: "
+    "Answer.json()['starting_kitchen']): load(..., kitchen=FILE) says what is"
+)

@@ -30,6 +30,7 @@ BESIDE = {
     "arguments",
     "caller",
     "contract",
+    "each",
     "docstring",
     "cross_check",
     "index",
@@ -52,7 +53,7 @@ document: json_document
 encoding: own_encodings
 grounding: stated
 network: counted functional_unit level network node_pattern object_node source spelling
-    task_tree unit_prices
+    starting task_tree unit_prices
 problem: containers costs items number objective order problem relevance restriction root
 proof: simulation
 questions: answer arguments caller contract docstring index options posing result solve
@@ -60,7 +61,7 @@ reduce: derivation dominance exact_costs forced graph narrow near reduction redu
     upper_bound wide
 report: answer
 rules: constraint
-text: data_folder diagnostics exact_price goal_name grammar item_list json_fault json_list
+text: assumed_goals data_folder diagnostics exact_price goal_name grammar item_list json_fault json_list
     json_node json_object json_value label_list line listed_unit motion_times object_list
     plain_file provenance rate_table reader stated_prices table_rows unit_price_list writer
 """

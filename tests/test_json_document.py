@@ -145,7 +145,7 @@ def answers() -> dict[str, click.Command]:
 def test_every_verb_that_answers_has_a_schema() -> None:
     assert answers().keys() == ASKED.keys() == VERBS.keys() - OTHERS
     kinds = {"answer" if verb == "solve" else verb for verb in ASKED}
-    assert {*schema_kinds()} == kinds | {"batch-row", "compare-row", "pddl-map", "steps"}
+    assert {*schema_kinds()} == kinds | {"batch-row", "compare-row", "each", "pddl-map", "steps"}
 
 
 @pytest.mark.sampled(3)
@@ -155,7 +155,7 @@ def test_what_is_printed_is_what_the_schema_says(printed: Any, verb: str, words:
     assert printed(verb, *words)["schema"] == schema_name(kind)
 
 
-HEAD = ("goals", "containers", "items", "level", "objectives")
+HEAD = ("goals", "containers", "items", "level", "objectives", "starting_kitchen")
 
 
 @pytest.mark.slow

@@ -277,7 +277,7 @@ def test_a_store_of_before_there_were_prices_is_refused(tmp_path: Path, cli: Cli
     ran = cli("solve", "--network", str(tmp_path / "net.foon"), "--goal", "b")
     assert ran.code == 2
     assert (
-        "has version 1 of the store format, this foon-asp reads version 2: import its source files again"
+        "has version 1 of the store format, this foon-asp reads version 3: import its source files again"
         in ran.err
     )
 
@@ -428,7 +428,7 @@ def test_results_of_a_comparison_are_of_these_prices(folder: Path) -> None:
 def test_the_shell_and_every_question_take_the_file(folder: Path, cli: Cli) -> None:
     file = str(folder / "unit_prices.txt")
     assert (
-        cli("solve", "--network", str(folder / "net.json"), "--unit-prices", file, "--goal", "a;").code == 1
+        cli("solve", "--network", str(folder / "net.json"), "--unit-prices", file, "--goal", "a;").code == 0
     )
     for verb in ("solve", "pareto", "batch", "facts", "shell", "import", "stats", "verify", "draw"):
         assert "--unit-prices FILE" in " ".join(cli(verb, "--help").out.split()), verb

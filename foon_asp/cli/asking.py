@@ -4,6 +4,7 @@ import importlib
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,10 +17,11 @@ from foon_asp.cli.progress import Progress
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
+from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.index import module_name, question_name
-from foon_asp.questions.posing import DATA
+from foon_asp.questions.posing import DATA, each_goal, one_problem
 from foon_asp.questions.result import Result
 
 
@@ -51,9 +53,48 @@ def ask(
     with Progress() as progress:
         who = Caller(progress, session_here(), deadline, lenient=bool(given.get("lenient")))
         with asked_by(who):
-            about = question.pose(command, **parameters(question, given, Part.PROBLEM))
+            posed = _posed(question, command, given)
         with asked_by(who._replace(read_seconds=command.read_seconds)):
-            return question.command(*about, **parameters(question, given, Part.QUESTION | Part.COMMAND))
+            how = parameters(question, given, Part.QUESTION | Part.COMMAND)
+            found = [question.command(*about, **how) for about in posed]
+    if len(found) == 1:
+        return found[0]
+    from foon_asp.questions.each import Each
+
+    return Each(found)
+
+
+def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) -> list[tuple[object, ...]]:
+    """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
+    asked = parameters(question, given, Part.PROBLEM)
+    unnamed = (
+        "goals_named" in asked and not asked["goals_named"] and question.pose in {one_problem, each_goal}
+    )
+    goals = command.dataset.assumed_goals() if unnamed else []
+    if len(goals) < 2 or question.pose is each_goal:
+        posed = [question.pose(command, **asked)]
+    else:
+        _refuse_one_file(question, given)
+        posed = [question.pose(command, **asked | {"goals_named": [goal]}) for goal in goals]
+    problems = [each for about in posed for each in about if isinstance(each, Problem)]
+    if problems and (goals or not command.dataset.has_kitchen):
+        from foon_asp.dataset.assumed import goal_lines, kitchen_lines
+
+        lines = [*goal_lines(command.dataset, goals)] if goals else []
+        if not command.dataset.has_kitchen and session_here() is None:
+            wanted = dict.fromkeys(goal for problem in problems for goal in problem.goals)
+            lines += kitchen_lines(replace(problems[0], goals=tuple(wanted)))
+        click.echo("\n".join(lines), err=True, nl=bool(lines))
+    return posed
+
+
+def _refuse_one_file(question: Question, given: Mapping[str, Any]) -> None:
+    """Raise :class:`UserError` if the answers for several goals would be written into one file."""
+    files = [given.get("output"), given.get("certificate_file")]
+    if question.suffixes or any(files):
+        raise UserError(
+            "no goal is named, and there are several, which one file cannot hold: name one (--goal)"
+        )
 
 
 class _Command:

@@ -16,7 +16,7 @@ from foon_asp.dataset.items import items_of
 from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
-from foon_asp.text.data_folder import find_data
+from foon_asp.text.data_folder import STARTING, find_data
 from foon_asp.text.object_list import read_object_list
 
 
@@ -85,7 +85,14 @@ def digest(named: dict[str, Any], beside: Iterable[Path]) -> str:
     named = {key: value for key, value in named.items() if key not in {"level", "lenient", "measures"}}
     files = find_data(**named)
     found = hashlib.sha256()
-    for file in (*files.network, *filter(None, files[1:]), *sorted(set(beside)), *measures):
+    if files.kitchen in {None, STARTING}:  # other answers than with an empty kitchen
+        found.update(str(STARTING).encode())
+    for file in (
+        *files.network,
+        *(each for each in files[1:] if each not in {None, STARTING}),
+        *sorted(set(beside)),
+        *measures,
+    ):
         if not file.is_file():
             raise UserError(f"{file}: expected a file, since every process reads it again")
         with file.open("rb") as opened:

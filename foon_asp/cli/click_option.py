@@ -1,6 +1,7 @@
 """Parameters of click, made from the options of questions."""
 
 import functools
+import itertools
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -9,7 +10,6 @@ import click
 from foon_asp.cli import held
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.deadline import memory_size, seconds
-from foon_asp.errors import UserError
 from foon_asp.questions.contract import Kind, Option, Part
 from foon_asp.rules.constraint import Constraint, named_constraint
 
@@ -37,10 +37,10 @@ def _constraint(text: str) -> Constraint:
 def _options_alone(
     context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Refuse words where only options of another program are allowed."""
-    if value and not value[0].startswith("-"):
-        raise UserError(f"found {value[0]!r}, expected an option; a goal is named by --goal NAME")
-    return value
+    """Take the words before the first option of another program for networks, which no option names."""
+    words = list(itertools.takewhile(lambda word: not word.startswith("-"), value))
+    context.params["sources"] = tuple(map(NamedPath, words))
+    return value[len(words) :]
 
 
 def click_options(*options: Option) -> Callable[[Command], Command]:

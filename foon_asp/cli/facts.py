@@ -1,5 +1,6 @@
 """``foon-asp facts``: what the solver is given, for bare clingo."""
 
+import shlex
 from pathlib import Path
 
 import click
@@ -10,8 +11,10 @@ from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import write_data
+from foon_asp.dataset.assumed import goal_lines, kitchen_lines
 from foon_asp.dataset.items import items_of
 from foon_asp.document.json_document import document
+from foon_asp.errors import UserError
 from foon_asp.problem import parse_objectives
 from foon_asp.questions.options import (
     CONSTRAINTS,
@@ -24,12 +27,14 @@ from foon_asp.questions.options import (
     SOFT,
 )
 from foon_asp.rules.constraint import Constraint
+from foon_asp.text.goal_name import notation
 from foon_asp.text.json_value import json_text
 
 
 @click.command("facts")
 @click_options(GOALS, OBJECTIVES, CONTAINERS, *ITEMS, CONSTRAINTS, RULE, ENCODINGS, SOFT)
 @options.format_option("text", "json")
+@options.sources_argument
 @options.data_options
 def command(
     goals_named: tuple[str, ...],
@@ -71,6 +76,13 @@ def command(
     goals, how = dataset.goals(goals_named), items_of(dataset, items, stock, stays)
     everything = bool(constraints or encodings or soft)
     problem = dataset.problem(goals, containers, everything=everything, items=how)
+    if dataset.goals_from and not goals_named:
+        if len(goals) > 1:
+            named = "".join(f"\n  --goal {shlex.quote(notation(goal))}" for goal in dataset.assumed_goals())
+            raise UserError(f"name a goal with --goal; no file lists goals, and taken for them are{named}")
+        click.echo("\n".join(goal_lines(dataset, problem.goal_nodes)), err=True)
+    if not dataset.has_kitchen:
+        click.echo("\n".join(kitchen_lines(problem)), err=True)
     facts = bare_program(problem, chosen, Settings(constraints, encodings), soft).text
     if format_ == "json":
         lines = facts.rstrip("\n").split("\n")  # a name may hold what other letters end a line

@@ -44,7 +44,7 @@ def command(
         raise UserError("name the networks to import, or a folder of data with --data")
     files = find_data(network=(*paths, *network), **beside)
     imported = import_files(files, store, lenient)
-    for text in summarize(imported.warnings):
+    for text in (*summarize(imported.warnings), *imported.remarks):
         click.echo(text, err=True)
     if imported.left_out:
         click.echo(left_out(imported.left_out), err=True)

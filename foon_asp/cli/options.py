@@ -46,6 +46,9 @@ _DATA_OPTIONS = (
     lenient_option,
 )
 
+sources_argument = click.argument("sources", nargs=-1, type=_PATH, metavar="[RECIPE|DIR|STORE]...")
+
+
 _MEASURE_OPTION = click.option(
     "--measure",
     "measures",
@@ -144,17 +147,30 @@ def read_dataset(
     lenient: bool,
     level: int,
     measures: Sequence[Path] = (),
-    kitchen_expected: bool = True,
+    sources: Sequence[Path] = (),
 ) -> Dataset:
-    """Read the data that the options name; warnings go to stderr. A session has it already."""
+    """Read the data that the options name; warnings go to stderr. A session has it already.
+
+    ``sources`` are networks named without an option; a single folder among them is one with all data.
+    """
     here = held()
     if here:
-        named = (folder, network, kitchen, rates, utensils, goals, unit_prices, measures)
+        named = (sources, folder, network, kitchen, rates, utensils, goals, unit_prices, measures)
         if any(named) or (lenient, level) != here[1:3]:
             raise UserError(
                 "a session keeps the data it was started with; to take another kitchen: kitchen FILE"
             )
         return here.dataset
+    for source in sources:
+        if not source.exists():
+            raise UserError(
+                f"found {str(source)!r}, expected a recipe, a folder or a store, and there is no such path; "
+                "a goal is named with --goal"
+            )
+    if len(sources) == 1 and sources[0].is_dir() and folder is None and not network:
+        folder = sources[0]
+    else:
+        network = (*sources, *network)
     with reading():
         files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
         dataset = read_data(files, lenient, level)
@@ -167,6 +183,4 @@ def read_dataset(
         context.call_on_close(dataset.close)
     for text in dataset.remarks:
         click.echo(text, err=True)
-    if not dataset.has_kitchen and kitchen_expected:
-        click.echo("warning: no kitchen is given, so nothing is at hand; name one with --kitchen", err=True)
     return dataset

@@ -34,6 +34,8 @@ def question_command(verb: str) -> click.Command:
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answering(question)
     command = (options.debug_option if question.pose is no_data else options.data_options)(command)
+    if question.pose is not no_data and not any(option.positional for option in question.options):
+        command = options.sources_argument(command)
     for option in _format_options(question):
         command = option(command)
     names = {option.name for option in question.options}

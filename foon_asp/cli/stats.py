@@ -37,7 +37,7 @@ def command(
     networks = (*paths, *network)
     if len(paths) == 1 and paths[0].is_dir() and folder is None and not network:
         folder, networks = paths[0], ()
-    dataset = options.read_dataset(folder=folder, network=networks, level=3, kitchen_expected=False, **data)
+    dataset = options.read_dataset(folder=folder, network=networks, level=3, **data)
     read = dataset.data
     levels = []
     for level in LEVELS:

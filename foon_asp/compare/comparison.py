@@ -50,6 +50,7 @@ class Comparison(NamedTuple):
     """The searches and the optimum for one goal (in one-line notation) under one rule, at one level.
 
     ``items`` says whether they last; where they are used up, a tree executes if it runs as a plan.
+    ``starting`` says that no kitchen was given; rows of results are for one kitchen, and do not repeat it.
     """
 
     goal: str
@@ -58,11 +59,12 @@ class Comparison(NamedTuple):
     judgements: tuple[Judgement, ...]
     level: int = 3
     items: str = "lasting"
+    starting: bool = False
 
     @property
     def conditions(self) -> str:
         """What all of it holds under, in a few words: ``strict containers``."""
-        said = conditions(ContainerRule(self.containers), self.level)
+        said = conditions(ContainerRule(self.containers), self.level, self.starting)
         return said if self.items == "lasting" else f"{said}, items used up"
 
     def ratio(self, judgement: Judgement, objective: Objective) -> Fraction | None:

@@ -7,9 +7,16 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
-from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_ids
+from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_id, node_ids
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, UnitPrices, counted, pattern_at_level
+from foon_asp.network import (
+    FunctionalUnit,
+    ObjectNode,
+    UnitPrices,
+    counted,
+    pattern_at_level,
+    starting_nodes,
+)
 from foon_asp.problem import (
     Changes,
     Measure,
@@ -21,9 +28,11 @@ from foon_asp.problem import (
     UsedUp,
     container_rule,
     count_unpriced,
+    first_places,
+    unrated_text,
 )
-from foon_asp.text.data_folder import Data, kitchen_item_warning, kitchen_nodes
-from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes
+from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning, kitchen_nodes
+from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, notation
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 
@@ -32,17 +41,20 @@ def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
     """Ask for goals of the network under a container rule, of data that belong to others."""
+    unrated = origin.unrated
     return Problem(
         data.network,
         data.kitchen,
         tuple(goals),
-        data.rates,
+        None if unrated else data.rates,
         data.utensils,
         container_rule(containers),
         origin=origin,
         unit_prices=data.unit_prices,
         measures=origin.measures,
         items=items,
+        starting=data.starting,
+        unrated=unrated,
     )
 
 
@@ -53,7 +65,9 @@ class Dataset:
     it. ``listed`` are the entries of the goals file, ``names`` what goals are looked up in, ``rates`` the
     success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
     rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words; ``has_kitchen`` says
-    that a kitchen was given, even an empty one. ``measures`` are the user's own, by name.
+    that a kitchen was given, even an empty one; without one, the starting kitchen is at hand.
+    ``goals_from`` says what the entries were assumed from if no file lists goals. ``measures`` are the
+    user's own, by name.
     """
 
     measures: Mapping[str, Measure] = MappingProxyType({})
@@ -69,6 +83,15 @@ class Dataset:
         self.read_seconds = read_seconds
         self.remarks = remarks
         self.has_kitchen = has_kitchen
+        self.goals_from = data.goals_from
+
+    @property
+    def unrated(self) -> str:
+        """The motions without a success rate, in words; empty where all have one, or no rates are known."""
+        rates, network = self.rates, self.data.network
+        if rates is None or rates.keys() >= set(network.motions):
+            return ""
+        return unrated_text(first_places(network), rates)
 
     def close(self) -> None:
         """Close the files that are read only as far as questions go; there are none here."""
@@ -97,8 +120,13 @@ class Dataset:
         """Whether the kitchen has an object node, by id."""
         return o in self.data.kitchen
 
-    def goals(self, names: Sequence[str]) -> tuple[int, ...]:
-        """Find the goals by name; without a name, the goals file has to hold exactly one."""
+    def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
+        """Find the goals by name; without a name, the goals file has to hold exactly one.
+
+        Without a file, they are all that were assumed.
+        """
+        if not names and self.goals_from:
+            return tuple(dict.fromkeys(self.each_goal(())))
         if not names and len(self.listed) == 1:
             names = [self.listed[0].pattern.label]
         if not names:
@@ -106,16 +134,31 @@ class Dataset:
             raise UserError("name a goal with --goal" + (f"; the goals file has\n{listed}" if listed else ""))
         return tuple(dict.fromkeys(self.each_goal(names)))
 
-    def each_goal(self, names: Sequence[str]) -> list[int]:
+    def assumed_goals(self) -> list[ObjectNode]:
+        """Give the goals that were assumed because no file lists any; empty where one does."""
+        return [self.names.node(o) for o in dict.fromkeys(self.each_goal(()))] if self.goals_from else []
+
+    def each_goal(self, names: Sequence[str | ObjectNode]) -> list[int]:
         """Find one goal for each name; without names, all nodes of the goals file."""
         if names:
-            return [find_goal(name, self.names, self.listed) for name in names]
+            return [
+                node_id(self, name, "goal")
+                if isinstance(name, ObjectNode)
+                else find_goal(name, self.names, self.listed)
+                for name in names
+            ]
         return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Give the same data with the kitchen of another file."""
         kitchen = kitchen_nodes(self.data.network, items)
-        return self._varied(self.data._replace(kitchen=kitchen, kitchen_items=tuple(items)))
+        data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items), starting=False)
+        return self._varied(data)
+
+    def with_starting_kitchen(self) -> "Dataset":
+        """Give the same data with what no unit makes out of others at hand."""
+        kitchen = starting_nodes(self.data.network)
+        return self._varied(self.data._replace(kitchen=kitchen, kitchen_items=(), starting=True))
 
     def _varied(self, data: Data) -> "Dataset":
         return Dataset(data, self.read_seconds).measured(self.measures)
@@ -139,7 +182,9 @@ class Dataset:
         kitchen = self._data.kitchen if only is None else only
         items = self._data.kitchen_items if only is None else ()
         at_hand = frozenset(kitchen).union(more).difference(less)
-        return self._varied(self._data._replace(kitchen=at_hand, kitchen_items=items))
+        starting = self._data.starting and only is None
+        data = self._data._replace(kitchen=at_hand, kitchen_items=items, starting=starting)
+        return self._varied(data)
 
     def valued(self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None) -> "Dataset":
         """Give the same data with some success rates and some prices changed."""
@@ -163,7 +208,9 @@ class Dataset:
         if kitchen is None and not adding and not without:
             return dataset
         only = None
-        if isinstance(kitchen, Path):
+        if isinstance(kitchen, Path | str) and kitchen in {STARTING, str(STARTING)}:
+            dataset = dataset.with_starting_kitchen()
+        elif isinstance(kitchen, Path):
             items = read_object_list(kitchen)
             dataset = dataset.with_kitchen(items)
             names = dataset.names
@@ -206,6 +253,12 @@ class Dataset:
         found = tuple(dict.fromkeys(node_ids(self, names, "goal")))
         if found:
             return found
+        if self.goals_from:
+            each = self.each_goal(())
+            if len(each) == 1:
+                return tuple(each)
+            known = ", ".join(repr(notation(self.names.node(o))) for o in each)
+            raise UserError(f"name a goal; no file lists goals, and taken for them are {known}")
         if len(self.listed) == 1:
             return tuple(node_ids(self, self.listed[0].pattern.label, "goal"))
         known = ", ".join(repr(entry.pattern.label) for entry in self.listed)

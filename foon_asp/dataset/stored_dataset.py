@@ -10,10 +10,33 @@ from typing import NamedTuple
 from foon_asp.dataset.dataset import Dataset, ask, left_out
 from foon_asp.dataset.names import changed_prices, changed_rates
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, Network, UnitPrices, network_at_level, pattern_at_level
-from foon_asp.problem import Number, Problem, UnitPricesNamed, Unpriced, UsedUp, container_rule, require_rates
+from foon_asp.network import (
+    FunctionalUnit,
+    Network,
+    UnitPrices,
+    network_at_level,
+    pattern_at_level,
+    starting_nodes,
+)
+from foon_asp.problem import (
+    Number,
+    Problem,
+    UnitPricesNamed,
+    Unpriced,
+    UsedUp,
+    container_rule,
+    unrated_remarks,
+    unrated_text,
+)
 from foon_asp.store.store import Store
-from foon_asp.text.data_folder import Data, DataFiles, kitchen_item_warning, kitchen_nodes, unit_price_warning
+from foon_asp.text.data_folder import (
+    STARTING,
+    Data,
+    DataFiles,
+    kitchen_item_warning,
+    kitchen_nodes,
+    unit_price_warning,
+)
 from foon_asp.text.diagnostics import Diagnostic, summarize
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -35,14 +58,14 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
     store = Store(files.network[0])
     warnings: list[Diagnostic] = []
     kitchen = None
-    if files.kitchen:
+    starting = files.kitchen == STARTING or (files.kitchen is None and not store.has_kitchen)
+    if files.kitchen and not starting:
         kitchen = read_object_list(files.kitchen, warnings)
         warnings += [kitchen_item_warning(item) for item in kitchen if not store.find(item.pattern)]
     goals = read_object_list(files.goals, warnings) if files.goals else store.goals
     rates = store.rates
     if files.rates:
         rates = read_rates(files.rates)
-        require_rates(store.motion_sources(), rates)
     utensils = read_labels(files.utensils) if files.utensils else store.utensils
     prices = _StoredPrices(store.motion_prices, {}, listed=True)
     if files.unit_prices:
@@ -53,9 +76,15 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         ]
         prices = _StoredPrices(read.motions, units, listed=False)
     remarks = summarize(warnings)
+    if rates is not None:
+        remarks += unrated_remarks(store.motion_sources(), rates)
     if store.left_out:
         remarks.append(f"{left_out(store.left_out)} when the store was made")
     dataset = StoredDataset(store, kitchen, goals, rates, utensils, prices, began, tuple(remarks))
+    dataset.goals_from = "" if files.goals else store.goals_from
+    if starting:
+        dataset = dataset.with_starting_kitchen()
+        dataset.has_kitchen = files.kitchen is not None
     if level == 3:
         return dataset
     data = _at_level(dataset.data, level)
@@ -106,6 +135,8 @@ class StoredDataset(Dataset):
         self._read_whole: list[tuple[Network, frozenset[int]]] = []  # shared by all that vary it
         self.remarks = remarks
         self.has_kitchen = kitchen is not None or store.has_kitchen
+        self.goals_from = ""
+        self._starting = False
         self.read_seconds = time.perf_counter() - began
 
     def close(self) -> None:
@@ -116,7 +147,24 @@ class StoredDataset(Dataset):
         """Give the same store with the kitchen of another file."""
         began = time.perf_counter()
         beside = self.listed, self.rates, self.utensils, self._prices
-        return StoredDataset(self._store, items, *beside, began).measured(self.measures)
+        other = StoredDataset(self._store, items, *beside, began)
+        other.goals_from = self.goals_from
+        return other.measured(self.measures)
+
+    def with_starting_kitchen(self) -> "StoredDataset":
+        """Give the same store with what no unit makes out of others at hand; nothing is read."""
+        other = self._copied()
+        other._kitchen = ()
+        other._at_hand = self._store.is_starting
+        other._all_at_hand = lambda: starting_nodes(other._whole()[0])
+        other._starting = True
+        return other
+
+    def _copied(self) -> "StoredDataset":
+        other = copy.copy(self)
+        for known in ("data", "kitchen", "unrated"):
+            other.__dict__.pop(known, None)
+        return other
 
     def varied(
         self,
@@ -126,9 +174,8 @@ class StoredDataset(Dataset):
     ) -> Dataset:
         """Give the same store with another kitchen; nothing is read."""
         before = self._at_hand if only is None else frozenset(only).__contains__
-        other = copy.copy(self)
-        for known in ("data", "kitchen"):
-            other.__dict__.pop(known, None)
+        other = self._copied()
+        other._starting = self._starting and only is None
         other._at_hand = lambda o: o not in less and (o in more or before(o))
         other._all_at_hand = lambda: (
             (self.kitchen if only is None else frozenset(only)).union(more).difference(less)
@@ -140,8 +187,7 @@ class StoredDataset(Dataset):
         """Give the same store with some success rates and some prices changed; of units, ids are read."""
         if rates is None and unit_prices is None:
             return self
-        other = copy.copy(self)
-        other.__dict__.pop("data", None)
+        other = self._copied()
         other.rates = changed_rates(self.rates, rates)
         known = UnitPrices(self._prices.motions or {}, self._prices.units)
         prices = changed_prices(known, unit_prices, self.motions, self._store)
@@ -153,15 +199,18 @@ class StoredDataset(Dataset):
     def data(self) -> Data:
         """Everything there is: the whole store is read."""
         began = time.perf_counter()
-        if not self._read_whole:
-            self._read_whole.append(self._store.whole())
-        network, kitchen = self._read_whole[0]
+        network, kitchen = self._whole()
         items = self._store.kitchen_items() if self._kitchen is None else tuple(self._kitchen)
         if self._at_hand != self._store.in_kitchen:
             kitchen = self.kitchen
         data = self._with(network, kitchen)._replace(kitchen_items=items)
         self.read_seconds += time.perf_counter() - began
         return data
+
+    def _whole(self) -> tuple[Network, frozenset[int]]:
+        if not self._read_whole:
+            self._read_whole.append(self._store.whole())
+        return self._read_whole[0]
 
     @property
     def unit_prices(self) -> UnitPrices | None:
@@ -171,6 +220,11 @@ class StoredDataset(Dataset):
     def unpriced(self) -> Sequence[Unpriced]:
         """Give the units that have no price, by motion."""
         return self._store.unpriced(self._prices.motions or {}, self._prices.units, self._prices.listed)
+
+    @cached_property
+    def unrated(self) -> str:
+        """The motions of the whole network that the success rates lack."""
+        return "" if self.rates is None else unrated_text(self._store.motion_sources(), self.rates)
 
     @property
     def motions(self) -> list[str]:
@@ -247,7 +301,19 @@ class StoredDataset(Dataset):
         goals = tuple(self.listed)
         left_out = self._store.left_out
         rates = None if self.rates is None else dict(self.rates)
-        return Data(network, kitchen, (), goals, rates, self.utensils, (), left_out, self._prices_of(network))
+        return Data(
+            network,
+            kitchen,
+            (),
+            goals,
+            rates,
+            self.utensils,
+            (),
+            left_out,
+            self._prices_of(network),
+            self._starting,
+            self.goals_from,
+        )
 
     def _prices_of(self, network: Network) -> UnitPrices | None:
         """Give the prices of a part of the network, or of all of it."""
@@ -266,4 +332,5 @@ def _places(part: Network, goals: Sequence[int]) -> tuple[int, ...]:
 def _at_level(data: Data, level: int) -> Data:
     network = network_at_level(data.network, level)
     goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in data.goals)
-    return data._replace(network=network, kitchen=kitchen_nodes(network, data.kitchen_items), goals=goals)
+    kitchen = starting_nodes(network) if data.starting else kitchen_nodes(network, data.kitchen_items)
+    return data._replace(network=network, kitchen=kitchen, goals=goals)

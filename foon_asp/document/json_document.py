@@ -8,7 +8,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source
-from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.problem import Costs, Objective, Problem, kitchen_needed
 from foon_asp.text.json_node import node_json, place_json
 from foon_asp.text.json_value import Json, schema_name
 
@@ -22,16 +22,25 @@ def document(
         network = problem.network
         goals = goals_json(network, problem.goals)
         items = "lasting" if problem.items is None else "used-up"
-        head = head_json(goals, problem.containers, network.level, objectives, items)
+        starting = nodes_json(network, kitchen_needed(problem)) if problem.starting else None
+        head = head_json(goals, problem.containers, network.level, objectives, items, starting)
     return {"schema": schema_name(kind), **head, **fields}
 
 
 def head_json(
-    goals: list[Json], containers: str, level: int, objectives: Iterable[str], items: str = "lasting"
+    goals: list[Json],
+    containers: str,
+    level: int,
+    objectives: Iterable[str],
+    items: str = "lasting",
+    starting_kitchen: list[Json] | None = None,
 ) -> Json:
-    """Give what every document about goals begins with."""
+    """Give what every document about goals begins with.
+
+    ``starting_kitchen`` are the items that can be needed, where no kitchen was given.
+    """
     head = {"goals": goals, "containers": str(containers), "items": items, "level": level}
-    return {**head, "objectives": list(map(str, objectives))}
+    return {**head, "objectives": list(map(str, objectives)), "starting_kitchen": starting_kitchen}
 
 
 def goals_json(network: Network, goals: Iterable[int]) -> list[Json]:

@@ -14,5 +14,6 @@ from foon_asp.network.object_node import Contents as Contents
 from foon_asp.network.object_node import ObjectNode as ObjectNode
 from foon_asp.network.object_node import Relation as Relation
 from foon_asp.network.source import Source as Source
+from foon_asp.network.starting import starting_nodes as starting_nodes
 from foon_asp.network.task_tree import TaskTree as TaskTree
 from foon_asp.network.unit_prices import UnitPrices as UnitPrices

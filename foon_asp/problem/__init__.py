@@ -31,11 +31,14 @@ from foon_asp.problem.problem import Problem as Problem
 from foon_asp.problem.problem import UnitPricesNamed as UnitPricesNamed
 from foon_asp.problem.problem import Unpriced as Unpriced
 from foon_asp.problem.problem import count_unpriced as count_unpriced
-from foon_asp.problem.problem import require_rates as require_rates
+from foon_asp.problem.problem import first_places as first_places
+from foon_asp.problem.problem import unrated_remarks as unrated_remarks
+from foon_asp.problem.problem import unrated_text as unrated_text
 from foon_asp.problem.relevance import Reached as Reached
 from foon_asp.problem.relevance import backwards as backwards
 from foon_asp.problem.relevance import first_tree as first_tree
 from foon_asp.problem.relevance import follow as follow
+from foon_asp.problem.relevance import kitchen_needed as kitchen_needed
 from foon_asp.problem.relevance import reach as reach
 from foon_asp.problem.relevance import relevant as relevant
 from foon_asp.problem.restriction import Left as Left

@@ -37,9 +37,13 @@ def container_rule(given: str) -> ContainerRule:
         ) from None
 
 
-def conditions(rule: ContainerRule, level: int) -> str:
-    """Say in a few words what a claim holds under: ``strict containers, level 2``; level 3 goes unsaid."""
-    return f"{rule} containers" + (f", level {level}" if level < 3 else "")
+def conditions(rule: ContainerRule, level: int, starting: bool = False) -> str:
+    """Say in a few words what a claim holds under: ``strict containers, level 2``; level 3 goes unsaid.
+
+    ``starting`` says that the kitchen was not given and is the starting one.
+    """
+    said = f"{rule} containers" + (f", level {level}" if level < 3 else "")
+    return said + (", starting kitchen" if starting else "")
 
 
 def needed_inputs(

@@ -23,6 +23,8 @@ from foon_asp.problem.number import Number
 from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
 
+_NAMED = 4  # motions that a remark names
+
 Names = str | ObjectNode | Iterable[str | ObjectNode]
 """One object node or several: labels, one-line notation (``ice; crushed; in [drinking glass]``), or nodes."""
 
@@ -95,7 +97,9 @@ class Problem:
     costs by one. ``origin`` is the data that it was made from, or ``None`` for a problem made by hand.
     ``as_seen`` is the problem whose rates the user's rules look at, if others are used. ``restriction`` is
     what rules leave of the network, for this question only: a variation of it has to find its own.
-    ``items`` says that items are used up, and which; ``None`` if they last.
+    ``items`` says that items are used up, and which; ``None`` if they last. ``starting`` says that no kitchen
+    was given, so that what no unit makes out of others is at hand. Rates that lack a motion of the network
+    are set aside, and ``unrated`` says which they lack.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -116,15 +120,16 @@ class Problem:
     restriction: Restriction | None = field(default=None, kw_only=True)
     measures: Mapping[str, Measure] = field(default_factory=dict, kw_only=True)
     items: UsedUp | None = field(default=None, kw_only=True)
+    starting: bool = field(default=False, kw_only=True)
+    unrated: str = field(default="", kw_only=True)
 
     def __post_init__(self) -> None:
         if not self.goals:
             raise UserError("no goal is given")
         object.__setattr__(self, "goals", tuple(dict.fromkeys(self.goals)))
         if self.rates is not None and not self.rates.keys() >= set(self.network.motions):
-            network = self.network
-            sources = (copies[0] for copies in network.sources)
-            require_rates(zip(network.motions, sources, strict=True), self.rates)
+            object.__setattr__(self, "unrated", unrated_text(first_places(self.network), self.rates))
+            object.__setattr__(self, "rates", None)
 
     @property
     def goal_nodes(self) -> tuple[ObjectNode, ...]:
@@ -212,7 +217,7 @@ class Problem:
     @property
     def conditions(self) -> str:
         """What every claim about this question holds under, in a few words: ``strict containers``."""
-        said = conditions(self.containers, self.network.level)
+        said = conditions(self.containers, self.network.level, self.starting)
         return said if self.items is None else f"{said}, items used up"
 
     @cached_property
@@ -311,7 +316,8 @@ class Problem:
             )
         if self.rates is None and by_rates:
             raise UserError(
-                "the objective success needs the success rates of the motions: "
+                self.unrated
+                or "the objective success needs the success rates of the motions: "
                 "give a rates file, with --rates FILE or in Python load(..., rates=FILE)"
             )
         by_prices = [str(each) for each in objectives if each.row.needs is Known.PRICES]
@@ -532,8 +538,14 @@ def _unpriced_text(lacking: Sequence[Unpriced]) -> str:
     return "\n".join(lines)
 
 
-def require_rates(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> None:
-    """Raise :class:`UserError` naming every motion without a success rate and where it was first read.
+def first_places(network: Network) -> Iterable[tuple[str, Source]]:
+    """Give the motion of each unit, and where it was first read."""
+    for motion, copies in zip(network.motions, network.sources, strict=True):
+        yield motion, copies[0] if copies else Source("-", 0)
+
+
+def unrated_text(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> str:
+    """Name every motion without a success rate and where it was first read; empty where all have one.
 
     ``motions`` may name a motion again; what counts is its first place.
     """
@@ -541,12 +553,25 @@ def require_rates(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fra
     for motion, source in motions:
         if motion not in rates:
             missing.setdefault(motion, source)
-    if missing:
-        lines = [
-            f"{source}:1: error: the motion {motion!r} has no success rate"
-            for motion, source in list(missing.items())[:10]
-        ]
-        if len(missing) > 10:
-            lines.append(f"... and {len(missing) - 10} more motions")
-        lines.append("add a line with the motion, a tab and its rate to the rates file (motion.txt)")
-        raise UserError("\n".join(lines))
+    if not missing:
+        return ""
+    lines = [
+        f"{source}:1: error: the motion {motion!r} has no success rate"
+        for motion, source in list(missing.items())[:10]
+    ]
+    if len(missing) > 10:
+        lines.append(f"... and {len(missing) - 10} more motions")
+    lines.append("add a line with the motion, a tab and its rate to the rates file (motion.txt)")
+    return "\n".join(lines)
+
+
+def unrated_remarks(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> list[str]:
+    """Say that some motions have no success rate, so that no success is known."""
+    lacking = [
+        repr(motion) for motion in dict.fromkeys(motion for motion, _ in motions) if motion not in rates
+    ]
+    if not lacking:
+        return []
+    more = f" and {len(lacking) - _NAMED} more" if len(lacking) > _NAMED else ""
+    named = f"{', '.join(lacking[:_NAMED])}{more}"
+    return [f"warning: no success is known, since the rates file has no rate for {named}"]

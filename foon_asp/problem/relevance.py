@@ -100,6 +100,13 @@ def backwards(
     return chosen, wanted
 
 
+def kitchen_needed(problem: Problem) -> list[int]:
+    """Give the kitchen items that a tree for the goals can take, in order of id; goals at hand among them."""
+    units, _ = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
+    needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
+    return sorted(needed & problem.kitchen)
+
+
 def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
     """Give some tree, in an executable order, by following the makers; ``None`` when there is none.
 

@@ -1,6 +1,6 @@
 """What callers write, turned into what the rooms take; errors use the words of Python."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from os import PathLike
 from pathlib import Path
@@ -26,6 +26,22 @@ def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, .
     objectives = parse_objectives([given] if isinstance(given, str) else given, problem.measures)
     problem.require_known_for(objectives)
     return objectives
+
+
+def usual_objectives(
+    problem: Problem, given: Objectives, usual: Sequence[str], instead: Sequence[str]
+) -> Objectives:
+    """Give the objectives that are asked for, or those usual for a question where none are.
+
+    Where no success rates are known, it is those ``instead``, and a warning says so.
+    """
+    if given:
+        return given
+    if problem.rates is not None:
+        return usual
+    why = "motions lack one in the rates file" if problem.unrated else "no success rates are given (--rates)"
+    caller().reporter.warning(f"success is left out, since {why}: asked is {' and '.join(instead)}")
+    return instead
 
 
 def settings(

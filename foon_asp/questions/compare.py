@@ -270,7 +270,11 @@ def compare_searches(
         >>> len(bfs.units), bfs.executes
         (10, 'executes in another order')
     """
+    searches = tuple(searches)
     chosen = searched(searches)
+    if problem.rates is None and not searches:
+        chosen = [each for each in chosen if each.name != "greedy-success"]
+        caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
     how = search_settings(ties, count, depth_limit, published, *limits(time_limit, memory_limit))
     at_least(jobs, 1, "jobs")
     if all_makeable or results is not None:  # results are kept with a digest of all the data
@@ -297,4 +301,5 @@ def compare_searches(
     table = read_published(published_table()) if published else None
     if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
         table = None
-    return Compared(problem, tuple(done[name] for name in goals), table, all_makeable)
+    compared = tuple(done[name]._replace(starting=problem.starting) for name in goals)
+    return Compared(problem, compared, table, all_makeable)

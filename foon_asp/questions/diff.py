@@ -38,7 +38,7 @@ class Side(NamedTuple):
 
     ``goals`` may be empty where they are not known. ``costs.success`` is ``None`` where a rate is not known.
     ``ending`` is how the question ended whose answer it is, and ``objectives`` are those of it, none for a
-    tree that is no answer.
+    tree that is no answer. ``starting`` says that no kitchen was given, so that it is the starting one.
     """
 
     name: str
@@ -53,6 +53,7 @@ class Side(NamedTuple):
     network: Network
     ending: Ending
     objectives: tuple[Objective, ...]
+    starting: bool = False
 
     def origin(self, node: ObjectNode) -> FunctionalUnit | None:
         """Give the unit that makes a node first; ``None`` where the kitchen has it or no unit makes it."""
@@ -188,7 +189,8 @@ def _file_side(file: Path, dataset: Dataset, goals_named: Sequence[str], contain
     kitchen = frozenset(objects[o] for o in data.kitchen)
     rule = container_rule(containers)
     beside = data.utensils, data.rates, network
-    return side(str(file), units, goals, kitchen, rule, *beside, unit_prices=data.unit_prices)
+    taken = side(str(file), units, goals, kitchen, rule, *beside, unit_prices=data.unit_prices)
+    return taken._replace(starting=data.starting)
 
 
 @question(
@@ -288,7 +290,8 @@ def _side(name: str, given: Answer | Tree | Side) -> Side:
     ids = [unit for each in tree if (unit := problem.network.unit_id(each)) is not None]
     known = problem.costs(ids).measures if len(ids) == len(tree) else {}
     measures = {each: known[each] for each in map(Objective.of_measure, problem.measures) if each in known}
-    return taken._replace(costs=Costs({**taken.costs.measures, **measures}))
+    costs = Costs({**taken.costs.measures, **measures})
+    return taken._replace(costs=costs, starting=problem.starting)
 
 
 def side(
@@ -375,7 +378,10 @@ def _ends(tree: Side) -> list[ObjectNode]:
 
 def _side_json(tree: Side) -> object:
     goals = [named_json(tree.network, goal) for goal in tree.goals]
-    head = head_json(goals, tree.rule, tree.network.level, tree.objectives)
+    needed = dict.fromkeys(node for needs in tree.needs.values() for node in needs if node in tree.kitchen)
+    starting = [named_json(tree.network, node) for node in needed] if tree.starting else None
+    level = tree.network.level
+    head = head_json(goals, tree.rule, level, tree.objectives, starting_kitchen=starting)
     return {"name": tree.name, **head, "costs": costs_json(tree.costs)}
 
 

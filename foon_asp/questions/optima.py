@@ -8,7 +8,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.document.json_document import document
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.arguments import chosen_objectives, limits, settings
+from foon_asp.questions.arguments import chosen_objectives, limits, settings, usual_objectives
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES
@@ -60,8 +60,9 @@ class Optima(Result):
 @question(
     EACH_GOAL,
     OBJECTIVES._replace(
-        help="An objective, or a list by commas of which the first counts most; one row each.",
-        default=("units", "inputs", "success"),
+        help="An objective, or a list by commas of which the first counts most; one row each. By default "
+        "units, inputs and, where rates are known, success.",
+        default=None,
     ),
     CONTAINERS,
     *ITEMS,
@@ -74,7 +75,7 @@ class Optima(Result):
 )
 def optima(
     problem: Problem,
-    objectives: str | Iterable[str] = ("units", "inputs", "success"),
+    objectives: str | Iterable[str] = (),
     *,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
@@ -84,7 +85,8 @@ def optima(
     The limits are for each answer.
 
     Parameters:
-        objectives: Several objectives; each is one name, or a list separated by commas.
+        objectives: Several objectives; each is one name, or a list separated by commas. Without any: units,
+            inputs and, where rates are known, success.
 
     Returns:
         The ``outcomes``: for each goal in order, one :class:`Answer` for each objective.
@@ -97,7 +99,8 @@ def optima(
         >>> [answer.costs.units for answer in foon_asp.optima(problem, ["units", "success"]).outcomes]
         [2, 3, 7, 7]
     """
-    texts = [objectives] if isinstance(objectives, str) else objectives
+    asked = usual_objectives(problem, objectives, ("units", "inputs", "success"), ("units", "inputs"))
+    texts = [asked] if isinstance(asked, str) else asked
     lists = [chosen_objectives(problem, text) for text in texts]
     # limits are for each answer, ctrl-C is for all of them
     how, each_limits, whole = settings(), limits(time_limit, memory_limit), Deadline()

@@ -16,7 +16,14 @@ from foon_asp.document.json_document import costs_json, document, figures_json, 
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
-from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.arguments import (
+    Constants,
+    Objectives,
+    asked_with,
+    chosen_objectives,
+    settings,
+    usual_objectives,
+)
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, OBJECTIVES
@@ -155,7 +162,11 @@ class Front(Result):
 
 @question(
     GOALS,
-    OBJECTIVES._replace(help=f"Two or three of {', '.join(Objective)}.", default=("units,success",)),
+    OBJECTIVES._replace(
+        help=f"Two or three of {', '.join(Objective)}. By default units and success, or units and inputs "
+        "where no rates are known.",
+        default=None,
+    ),
     CONTAINERS,
     Option("trees", "Also list the units of the trees.", Kind.FLAG, Part.TEXT),
     Option(
@@ -182,7 +193,7 @@ class Front(Result):
 )
 def pareto(
     problem: Problem,
-    objectives: Objectives = "units,success",
+    objectives: Objectives = (),
     *,
     constraints: Files = (),
     constants: Constants | None = None,
@@ -195,7 +206,8 @@ def pareto(
     The limits are for the whole question.
 
     Parameters:
-        objectives: Two or three names, or a list separated by commas.
+        objectives: Two or three names, or a list separated by commas. Without any: units and success, or
+            units and inputs where no rates are known.
 
     Returns:
         The ``points`` of the front; ``complete`` tells whether they are proved to be all.
@@ -208,7 +220,8 @@ def pareto(
         >>> [(point.costs.units, round(float(point.costs.success), 4)) for point in front.points]
         [(9, 0.4988), (10, 0.5955), (11, 0.6293)]
     """
-    asked = chosen_objectives(problem, objectives)
+    given = usual_objectives(problem, objectives, ("units", "success"), ("units", "inputs"))
+    asked = chosen_objectives(problem, given)
     if not _FEWEST <= len(asked) <= _MOST:
         raise UserError(
             f"found {counted(len(asked), 'objective')}, "

@@ -36,7 +36,7 @@ class Command(Protocol):
         """Stop what is read in a ``with`` block at the limits of the command."""
 
 
-DATA = ("folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
+DATA = ("sources", "folder", "network", "kitchen", "rates", "utensils", "goals", "unit_prices")
 """The options of a command that name data."""
 
 Pose = Callable[..., tuple[object, ...]]

@@ -11,7 +11,7 @@ from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import Network
-from foon_asp.problem import Problem
+from foon_asp.problem import Problem, kitchen_needed
 from foon_asp.proof import verify as proof
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, Part, question
@@ -31,6 +31,7 @@ class VerifiedCertificate(Result):
 
     ``network`` is the network that it is about, ``content`` the certificate as plain values. ``with_clingo``
     says that clingo checked what is otherwise taken on trust, as ``verified.trusted`` lists it.
+    ``starting_kitchen`` are the ids of the object nodes that can be needed, where no kitchen was given.
 
     Example:
         >>> foon = foon_asp.load()
@@ -43,14 +44,16 @@ class VerifiedCertificate(Result):
     network: Network
     content: Mapping[str, Any]
     with_clingo: bool = False
+    starting_kitchen: tuple[int, ...] | None = None
 
     def text(self) -> str:
         """Say what is proved, as ``foon-asp verify`` does."""
-        return verified_text(self.verified, self.network, dict(self.content), self.with_clingo)
+        starting = self.starting_kitchen is not None
+        return verified_text(self.verified, self.network, dict(self.content), self.with_clingo, starting)
 
     def json_dict(self) -> object:
         """Say what is proved, as ``foon-asp verify --format json`` does."""
-        return verified_json(self.verified, self.network, self.with_clingo)
+        return verified_json(self.verified, self.network, self.with_clingo, self.starting_kitchen)
 
 
 @dataclass(frozen=True, repr=False)
@@ -163,7 +166,8 @@ def verify(
         content = proof.read_certificate(certificate.text())
     dataset = (data if isinstance(data, Foon) else Foon.of(data)).dataset
     read = dataset.data
-    verified = proof.verify(content, read.network, read.kitchen, read.rates, read.utensils, read.unit_prices)
+    rates = None if dataset.unrated else read.rates
+    verified = proof.verify(content, read.network, read.kitchen, rates, read.utensils, read.unit_prices)
     for measure in verified.trusted:
         ours = dataset.measures.get(measure.name)
         if ours is not None and ours.text != measure.rules:
@@ -176,7 +180,12 @@ def verify(
             from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
 
             check_with_clingo(content, own, problem, Deadline(_SECONDS))
-    return VerifiedCertificate(verified, read.network, content, with_clingo)
+    starting = None
+    if read.starting:
+        starting = tuple(
+            kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))
+        )
+    return VerifiedCertificate(verified, read.network, content, with_clingo, starting)
 
 
 def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:

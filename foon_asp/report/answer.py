@@ -261,4 +261,23 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
             yield from (f"       {network.objects[o]}" for o in problem.needs[unit] if not available[o])
         if len(makers) > shown:
             yield f"  ... and {counted(len(makers) - shown, 'more unit')}"
+    yield from _cause_lines(problem)
     yield "foon-asp why-not explains why, and foon-asp shopping-list finds what would help"
+
+
+def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
+    """Say in a sentence each what is at the root of it, on the way that takes the fewest things."""
+    from foon_asp.problem.dead_ends import dead_ends  # noqa: PLC0415 (only where there is no tree)
+
+    objects = problem.network.objects
+    roots = [root for root in dead_ends(problem).roots if root.on_the_way]
+    for root in roots[:shown]:
+        if root.cycle is None:
+            if root.object not in problem.goals:
+                yield f"the cause: {objects[root.object]} is not in the kitchen, and no unit makes it"
+            continue
+        first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
+        circle = "".join(f", and that only from {other}" for other in (*others, first)[1:])
+        yield f"the cause: {first} can only be made from {(*others, first)[0]}{circle}"
+    if len(roots) > shown:
+        yield f"  ... and {len(roots) - shown} more"

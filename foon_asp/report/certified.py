@@ -1,14 +1,14 @@
 """Certificates as text: what a new one proves, and what a verified one proves."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from decimal import Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from foon_asp.document.json_document import document, figures_json, goals_json, head_json
+from foon_asp.document.json_document import document, figures_json, goals_json, head_json, nodes_json
 from foon_asp.escapes import escaped
 from foon_asp.network import Network, counted
-from foon_asp.problem import parse_objectives
+from foon_asp.problem import ContainerRule, conditions, parse_objectives
 from foon_asp.proof.constraint import OWN, Rule
 from foon_asp.proof.verify import Verified, trusted
 from foon_asp.text.json_value import Json
@@ -68,11 +68,18 @@ def _success(exponents: Mapping[str, str]) -> str:
 
 
 def verified_text(
-    verified: Verified, network: Network, content: dict[str, Any], with_clingo: bool = False
+    verified: Verified,
+    network: Network,
+    content: dict[str, Any],
+    with_clingo: bool = False,
+    starting: bool = False,
 ) -> str:
-    """Say what a verified certificate proves; ``with_clingo`` says that clingo checked what is on trust."""
+    """Say what a verified certificate proves; ``with_clingo`` says that clingo checked what is on trust.
+
+    ``starting`` says that no kitchen was given, so that it holds for the starting one.
+    """
     lines = [f"goal: {network.objects[goal]}" for goal in verified.goals]
-    rule = f"{verified.containers} containers" + (f", level {verified.level}" if verified.level < 3 else "")
+    rule = conditions(ContainerRule(verified.containers), verified.level, starting)
     if verified.claim == "infeasible":
         lines.append(f"verified: there is no task tree ({rule})")
     elif verified.claim == "bound":
@@ -98,7 +105,12 @@ def verified_text(
     return "\n".join(lines) + "\n"
 
 
-def verified_json(verified: Verified, network: Network, with_clingo: bool = False) -> Json:
+def verified_json(
+    verified: Verified,
+    network: Network,
+    with_clingo: bool = False,
+    starting_kitchen: Iterable[int] | None = None,
+) -> Json:
     """Give what a verified certificate proves for programs."""
     goals = goals_json(network, verified.goals)
     objectives = parse_objectives(verified.objectives, [measure.name for measure in verified.trusted])
@@ -106,7 +118,13 @@ def verified_json(verified: Verified, network: Network, with_clingo: bool = Fals
     own = [rule for rule in verified.rules if rule["rule"] == OWN]
     return document(
         "verify",
-        **head_json(goals, verified.containers, verified.level, objectives),
+        **head_json(
+            goals,
+            verified.containers,
+            verified.level,
+            objectives,
+            starting_kitchen=None if starting_kitchen is None else nodes_json(network, starting_kitchen),
+        ),
         verified=True,
         claim=verified.claim,
         costs=None if costs is None else figures_json(costs),

@@ -114,6 +114,7 @@ _COUNTS: dict[str, Shape] = {
     **dict.fromkeys(("units", "objects", "labels", "motions", "origins", "left_out", "prices"), _number),
     **dict.fromkeys(("hash_blocks", "trigram_blocks"), _positive),
     "kitchen": _maybe(_number),
+    "goals_from": _text,
 }
 
 _texts = _list(_text)

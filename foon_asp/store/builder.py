@@ -12,6 +12,7 @@ from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, table_statement, unseal
 from foon_asp.store.label_index import label_values, trigram_blocks
 from foon_asp.store.plain_values import entry_values, node_hashes, node_values, pattern_hash
+from foon_asp.text.assumed_goals import as_entry, wanted_outputs
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.unit_price_list import UnitPriceList
 
@@ -70,8 +71,8 @@ class StoreBuilder:
         inputs: Iterable[ObjectNode],
         outputs: Iterable[ObjectNode],
         sources: Sequence[Source],
-    ) -> None:
-        """Add one copy of a unit with the places that it comes from."""
+    ) -> int:
+        """Add one copy of a unit with the places that it comes from, and return the unit's id."""
         # As in NetworkBuilder: inputs before outputs, a node that one side lists twice once.
         ins = self._ids(inputs)
         outs = self._ids(outputs)
@@ -105,10 +106,29 @@ class StoreBuilder:
             self._kept_back += 1
             if self._kept_back == _LATER_COPIES:
                 self._write_later()
+        return unit
+
+    def last_outputs(self, units: Mapping[int, Source]) -> list[ListedObject]:
+        """Give what the last unit of each file is for, as entries of a goals file.
+
+        ``units`` are the last units by id, each with its place.
+        """
+        keys = {unit: key for key, unit in self._units.items() if unit in units}
+        outputs = {o for key in keys.values() for o in _sides(key)[1]}
+        needed = {
+            o for key in self._units if not outputs.isdisjoint(key) for o in _sides(key)[0] if o in outputs
+        }
+        nodes = list(self._nodes)
+        found: dict[int, Source] = {}
+        for unit, place in units.items():
+            for o in wanted_outputs(*_sides(keys[unit]), needed):
+                found.setdefault(o, place)
+        return [as_entry(nodes[o], place) for o, place in found.items()]
 
     def finish(
         self,
         goals: Sequence[ListedObject],
+        goals_from: str,
         rates: Mapping[str, Fraction] | None,
         utensils: Iterable[str] | None,
         left_out: int,
@@ -117,6 +137,7 @@ class StoreBuilder:
     ) -> None:
         """Write what is left, and the indexes; ``left_out`` counts lines that were not understood.
 
+        ``goals_from`` says what the goals were assumed from, and is empty where a file lists them.
         ``stated`` are prices that networks have for their units, ``listed`` those of a file, if there is one.
         """
         self._flush(Table.UNIT, self.units - 1, self._unit_block)
@@ -156,6 +177,7 @@ class StoreBuilder:
             "kitchen": None if self._kitchen is None else len(self._kitchen),
             "left_out": left_out,
             "prices": priced,
+            "goals_from": goals_from,
         }
         beside = [
             counts,
@@ -255,6 +277,12 @@ class StoreBuilder:
     def _write(self, table: Table, number: int, block: object) -> None:
         content = seal(table, number, block)
         self._database.execute(f"INSERT INTO {table} VALUES (?, ?)", (number, content))
+
+
+def _sides(key: tuple[int, ...]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Give the inputs and outputs of a unit by its key."""
+    between = key.index(-1)
+    return key[1:between], key[between + 1 :]
 
 
 def _by_key(keys: Sequence[int], values: Sequence[int], size: int) -> Iterator[list[int]]:

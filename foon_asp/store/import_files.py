@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.problem import require_rates
+from foon_asp.network import Source
+from foon_asp.problem import unrated_remarks
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.store_file import is_database_of_ours
-from foon_asp.text.data_folder import DataFiles, kitchen_item_warning, unit_price_warning
+from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
+from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import read_object_list
@@ -23,13 +25,17 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 
 class Imported(NamedTuple):
-    """What was imported. ``copies`` counts the units read, ``units`` the distinct ones."""
+    """What was imported. ``copies`` counts the units read, ``units`` the distinct ones.
+
+    ``remarks`` say what is missing beside the network.
+    """
 
     copies: int
     units: int
     objects: int
     warnings: tuple[Diagnostic, ...]
     left_out: int
+    remarks: tuple[str, ...] = ()
 
 
 def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Imported:
@@ -44,28 +50,37 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
         raise UserError(f"{store}: another file has this name; remove it or choose another name")
     reader = FoonReader(lenient)
     warnings = reader.diagnostics
-    kitchen = read_object_list(files.kitchen, warnings) if files.kitchen else None
+    given = files.kitchen if files.kitchen != STARTING else None
+    kitchen = read_object_list(given, warnings) if given else None
     goals = read_object_list(files.goals, warnings) if files.goals else []
     rates = read_rates(files.rates) if files.rates else None
     utensils = read_labels(files.utensils) if files.utensils else None
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
     earlier = len(warnings)
+    last_units: dict[int, Source] = {}
     try:
         with _written(store) as database:
             builder = StoreBuilder(database, kitchen)
             for file in files.network:
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; import the files that it was made from")
+                last: tuple[int, Source] | None = None
                 for motion, inputs, outputs, sources in reader.units(reader.text(file), str(file)):
-                    builder.add(motion, inputs, outputs, sources)
+                    last = builder.add(motion, inputs, outputs, sources), sources[0]
+                if last:
+                    last_units.setdefault(*last)
             reader.raise_errors(earlier)
-            if rates is not None:
-                require_rates(builder.motion_sources(), rates)
+            goals_from = ""
+            if files.goals is None and reader.marked:
+                goals = [as_entry(node, source) for node, source in reader.marked.items()]
+                goals_from = MARKED
+            elif files.goals is None:
+                goals, goals_from = builder.last_outputs(last_units), LAST
             stated = reader.prices.settled(prices.units if prices else {})
             for unit, source in prices.sources.items() if prices else ():
                 if builder.unit_id(unit) is None:
                     warnings.append(unit_price_warning(unit, source))
-            builder.finish(goals, rates, utensils, reader.left_out, stated, prices)
+            builder.finish(goals, goals_from, rates, utensils, reader.left_out, stated, prices)
     except sqlite3.Error as error:
         raise UserError(f"{store}: cannot be written: {error}") from None
     except OSError as error:
@@ -73,7 +88,9 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     for entry, matched in zip(kitchen or (), builder.matched, strict=True):
         if not matched:
             warnings.append(kitchen_item_warning(entry))
-    return Imported(builder.copies, builder.units, builder.objects, tuple(warnings), reader.left_out)
+    remarks = () if rates is None else tuple(unrated_remarks(builder.motion_sources(), rates))
+    counts = builder.copies, builder.units, builder.objects
+    return Imported(*counts, tuple(warnings), reader.left_out, remarks)
 
 
 @contextlib.contextmanager

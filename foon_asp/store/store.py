@@ -37,6 +37,7 @@ class Store:
         self.objects: int = about["objects"]
         self.left_out: int = about["left_out"]
         self.has_kitchen = about["kitchen"] is not None  # if only an empty one
+        self.goals_from: str = about["goals_from"]  # what no goals file says
         self._counts = about
         labels = LabelIndex(self._file, about["labels"], about["trigram_blocks"])
         self.labelled, self.beginning, self.near = labels.labelled, labels.beginning, labels.near
@@ -54,7 +55,7 @@ class Store:
 
     @cached_property
     def rates(self) -> dict[str, Fraction] | None:
-        """The success rates of all motions, or ``None`` when none were imported."""
+        """The success rates of motions, or ``None`` when none were imported."""
         rates = self._file.block(Table.ABOUT, 1)
         return None if rates is None else {motion: Fraction(rate) for motion, rate in rates.items()}
 
@@ -144,6 +145,10 @@ class Store:
     def in_kitchen(self, object_id: int) -> bool:
         """Whether the node is in the kitchen that was imported."""
         return bool(self._at(Table.NODE, object_id)[0])
+
+    def is_starting(self, object_id: int) -> bool:
+        """Whether no unit makes the node out of others, see :func:`foon_asp.network.starting_nodes`."""
+        return all(object_id in self._at(Table.UNIT, unit)[1] for unit in self._producers(object_id))
 
     def object_id(self, node: ObjectNode) -> int | None:
         """Give the id of a node, or ``None`` when the network does not have it."""
@@ -242,8 +247,6 @@ class Store:
             self._file.damaged("an object node or a unit is there twice")
         if any(len(set(side)) != len(side) for side in (*inputs, *outputs)):
             self._file.damaged("a unit has an object node twice")
-        if self.rates is not None and not self.rates.keys() >= set(motions):
-            self._file.damaged("a motion has no rate")
         return Network(
             tuple(objects),
             tuple(motions),

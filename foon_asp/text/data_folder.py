@@ -14,8 +14,10 @@ from foon_asp.network import (
     UnitPrices,
     network_at_level,
     pattern_at_level,
+    starting_nodes,
 )
 from foon_asp.resources import bundled_kitchen
+from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, wanted_outputs
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -30,6 +32,9 @@ _RATES, _UTENSILS, _UNIT_PRICES = "motion.txt", "utensils.txt", "unit_prices.txt
 _KITCHENS, _GOALS = ("kitchen.json", "kitchen.txt"), ("goal_nodes.json", "goal_nodes.txt")
 _OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)"\s*:')
 _SIDE_TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, *_KITCHENS, *_GOALS}
+
+STARTING = Path("@starting")
+"""In place of a kitchen file: what no unit makes out of others is at hand."""
 
 
 class DataFiles(NamedTuple):
@@ -49,6 +54,9 @@ class Data(NamedTuple):
     ``kitchen`` are the ids of the object nodes that ``kitchen_items`` stand for. ``rates`` is ``None`` where
     there is no rates file, ``unit_prices`` where there is no file of prices and no unit has one.
     ``warnings`` lists what was assumed while reading; ``left_out`` counts the lines dropped.
+    ``starting`` says that no file says what is at hand, so that it is the starting kitchen.
+    ``goals_from`` says what ``goals`` were assumed from where no file lists them: those *marked*, or the
+    *last* unit of each file; it is empty where a file does.
     """
 
     network: Network
@@ -60,6 +68,8 @@ class Data(NamedTuple):
     warnings: tuple[Diagnostic, ...]
     left_out: int
     unit_prices: UnitPrices | None = None
+    starting: bool = False
+    goals_from: str = ""
 
 
 def find_data(
@@ -83,7 +93,7 @@ def find_data(
         folder = bundled_kitchen()
     beside_it = (kitchen, rates, utensils, goals, unit_prices)
     for path in (folder, *beside_it, *network):
-        if path is not None and not path.exists():
+        if path is not None and path != STARTING and not path.exists():
             raise UserError(f"{path}: no such file or folder")
     if folder is not None and not folder.is_dir():
         raise UserError(f"{folder}: expected a folder; a single network is given with --network")
@@ -146,17 +156,19 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     whole = reader.read_network(files.network)
     network = network_at_level(whole, level)
     warnings = reader.diagnostics
-    items = tuple(read_object_list(files.kitchen, warnings)) if files.kitchen else ()
-    kitchen: set[int] = set()
+    starting = files.kitchen in {None, STARTING}
+    items = () if files.kitchen is None or starting else tuple(read_object_list(files.kitchen, warnings))
+    kitchen = set(starting_nodes(network)) if starting else set()
     for item in items:
         found = network.find(pattern_at_level(item.pattern, level))
         kitchen.update(found)
         if not found:
             warnings.append(kitchen_item_warning(item))
-    goals = tuple(
-        entry._replace(pattern=pattern_at_level(entry.pattern, level))
-        for entry in (read_object_list(files.goals, warnings) if files.goals else ())
-    )
+    if files.goals:
+        listed_goals, goals_from = read_object_list(files.goals, warnings), ""
+    else:
+        listed_goals, goals_from = _assumed_goals(reader, whole)
+    goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in listed_goals)
     listed = read_unit_prices(files.unit_prices) if files.unit_prices else None
     if listed:
         warnings += (
@@ -172,7 +184,22 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         tuple(warnings),
         reader.left_out,
         unit_prices(reader.prices, listed),
+        starting,
+        goals_from,
     )
+
+
+def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObject], str]:
+    """Give the goals of a network without a list of them: those marked, or what its last units are for."""
+    if reader.marked:
+        return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
+    outputs = {o for unit in reader.last_units for o in network.outputs[unit]}
+    needed = {o for inputs in network.inputs for o in inputs if o in outputs}
+    found: dict[int, Source] = {}
+    for unit, place in reader.last_units.items():
+        for o in wanted_outputs(network.inputs[unit], network.outputs[unit], needed):
+            found.setdefault(o, place)
+    return [as_entry(network.objects[o], source) for o, source in found.items()], LAST
 
 
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:

@@ -50,6 +50,8 @@ class FoonReader:
     With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
     ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
     unit because they were not understood or make none; ``prices`` are those that copies of units state.
+    ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``last_units`` are the last
+    unit of each file by id, with its place, for a network read in one go.
 
     Example:
         >>> from pathlib import Path
@@ -63,11 +65,14 @@ class FoonReader:
         self.diagnostics: list[Diagnostic] = []
         self.left_out = 0
         self.prices = StatedPrices()
+        self.marked: dict[ObjectNode, Source] = {}
+        self.last_units: dict[int, Source] = {}
         # By text without the first letter, and only what there is no remark on.
         self.nodes: dict[str, ObjectNode] = {}
         self.motions: dict[str, str] = {}
         self.same_node: dict[ObjectNode, ObjectNode] = {}  # one object for each node: quick to compare
         self.labels: dict[str, str] = {}  # what object lines say
+        self.goal_lines: set[str] = set()  # those of object lines with the goal mark
         # By the whole line.
         self.attributes: dict[str, str | Relation | Contents] = {}  # what state lines say
         self._lines: dict[str, Line | LineError] = {}
@@ -84,8 +89,11 @@ class FoonReader:
         builder = NetworkBuilder()
         earlier = len(self.diagnostics)
         for file in files:
+            last: tuple[int, Source] | None = None
             for motion, inputs, outputs, sources in self.units(self.text(file), str(file)):
-                builder.add(motion, inputs, outputs, *sources)
+                last = builder.add(motion, inputs, outputs, *sources), sources[0]
+            if last:
+                self.last_units.setdefault(*last)
         self.raise_errors(earlier)
         return builder.build()
 
@@ -193,6 +201,8 @@ class FoonReader:
                     self.attributes[line] = parsed.attribute
             elif isinstance(parsed, ObjectLine) and not parsed.remarks:
                 self.labels[line[1:]] = parsed.label
+                if parsed.is_goal:
+                    self.goal_lines.add(line[1:])
 
     def parse(self, line: str) -> Line | LineError:
         """Give what a line says, or its error; each distinct line is parsed once.
@@ -311,6 +321,9 @@ class _FileReading:
         if len(reader.nodes) >= _REMEMBERED:
             reader.nodes.clear()
         node = reader.nodes[block] = reader.same_node.setdefault(node, node)
+        if first in reader.goal_lines:
+            line = self.text.count("\n", 0, self.text.index(f"O{block}", self.start)) + 1
+            reader.marked.setdefault(node, Source(self.file, line))
         return node
 
     def _learn_motion(self, text: str, length: int) -> str | None:
@@ -377,6 +390,10 @@ class _FileReading:
         index, motion = piece.motions[0]
         if not piece.outputs:
             self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", piece.first)
+        for block in (*piece.inputs, *piece.outputs):
+            if block.object.is_goal:
+                node = node_of(block.object.label, (state.attribute for state in block.states))
+                self.reader.marked.setdefault(node, block.source)
         sources = tuple(piece.copies) or (self._place(piece.first)._replace(videos=self.videos),)
         return ListedUnit(
             motion, _settled(piece.inputs), _settled(piece.outputs), sources, self._place(index)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.errors import UserError
-from foon_asp.network import Source
+from foon_asp.network import Source, starting_nodes
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError, Severity
@@ -213,7 +213,10 @@ def test_what_is_not_there_is_empty_and_rates_are_none(tmp_path: Path) -> None:
     (tmp_path / "n.txt").write_text(MIX)
     data = read_data(find_data(None, [tmp_path / "n.txt"]))
     assert len(data.network) == 1
-    assert data == Data(data.network, frozenset(), (), (), None, frozenset(), (), 0)
+    goals = data.goals
+    assert data == Data(
+        data.network, starting_nodes(data.network), (), goals, None, frozenset(), (), 0, None, True, "last"
+    )
     (tmp_path / "motion.txt").touch()
     assert read_data(find_data(tmp_path)).rates == {}
 

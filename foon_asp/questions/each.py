@@ -1,0 +1,46 @@
+"""One question asked of several goals, one after the other."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from foon_asp.dataset.paths import File
+from foon_asp.document.json_document import document
+from foon_asp.errors import UserError
+from foon_asp.questions.result import Ending, NothingToDrawError, Result
+
+
+@dataclass(frozen=True, repr=False)
+class Each(Result):
+    """The ``results`` of a question that was asked of each goal by itself, in the order of the goals."""
+
+    results: Sequence[Result]
+
+    @property
+    def ending(self) -> Ending:
+        """Stopped at a limit if one was, and negative if one is."""
+        endings = {result.ending for result in self.results}
+        return next(each for each in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if each in endings)
+
+    def text(self, **how: object) -> str:
+        """Give one text after the other."""
+        return "\n".join(result.text(**how) for result in self.results)
+
+    def json_dict(self) -> object:
+        """Give all documents in one."""
+        return document("each", answers=[result.json_dict() for result in self.results])
+
+    def foon(self) -> str:
+        """Give one tree after the other."""
+        return "".join(result.foon() for result in self.results)
+
+    def steps(self) -> str:
+        """Refuse: a program has to know which goal it works for."""
+        raise UserError("these are steps for several goals: name one with --goal")
+
+    def remark(self, format_: str) -> str:
+        """Give what a format cannot tell, goal by goal."""
+        return "\n".join(filter(None, (result.remark(format_) for result in self.results)))
+
+    def write_chart(self, file: File) -> None:
+        """Refuse: a chart is of one goal."""
+        raise NothingToDrawError("a chart is of one goal: name it with --goal")

@@ -1,0 +1,24 @@
+"""The goals of networks that come without a list of goals: marked with ``!``, or what the last unit makes."""
+
+from collections.abc import Iterable, Sequence
+
+from foon_asp.network import NodePattern, ObjectNode, Source
+from foon_asp.text.object_list import ListedObject
+
+MARKED, LAST = "marked", "last"
+
+
+def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
+    """Give what the last unit of a file is for, of the ids on its sides: the outputs that no unit needs.
+
+    ``needed`` are those of the outputs that some unit has among its inputs. Where these are all, it is what
+    the unit was not given itself, and all of it where there is nothing else.
+    """
+    needed = set(needed)
+    return [o for o in outputs if o not in needed] or [o for o in outputs if o not in inputs] or [*outputs]
+
+
+def as_entry(node: ObjectNode, source: Source) -> ListedObject:
+    """Give a node as an entry of a goals file would name it; ``source`` is where it was read."""
+    pattern = NodePattern(node.label, node.states, node.ingredients, None, node.relations)
+    return ListedObject(pattern, source._replace(videos=()))

@@ -1,0 +1,170 @@
+"""One recipe and nothing else: what is at hand, what the goals are, and what needs no rates."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+import foon_asp
+from foon_asp.errors import FoonWarning, UserError
+from foon_asp.problem import reach
+from foon_asp.resources import bundled_kitchen
+from tests.conftest import Cli
+
+RECIPE = """\
+O\tstove
+S\toff
+M\tturn on
+O\tstove
+S\ton
+//
+O\tstove
+S\ton
+O\tegg
+S\traw
+O\tpan
+S\tempty
+M\tfry
+O\tegg
+S\tfried
+S\tin\t[pan]
+O\tpan
+S\tcontains\t{egg}
+O\tstove
+S\ton
+//
+"""
+EGG, PAN = "egg; fried; in [pan]", "pan; contains {egg}"
+STARTING = ["stove; off", "egg; raw", "pan; empty"]
+OLD, FRESH = "O\tstarter\nS\told\n", "O\tstarter\nS\tfresh\n"
+LOOP = f"{OLD}M\tfeed\n{FRESH}//\n{FRESH}M\twait\n{OLD}//\n"
+
+
+@pytest.fixture
+def recipe(tmp_path: Path) -> Path:
+    file = tmp_path / "egg.txt"
+    file.write_text(RECIPE, encoding="utf-8")
+    return file
+
+
+def marked(recipe: Path) -> Path:
+    recipe.write_text(RECIPE.replace("O\tegg\nS\tfried", "O\tegg\t!\nS\tfried"), encoding="utf-8")
+    return recipe
+
+
+def test_one_recipe_is_enough(cli: Cli, recipe: Path) -> None:
+    ran = cli("solve", marked(recipe))
+    assert ran.code == 0
+    assert f"what is marked as a goal in the files: {EGG}\n" in ran.err
+    assert "no kitchen is given" in ran.err
+    assert [line.strip() for line in ran.err.splitlines()[-3:]] == STARTING
+    assert "optimal by units (strict containers, starting kitchen): 2 units, 4 inputs" in ran.out
+    shown = cli("solve", "--network", recipe, "--format", "json").json
+    assert [node["node"] for node in shown["goals"]] == [EGG]
+    assert [node["node"] for node in shown["starting_kitchen"]] == STARTING
+    given = cli("solve", recipe, "--kitchen", "@starting")
+    assert given.out == ran.out
+    assert "no kitchen is given" not in given.err
+
+
+def test_without_marks_each_output_of_the_last_unit_has_its_tree(cli: Cli, recipe: Path) -> None:
+    ran = cli("solve", recipe)
+    assert ran.code == 0
+    assert ran.out.count("optimal by units") == 2
+    assert f"what the last unit makes, each by itself:\n  {EGG}\n  {PAN}\n" in ran.err
+    each = cli("solve", recipe, "--format", "json").json
+    assert each["schema"] == "foon-asp/each/1"
+    assert [answer["goals"][0]["node"] for answer in each["answers"]] == [EGG, PAN]
+    assert cli("why-not", recipe).out.count("goal: ") == 2
+    assert cli("solve", recipe, "--format", "foon").out.count("# Task tree for") == 2
+    ran = cli("solve", recipe, "--certificate", recipe.with_name("proof.json"))
+    assert (ran.code, recipe.with_name("proof.json").exists()) == (2, False)
+    assert "name one (--goal)" in ran.err
+
+
+@pytest.mark.parametrize("level", [1, 2, 3])
+def test_a_store_and_every_level_answer_the_same(cli: Cli, recipe: Path, level: int) -> None:
+    store = recipe.with_name("egg.foon")
+    assert cli("import", recipe, "--store", store).code == 0
+    found = [cli("solve", named, "--level", level) for named in (recipe, store)]
+    assert [ran.code for ran in found] == [0, 0]
+    assert (found[0].out, found[0].err) == (found[1].out, found[1].err)
+
+
+def test_what_cannot_be_made_from_it_is_said(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "sourdough.txt").write_text(LOOP, encoding="utf-8")
+    ran = cli("solve", tmp_path / "sourdough.txt")
+    assert ran.code == 1
+    assert "infeasible: proved that no task tree exists (strict containers, starting kitchen)" in ran.out
+    assert (
+        "the cause: starter; fresh can only be made from starter; old, and that only from starter; fresh\n"
+        in ran.out
+    )
+
+
+def test_an_empty_kitchen_is_empty(cli: Cli, recipe: Path) -> None:
+    kitchen = recipe.with_name("none.json")
+    kitchen.write_text("[]", encoding="utf-8")
+    ran = cli("solve", marked(recipe), "--kitchen", kitchen)
+    assert ran.code == 1
+    assert "starting kitchen" not in ran.out + ran.err
+
+
+def test_certificates_of_a_starting_kitchen_are_verified_under_it(cli: Cli, recipe: Path) -> None:
+    proof = recipe.with_name("proof.json")
+    assert cli("solve", marked(recipe), "--certificate", proof).code == 0
+    assert cli("verify", proof, "--network", recipe).code == 0
+    kitchen = recipe.with_name("kitchen.json")
+    kitchen.write_text(json.dumps([{"label": "egg", "states": ["raw"]}]), encoding="utf-8")
+    assert cli("verify", proof, "--network", recipe, "--kitchen", kitchen).code == 1
+
+
+def test_rates_matter_where_success_is_asked(cli: Cli, recipe: Path) -> None:
+    marked(recipe)
+    for verb in ("optima", "pareto"):
+        ran = cli(verb, recipe)
+        assert ran.code == 0
+        assert "success is left out, since no success rates are given" in ran.err
+    ran = cli("compare", recipe)
+    assert ran.code == 0
+    assert "greedy-success" in ran.err
+    assert "greedy-success" not in ran.out
+    rates = recipe.with_name("rates.txt")
+    rates.write_text("fry\t0.5\n", encoding="utf-8")
+    ran = cli("optima", recipe, "--rates", rates)
+    assert ran.code == 0
+    assert "the rates file has no rate for 'turn on'" in ran.err
+    ran = cli("solve", recipe, "--rates", rates, "--objective", "success")
+    assert ran.code == 2
+    assert "egg.txt:1:1: error: the motion 'turn on' has no success rate" in ran.err
+
+
+def test_in_python(recipe: Path) -> None:
+    with pytest.warns(FoonWarning, match="no kitchen is given, so what no unit makes is at hand"):
+        foon = foon_asp.load(recipe)
+    assert [str(node) for node in foon.kitchen] == STARTING
+    assert [str(node) for node in foon.goals] == [EGG, PAN]
+    with pytest.raises(UserError, match="name a goal; no file lists goals"):
+        foon.problem()
+    problem = foon.problem(EGG)
+    assert repr(problem) == f"<Problem: {EGG} (strict containers, starting kitchen)>"
+    assert foon_asp.solve(problem).costs is not None
+    assert foon_asp.solve(problem.vary(without="egg")).costs is None
+    bundled = foon_asp.load().problem("ice").vary(kitchen="@starting")
+    assert bundled.starting
+    assert len(bundled.kitchen) < len(bundled.network.objects)
+    foon = foon_asp.load(marked(recipe), kitchen="@starting")  # no warning: it was asked for
+    assert [str(node) for node in foon.problem().goal_nodes] == [EGG]
+
+
+def test_what_is_only_handed_on_is_at_hand(recipe: Path) -> None:
+    problem = foon_asp.load(recipe, kitchen="@starting").problem(EGG)
+    network = problem.network
+    assert {str(network.objects[o]) for o in problem.kitchen} == set(STARTING)
+    assert all(reach(problem).available)
+    folder = recipe.parent / "folder"
+    shutil.copytree(bundled_kitchen(), folder)
+    (folder / "kitchen.json").unlink()
+    with pytest.warns(FoonWarning, match="no kitchen is given"):
+        assert foon_asp.load(folder).problem("ice").starting
