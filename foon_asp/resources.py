@@ -1,4 +1,4 @@
-"""Where the encodings and the bundled kitchen are: in the installed package, or beside it in a checkout."""
+"""Where the encodings and the bundled data are: in the installed package, or beside it in a checkout."""
 
 from functools import cache
 from pathlib import Path
@@ -24,6 +24,11 @@ def encodings_folder() -> Path:
 def published_table() -> Path:
     """Give the file with the published figures of the literature."""
     return _folder("data", "published/table1.json") / "published" / "table1.json"
+
+
+def starter_recipe() -> Path:
+    """Give the folder of the recipe that a new data folder begins with, and of its success rates."""
+    return _folder("data", "starter/FOON.txt") / "starter"
 
 
 def bundled_kitchen() -> Path:

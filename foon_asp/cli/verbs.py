@@ -16,6 +16,7 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "facts": Entry("Show", "Print the facts that clingo is given for a goal."),
     "constraints": Entry("Show", "List the ready-made constraints."),
     "schema": Entry("Show", "Print the JSON Schema of what a verb prints with --format json."),
+    "init": Entry("Files", "Write a data folder to start from, of a recipe of yours or a small one of ours."),
     "lint": Entry("Files", "Find what is wrong with networks, kitchens and lists of objects."),
     "fmt": Entry("Files", "Bring FOON files into canonical form."),
     "convert": Entry("Files", "Write FOON files in another dialect."),

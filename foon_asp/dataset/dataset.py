@@ -125,6 +125,8 @@ class Dataset:
 
         Without a file, they are all that were assumed.
         """
+        if not names and self.goals_from and not self.listed:
+            raise UserError("there is no functional unit, so nothing to make: expected a recipe or a network")
         if not names and self.goals_from:
             return tuple(dict.fromkeys(self.each_goal(())))
         if not names and len(self.listed) == 1:

@@ -1,0 +1,61 @@
+"""The files of a new data folder, with comments."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+
+from foon_asp.network import Network, ObjectNode
+from foon_asp.text.writer import write_node
+
+_KITCHEN = """\
+# What is at hand: an O line for each object, and below it its S lines, as in the recipe.
+# It begins with all that no unit makes: take out what you do not have, and add what you have.
+"""
+_MOTIONS = """\
+# How often each motion succeeds: a motion, a tab, and a decimal above 0 and at most 1.
+"""
+_UNKNOWN = """\
+# 1 says that it never fails: nothing is known yet. Put in what you measured.
+"""
+_UTENSILS = """\
+# Things to hold something, one a line. Only --containers implied looks at them: a unit is then not asked for
+# the bowl that holds its flour, if the flour is there.
+"""
+_GOALS = """\
+# What is to be made: --goal finds it by its name, and optima solves all of it.
+"""
+
+
+def starter_files(
+    recipe: str,
+    network: Network,
+    kitchen: Iterable[int],
+    goals: Iterable[ObjectNode],
+    rates: Mapping[str, Fraction] | None = None,
+) -> dict[str, str]:
+    """Give the texts of the files of a data folder by name.
+
+    ``recipe`` is the text of the network. Without ``rates``, every motion gets 1, and a comment says that
+    this is not known.
+    """
+    motions = sorted(dict.fromkeys(network.motions))
+    known = {motion: (rates or {}).get(motion, Fraction(1)) for motion in motions}
+    return {
+        "recipe.txt": recipe,
+        "kitchen.txt": _KITCHEN + "".join(write_node(network.objects[o]) for o in sorted(kitchen)),
+        "motion.txt": _MOTIONS
+        + ("" if rates else _UNKNOWN)
+        + "".join(f"{motion}\t{_decimal(rate)}\n" for motion, rate in known.items()),
+        "utensils.txt": _UTENSILS + "".join(f"{label}\n" for label in _holders(network.objects)),
+        "goal_nodes.txt": _GOALS + "".join(map(write_node, goals)),
+    }
+
+
+def _decimal(rate: Fraction) -> str:
+    return f"{float(rate):g}"
+
+
+def _holders(nodes: Sequence[ObjectNode]) -> list[str]:
+    """Give the labels of what holds something, and is no ingredient itself."""
+    holding = {node.label for node in nodes if node.ingredients}
+    places = {relation.object for node in nodes for relation in node.relations}
+    return sorted((holding & places).difference(item for node in nodes for item in node.ingredients))
