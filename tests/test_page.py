@@ -1,7 +1,7 @@
 """Pages in a real browser: what a person sees, clicks and hears read out."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -206,6 +206,114 @@ def test_the_picture_is_saved_whole_and_alone(page: Browser) -> None:
     drawn = page.run("document.querySelectorAll('.picture .box').length")
     assert sum("box" in each.split() for each in classes) == drawn
     assert "var(" not in svg
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
+    """Make pages of the bundled kitchen."""
+    folder, problems = tmp_path_factory.mktemp("others"), foon_asp.load()
+
+    def make(*goals: str, **how: Any) -> Path:
+        file = folder / f"{len(list(folder.iterdir()))}.html"
+        foon_asp.view(problems.problem(*goals), **how).write(file)
+        return file
+
+    return make
+
+
+def opened(chromium: Browser, file: Path, tab: str) -> None:
+    """Open a page at one of its tabs."""
+    chromium.size(1440, 900)
+    chromium.open(file)
+    chromium.run(f"[...document.querySelectorAll('[role=tab]')].find(t => t.textContent === {tab!r}).click()")
+    assert texts(chromium, "[aria-selected=true][role=tab]") == [tab]
+    assert chromium.complaints == []
+
+
+HERE = "main:not([hidden]) "
+
+
+def test_answers_stand_beside_each_other(chromium: Browser, shown: Callable[..., Path]) -> None:
+    opened(chromium, shown("macaroni"), "Side by side")
+    rows = texts(chromium, HERE + "tbody tr")
+    assert [row.split("executes")[0] for row in rows][1:3] == ["bfs", "dfs"]
+    assert texts(chromium, HERE + ".pane h2") == ["the tree asked for", "bfs"]
+    differing = "[...document.querySelectorAll('.pane')].map(p => p.querySelectorAll('.differs').length)"
+    problem = foon_asp.load().problem("macaroni")
+    tree = foon_asp.retrieve(problem, "bfs").tree
+    assert tree is not None
+    found = foon_asp.diff(foon_asp.solve(problem), tree)
+    assert chromium.run(differing) == [len(found.only_left), len(found.only_right)]
+    assert texts(chromium, HERE + ".stuck .head-text") == ["3\u2002heat"]
+    assert "step 3, heat, lacks stove; on" in texts(chromium, HERE + ".bad")
+    chromium.run("[...document.querySelectorAll('tbody button')].find(b => b.textContent === 'ids').click()")
+    assert texts(chromium, HERE + ".pane h2") == ["the tree asked for", "ids"]
+    assert chromium.run("document.querySelectorAll('.stuck').length") == 0
+
+
+def test_points_of_a_front_and_other_trees_are_shown(chromium: Browser, shown: Callable[..., Path]) -> None:
+    opened(chromium, shown("macaroni", beside=["front", "alternatives"]), "Side by side")
+    names = texts(chromium, HERE + "tbody button")
+    front = foon_asp.pareto(foon_asp.load().problem("macaroni"))
+    assert [name for name in names if "front" in name] == [
+        f"point {number} of the front" for number, _ in enumerate(front.points, 1)
+    ]
+    assert "tree 2" in names
+    for number, _ in enumerate(names):
+        chromium.run(f"document.querySelectorAll('main:not([hidden]) tbody button')[{number}].click()")
+        assert texts(chromium, HERE + ".pane h2")[-1] == names[number]
+    assert chromium.complaints == []
+
+
+def test_the_tree_without_the_rules_is_beside_that_with_them(
+    chromium: Browser, shown: Callable[..., Path]
+) -> None:
+    rule = ':- use(U), motion(U,"tilt").'
+    opened(chromium, shown("macaroni", constraints=rule), "Side by side")
+    assert texts(chromium, HERE + ".pane h2")[-1] == "without the rules"
+    assert any("9. tilt" in text for text in texts(chromium, HERE + "aside .plus"))
+
+
+@pytest.mark.parametrize("objective", ["units", "success", "kitchen"])
+def test_the_sum_of_the_cuts_grows_to_the_cost(
+    chromium: Browser, shown: Callable[..., Path], objective: str
+) -> None:
+    opened(chromium, shown("macaroni", objectives=objective), "The proof")
+    cases = chromium.run(f"{DATA}.proof.cases")
+    (case,) = cases
+    sums = []
+    for number, cut in enumerate(case["cuts"], 1):
+        assert texts(chromium, HERE + ".bar output") == [f"cut {number} of {len(case['cuts'])}"]
+        sums.append(float(texts(chromium, HERE + "aside > p strong")[0].split()[0]))
+        crossing = chromium.run("document.querySelectorAll('main:not([hidden]) .crossing').length")
+        drawn = chromium.run(f"{DATA}.answer.units.filter(u => {cut['members']}.includes(u.id)).length")
+        assert crossing == drawn
+        assert crossing > 0 or objective == "kitchen"
+        chromium.run("document.querySelectorAll('main:not([hidden]) .bar button')[1].click()")
+    assert sums == sorted(sums)
+    assert sums[-1] == pytest.approx(chromium.run(f"{DATA}.proof.cost"), rel=1e-3)
+    assert "That is the proof" in texts(chromium, HERE + "aside > p")[0]
+
+
+def test_why_there_is_no_tree_is_drawn_and_said(chromium: Browser, shown: Callable[..., Path]) -> None:
+    opened(chromium, shown("apple pie"), "Why there is no tree")
+    assert sorted(texts(chromium, HERE + ".lost title")) == ["pie crust; chilled", "pie crust; rolled"]
+    assert chromium.run("document.querySelectorAll('.arrow.back').length") == 1
+    said = "\n".join(texts(chromium, HERE + "aside"))
+    assert "can only be made from itself, in a cycle" in said
+    assert "With the first list, there is a tree of 7 units" in said
+    opened(chromium, shown("apple pie"), "Side by side")
+    assert chromium.run("document.querySelectorAll('main:not([hidden]) .row.bought').length") == 2
+    opened(chromium, shown("apple pie"), "The proof that there is none")
+    assert texts(chromium, HERE + "aside h2")[-1] == "The cut that nobody crosses"
+    assert chromium.run("document.querySelectorAll('.crossing').length") == 0
+    assert chromium.run("document.querySelectorAll('.inside').length") == 5
+
+
+def test_rules_that_clash_are_named(chromium: Browser, shown: Callable[..., Path]) -> None:
+    rules = [':- use(U), motion(U,"crush").', ":- not use(27)."]
+    opened(chromium, shown("ice", constraints=rules), "Why there is no tree")
+    assert texts(chromium, HERE + "code")[:2] == rules
 
 
 @pytest.mark.parametrize("name", ["</script><b>x</b>", "<img src=x onerror=boom()>", "a\u202eb"])

@@ -14,6 +14,7 @@ import pytest
 import foon_asp
 from foon_asp import UserError
 from foon_asp.report.page import WEB, Page
+from foon_asp.search import find_searches
 from tests.conftest import CORPUS, Cli, valid
 
 CALLS = r"\b(innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval|Function|fetch|XMLHttpRequest)\b"
@@ -62,9 +63,12 @@ def page() -> str:
 
 def test_the_page_has_the_answer_as_it_is(page: str) -> None:
     problem = foon_asp.load().problem("macaroni")
-    answer, ours = in_page(page)["answer"], foon_asp.solve(problem).json()
-    assert {**answer, "seconds": 0} == {**ours, "seconds": 0}
-    assert {rate["unit"] for rate in in_page(page)["rates"]} == {unit["id"] for unit in ours["units"]}
+    shown, ours = in_page(page), foon_asp.certify(problem).answer.json()
+    assert {**shown["answer"], "seconds": 0} == {**ours, "seconds": 0}
+    trees = [ours, *shown["searches"]]
+    assert {rate["unit"] for rate in shown["rates"]} == {
+        unit["id"] for tree in trees for unit in tree["units"]
+    }
 
 
 def test_the_policy_allows_what_is_in_the_page_and_nothing_else(page: str) -> None:
@@ -120,6 +124,50 @@ def test_a_page_is_written_and_read(cli: Cli, tmp_path: Path) -> None:
     assert "end it in .html" in cli("view", "--goal", "ice", "-o", tmp_path / "ice.pdf").err
     with pytest.raises(UserError, match="expected one of html, json"):
         foon_asp.view(foon_asp.load().problem("ice")).write(file, "pdf")
+
+
+def test_what_stands_beside_the_tree_is_what_its_questions_answer() -> None:
+    problem = foon_asp.load().problem("ice")
+    shown = in_page(foon_asp.view(problem, beside=["alternatives", "searches", "proof", "front"]).html())
+    assert [each["search"] for each in shown["searches"]] == list(find_searches())
+    assert shown["searches"][0] == foon_asp.retrieve(problem, "bfs").json()
+    assert shown["alternatives"] == foon_asp.alternatives(problem, best=5).json()
+    assert shown["front"]["points"] == foon_asp.pareto(problem).json()["points"]
+    certificate = foon_asp.certify(problem).certificate
+    assert certificate is not None
+    assert shown["proof"]["certificate"] == certificate.content
+    assert shown["why_not"] is shown["shopping_list"] is shown["without_rules"] is None
+    with pytest.raises(UserError, match="expected one of searches, proof, alternatives, front"):
+        foon_asp.view(problem, beside=["everything"])
+
+
+def test_without_a_tree_the_page_says_why() -> None:
+    problem = foon_asp.load().problem("apple pie")
+    shown = in_page(foon_asp.view(problem).html())
+    assert shown["why_not"] == foon_asp.why_not(problem).json()
+    assert shown["shopping_list"]["lists"] == foon_asp.shopping_list(problem).json()["lists"]
+    (case,) = shown["proof"]["cases"]
+    assert (case["ends"], case["cuts"][0]["weight"], case["cuts"][0]["members"]) == ("hopeless", None, [])
+
+
+@pytest.mark.parametrize("objective", ["units", "success", pytest.param("attempts", marks=pytest.mark.slow)])
+def test_weights_of_the_proof_add_up_to_the_cost(objective: str) -> None:
+    proof = in_page(foon_asp.view(foon_asp.load().problem("tea"), objective, beside=["proof"]).html())[
+        "proof"
+    ]
+    for case in proof["cases"]:
+        bound = case["paid"] + sum(cut["weight"] for cut in case["cuts"])
+        assert bound >= proof["cost"] * (1 - 1e-12)
+        for cut in case["cuts"]:
+            assert set(cut["members"]) & set(proof["certificate"]["tree"])
+
+
+def test_plans_that_use_items_up_have_a_page_of_their_own() -> None:
+    problem = foon_asp.load().problem("ice", items="used-up")
+    shown = in_page(foon_asp.view(problem).html())
+    assert (shown["answer"]["items"], shown["searches"], shown["proof"]) == ("used-up", [], None)
+    with pytest.raises(UserError, match="view --beside searches is not built for items that are used up"):
+        foon_asp.view(problem, beside=["searches"])
 
 
 def test_a_notebook_shows_the_page_in_a_frame() -> None:

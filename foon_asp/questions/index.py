@@ -114,7 +114,7 @@ INDEX: Final[Mapping[str, Entry]] = {
     ),
     "view": Entry(
         "Show",
-        "Show a tree on a page for any browser: one file, which walks through the plan.",
+        "Show a tree, other trees and the proof on a page for any browser, in one file.",
         ("view", "View"),
     ),
     "trace": Entry(

@@ -1,23 +1,50 @@
 """A page that shows a tree and what else is known: one file, for any browser, without a network."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
-from foon_asp.problem import Problem
+from foon_asp.problem import Objective, Problem
+from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
-from foon_asp.questions.contract import question, question_of
+from foon_asp.questions.certify import Certified, certified
+from foon_asp.questions.contract import Option, not_built, question, question_of
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
+from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.search import Retrieved, retrieve
+from foon_asp.questions.searching import searched
+from foon_asp.questions.shopping_list import Shopping, shopping_list
+from foon_asp.questions.why_not import Explanation, why_not
+from foon_asp.report.page import Page, view_json
+from foon_asp.report.proof_cases import proof_json
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.json_value import Json
+
+_BEST = 5  # trees, the best and those after it
+
+
+class Beside(StrEnum):
+    """What a page shows beside the tree."""
+
+    SEARCHES = "searches"
+    PROOF = "proof"
+    ALTERNATIVES = "alternatives"
+    FRONT = "front"
 
 
 @dataclass(frozen=True, repr=False)
 class View(Result):
     """A page about an ``answer``; :meth:`html` gives it, and :meth:`write` writes it into a file.
+
+    Beside it the page shows what is not empty here: the trees of ``searches``, the certificate that is
+    ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; and where there is no tree,
+    ``why_not`` and the ``shopping`` that would help.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -26,6 +53,13 @@ class View(Result):
     """
 
     answer: Answer
+    searches: tuple[Retrieved, ...] = ()
+    certified: Certified | None = None
+    without_rules: Answer | None = None
+    alternatives: Alternatives | None = None
+    front: Front | None = None
+    why_not: Explanation | None = None
+    shopping: Shopping | None = None
 
     @property
     def ending(self) -> Ending:
@@ -38,11 +72,36 @@ class View(Result):
 
     def json_dict(self) -> Json:
         """Give what is in the page: the documents of the answers as they are."""
-        return self.answer.view().data
+        units = set(self.answer.units or ())
+        for found in self.searches:
+            units.update(found.retrieval.units if found.simulation else ())
+        for listed in (self.alternatives and self.alternatives.trees, self.front and self.front.points):
+            units.update(unit for tree in listed or () for unit in tree.units)
+        proof = None
+        if self.certified is not None and self.certified.certificate is not None:
+            proof = proof_json(self.certified.answer.problem, self.certified.certificate.content)
+        others = {
+            "without_rules": self.without_rules,
+            "alternatives": self.alternatives,
+            "front": self.front,
+            "why_not": self.why_not,
+            "shopping_list": self.shopping,
+        }
+        return view_json(
+            self.answer.problem,
+            units,
+            self.answer.json_dict(),
+            searches=[found.json_dict() for found in self.searches],
+            proof=proof,
+            **{name: None if found is None else found.json_dict() for name, found in others.items()},
+        )
 
     def html(self) -> str:
         """Give the page, a document by itself."""
-        return self.answer.view()._replace(data=self.json_dict()).html()
+        return self._page().html()
+
+    def _page(self) -> Page:
+        return self.answer.view()._replace(data=self.json_dict())
 
     def remark(self, format_: str) -> str:
         """Say what is claimed, where that is not the best tree."""
@@ -70,8 +129,7 @@ class View(Result):
 
     def _in_notebook(self) -> dict[str, str]:
         """Give what a notebook shows by media type: the page, in a frame of its own."""
-        page = self.answer.view()._replace(data=self.json_dict())
-        return {"text/plain": repr(self), "text/html": page.frame()}
+        return {"text/plain": repr(self), "text/html": self._page().frame()}
 
 
 @question(
@@ -79,14 +137,22 @@ class View(Result):
     OBJECTIVES,
     CONTAINERS,
     *ITEMS,
+    Option(
+        "beside",
+        f"What to show beside the tree: {', '.join(Beside)}; by default the first two, where items last.",
+        many=True,
+        choices=tuple(map(str, Beside)),
+    ),
     *HOW,
     help_="""
     \b
     foon-asp view --goal macaroni -o macaroni.html
-    foon-asp view --goal 'greek salad' --objective success -o salad.html
+    foon-asp view --goal 'greek salad' --objective success --beside front -o salad.html
+    foon-asp view --goal ice --constraint mine.lp -o ice.html
 
-    The file is whole in itself: open it in any browser, with no network. It shows the best tree and walks
-    through it step by step.
+    The file is whole in itself: open it in any browser, with no network. It walks through the best tree step
+    by step, shows the trees of the searches and why no tree is better, and where there is none, why. Under
+    constraints it shows the tree without them, too.
 
     Exits with 0 when the tree is proved optimal, and otherwise as `solve` does.
     """,
@@ -97,6 +163,7 @@ def view(
     problem: Problem,
     objectives: Objectives = "units",
     *,
+    beside: Iterable[str] = (),
     constraints: Files = (),
     constants: Constants | None = None,
     encodings: File | None = None,
@@ -104,6 +171,8 @@ def view(
     memory_limit: int | str | None = None,
 ) -> View:
     """Solve a problem, and show what was found on a page that any browser opens.
+
+    The limits are for all of it.
 
     Returns:
         The page: ``html()`` gives it, ``write`` writes it into a file, and a notebook shows it.
@@ -115,6 +184,43 @@ def view(
         >>> foon_asp.view(foon_asp.load().problem("ice"))
         <View of <Answer: optimal by units (strict containers): 2 units, 6 inputs, success ≈ 0.644>>
     """
+    wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
+    for name in sorted(wanted - {*Beside}):
+        raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    return View(answered(asked_with(problem, how), chosen, how))
+    if problem.items is not None:
+        for name in sorted(wanted):
+            raise not_built(f"view --beside {name}")
+        return View(answered(asked_with(problem, how), chosen, how))
+    wanted = wanted or {Beside.SEARCHES, Beside.PROOF}
+    deadline = how.begun
+    how = how._replace(deadline=deadline)
+    proof = certified(problem, chosen, how) if Beside.PROOF in wanted else None
+    page = View(
+        answered(asked_with(problem, how), chosen, how) if proof is None else proof.answer, certified=proof
+    )
+
+    def left() -> dict[str, Any]:
+        return {"time_limit": deadline.left, "memory_limit": deadline.memory}
+
+    rules: dict[str, Any] = {"constraints": constraints, "constants": constants, "encodings": encodings}
+    if constraints or encodings is not None:
+        page = replace(page, without_rules=answered(problem, chosen, settings(**left())))
+    if page.answer.ending is Ending.NEGATIVE:
+        explained = why_not(problem, **rules, **left())
+        helped = None if explained.tree_exists else shopping_list(problem, objectives, **rules, **left())
+        return replace(page, why_not=explained, shopping=helped)
+    if Beside.SEARCHES in wanted:
+        page = replace(page, searches=tuple(retrieve(problem, each.name, **left()) for each in searched(())))
+    if Beside.ALTERNATIVES in wanted:
+        page = replace(page, alternatives=alternatives(problem, objectives, best=_BEST, **rules, **left()))
+    if Beside.FRONT in wanted:
+        several = chosen if len(chosen) > 1 else _against(chosen)
+        page = replace(page, front=pareto(problem, several, **rules, **left()))
+    return page
+
+
+def _against(chosen: Sequence[Objective]) -> tuple[Objective, ...]:
+    """Give two objectives of a front, where one was asked for: against it the number of units, or success."""
+    return (*chosen, Objective.SUCCESS if Objective.UNITS in chosen else Objective.UNITS)

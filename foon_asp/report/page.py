@@ -19,7 +19,8 @@ from foon_asp.text.json_value import Json, json_line
 
 WEB = Path(__file__).resolve().parent / "web"
 
-_SCRIPTS = ("layout", "tree", "page", "start")
+_SCRIPTS = ("layout", "tree", "page", "obstacle", "answers", "proof", "start")
+_OTHERS = ("without_rules", "alternatives", "front", "proof", "why_not", "shopping_list")
 
 
 class Page(NamedTuple):
@@ -64,14 +65,18 @@ class Page(NamedTuple):
         return {"text/plain": f"<Page: {self.title}>", "text/html": self.frame()}
 
 
-def view_json(problem: Problem, units: Iterable[int], answer: Json) -> Json:
-    """Give what a page about an answer has: its document as it is, and the rates of units in its trees."""
+def view_json(problem: Problem, units: Iterable[int], answer: Json, **beside: object) -> Json:
+    """Give what a page about an answer has: its document as it is, with the rates of units.
+
+    ``beside`` are documents of other answers, as the schema names them.
+    """
     network = problem.network
     rates = None
     if problem.rates is not None:
         shown = sorted(set(units))
         rates = [{"unit": network.unit_number(u), "rate": fraction_json(problem.rate(u))} for u in shown]
-    return document("view", answer=answer, rates=rates)
+    nothing: Json = {"searches": [], **dict.fromkeys(_OTHERS)}
+    return document("view", answer=answer, rates=rates, **{**nothing, **beside})
 
 
 def _web(name: str) -> str:

@@ -145,7 +145,7 @@ function settle(layer, wish) {
 }
 
 function points(boxes, path, arrow) {
-  if (path === undefined) path = [boxes.get(arrow.from), boxes.get(arrow.to)];
+  if (path === undefined) return [arrow.from, arrow.to].map((id) => [boxes.get(id).x + boxes.get(id).w / 2, boxes.get(id).y]);
   return path.map((box, place) => {
     const end = place === 0 ? box.h / 2 : place === path.length - 1 ? -box.h / 2 : 0;
     return [box.x, box.y + end];

@@ -92,7 +92,7 @@ class Plan {
         const { from } = input;
         const maker = from.step ?? from.later_step;
         if (maker) arrows.push({ from: `${keyOf(input)}@${maker}`, to: id, back: maker >= step.step });
-        else rows.push(row(input, from.missing ? "lost" : from.implied ? "given" : "kitchen"));
+        else rows.push(row(input, from.missing ? "lost" : from.implied ? "given" : from.bought ? "bought" : "kitchen"));
       }
       for (const output of step.outputs) {
         const object = `${keyOf(output)}@${step.step}`;
@@ -116,9 +116,9 @@ class Plan {
 }
 
 function row(node, kind, inputs = []) {
-  const words = { lost: "missing", given: "as given", left: "by-product" };
+  const words = { lost: "missing", given: "taken as given", bought: "bought" };
   const name = wrapped(node.label, CARD - 34, "600 12px");
-  const said = [details(node, inputs), words[kind] === "by-product" ? "" : words[kind]].filter(Boolean).join(" · ");
+  const said = [details(node, inputs), words[kind]].filter(Boolean).join(" · ");
   const rest = said ? wrapped(said, CARD - 34, "11px") : [];
   return { node, kind, name, rest, h: (name.length + rest.length) * LINE + 3 };
 }
@@ -161,9 +161,13 @@ class Picture {
     const lines = drawn("g");
     const tops = drawn("g");
     arrows.forEach((arrow, number) => {
-      const link = { arrow, element: drawn("path", { class: arrow.back ? "arrow back" : "arrow", d: curve(placed.routes[number]) }) };
-      const [x, y] = placed.routes[number].at(-1);
-      link.tip = drawn("path", { class: "tip", d: `M${x - 4},${y - 7}L${x + 4},${y - 7}L${x},${y}Z` });
+      const points = placed.routes[number];
+      const [x, y] = points.at(-1);
+      const link = {
+        arrow,
+        element: drawn("path", { class: arrow.back ? "arrow back" : "arrow", d: arrow.back ? around(points) : curve(points) }),
+        tip: drawn("path", { class: arrow.back ? "tip back" : "tip", d: arrow.back ? `M${x + 7},${y - 4}V${y + 4}L${x},${y}Z` : `M${x - 4},${y - 7}H${x + 4}L${x},${y}Z` }),
+      };
       this.links.push(link);
       lines.append(link.element, link.tip);
     });
@@ -187,9 +191,9 @@ class Picture {
       drawn("rect", { class: "body", width: node.w, height: node.h, rx: 5 }),
       drawn("path", { class: "head", d: `M0,26V5Q0,0 5,0H${node.w - 5}Q${node.w},0 ${node.w},5V26Z` }),
     );
-    const [title] = wrapped(`${step.step}\u2002${step.motion}`, node.w - 20, "650 13px");
+    const [title] = wrapped(step.step ? `${step.step}\u2002${step.motion}` : step.motion, node.w - 20, "650 13px");
     element.append(words(title, PAD, 18, "head-text"));
-    element.append(drawn("title", {}, `${step.step}. ${step.motion}`));
+    element.append(drawn("title", {}, step.step ? `${step.step}. ${step.motion}` : step.motion));
     let y = 31;
     for (const each of rows) {
       const group = drawn("g", { class: `row ${each.kind}` });
@@ -236,7 +240,7 @@ class Picture {
   mark(classes) {
     this.marks = classes;
     for (const [id, { element }] of this.boxes) {
-      element.classList.remove("differs", "stuck", "inside", "crossing");
+      element.classList.remove("differs", "stuck", "inside", "crossing", "lost");
       element.classList.add(...(classes.get(id) ?? []));
     }
   }
@@ -334,6 +338,12 @@ function words(text, x, y, look) {
   const element = drawn("text", { x, y, class: look });
   element.textContent = text;
   return element;
+}
+
+// Leads an arrow that goes back up along the right side.
+function around([[x1, y1], [x2, y2]]) {
+  const far = Math.max(x1, x2) + Math.min(150, 50 + Math.abs(y2 - y1) / 5);
+  return `M${x1},${y1}C${far},${y1} ${far},${y2} ${x2},${y2}`;
 }
 
 function curve(points) {
