@@ -207,8 +207,7 @@ class Foon:
         Parameters:
             kitchen: Everything at hand: names, or a kitchen file as a :class:`~pathlib.Path`.
             adding: Names of object nodes to add to the kitchen.
-            without: Names of object nodes to remove from the kitchen; a label stands for all items that have
-                it.
+            without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.
             unit_prices: New prices, from 0, of motions by name and of single units; the price of a single
                 unit stays when that of its motion changes.

@@ -16,6 +16,7 @@ from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.menu import menu
 from foon_asp.questions.regret import Part, regret
 from tests import oracle
+from tests.conftest import Cli
 from tests.random_problems import (
     MOTIONS,
     RATES,
@@ -145,11 +146,18 @@ def spread(trees: Sequence[Units]) -> tuple[int, int]:
 
 @pytest.mark.parametrize("rule", RULES)
 def test_what_a_part_is_worth(rule: ContainerRule) -> None:
+    def moved(tree: Sequence[FunctionalUnit]) -> set[str]:
+        return {unit.motion for unit in tree}
+
+    pairs = 0
     for seed in range(7300, 7330):
         problem = random_problem(seed, rule)
         (objective,) = random.Random(seed).sample(sorted(map(str, Objective)), 1)
         everything = [frozenset(tree) for tree in oracle.trees(problem)]
-        found = regret(problem, objective, units=range(len(problem.network)))
+        motions = problem.network.motions
+        found = regret(
+            problem, objective, units=range(len(motions)), motions=sorted(set(motions)), pairs=True
+        )
         if not everything:
             assert found.outcome.status is Status.INFEASIBLE
             assert not found.regrets
@@ -159,8 +167,14 @@ def test_what_a_part_is_worth(rule: ContainerRule) -> None:
             if each.part is Part.UNIT:
                 gone = problem.network.unit(each.id)
                 left, without = [tuple(tree) for tree in everything if gone not in tree], problem
+            elif each.part is Part.MOTION:
+                left, without = (
+                    [t for t in map(tuple, everything) if motions[each.id] not in moved(t)],
+                    problem,
+                )
             else:
-                without = replace(problem, kitchen=problem.kitchen - {each.id})
+                pairs += each.part is Part.PAIR
+                without = replace(problem, kitchen=problem.kitchen - {each.id, each.other})
                 left = [tuple(tree) for tree in oracle.trees(without)]
             expected = oracle.best(left, without, [objective])
             assert (each.costs is None) == (expected is None)
@@ -171,8 +185,31 @@ def test_what_a_part_is_worth(rule: ContainerRule) -> None:
                 assert found.outcome.costs is not None
                 loss = each.loss(found.outcome.costs, Objective(objective))
                 assert loss is not None
-                made = each.part is Part.ITEM and objective == Objective.KITCHEN  # and so not taken
-                assert loss >= -1 if made else loss >= 0
+                made = (
+                    each.part in {Part.ITEM, Part.PAIR} and objective == Objective.KITCHEN
+                )  # and so not taken
+                assert loss >= -2 if made else loss >= 0
+    assert pairs >= 3
+
+
+def test_rates_of_single_units_stay_with_them_where_others_are_left_out() -> None:
+    builder = NetworkBuilder()
+    water, tea = ObjectNode.of("water"), ObjectNode.of("tea")
+    for line, motion in enumerate(("pour", "brew", "steep"), 1):
+        builder.add(motion, [water], [tea], Source("tea", line))
+    ids = (builder.build().object_id(water), builder.build().object_id(tea))
+    rates = dict.fromkeys(("pour", "brew", "steep"), Fraction(1, 2))
+    assert ids[0] is not None
+    assert ids[1] is not None
+    problem = Problem(
+        builder.build(), frozenset({ids[0]}), (ids[1],), rates, UTENSILS, own_rates={1: Fraction(3, 4)}
+    )
+    found = regret(problem, "success", units=[0], motions=["brew"])
+    left = {(each.part, each.id): each.costs.success for each in found.regrets if each.costs is not None}
+    assert left[Part.UNIT, 0] == Fraction(3, 4)
+    assert left[Part.UNIT, 1] == left[Part.MOTION, 1] == Fraction(1, 2)
+    with pytest.raises(UserError, match="no unit has the motion 'brw'; similar are 'brew'"):
+        regret(problem, motions="brw")
 
 
 def test_an_item_that_is_made_is_not_taken() -> None:
@@ -238,3 +275,20 @@ def test_a_network_without_a_unit_is_a_part_of_it() -> None:
         assert less.unit_of_number(less.unit_number(u)) == u
     assert less.unit_id(network.unit(1)) is None
     assert less.without([0]).unit_number(0) == less.unit_number(1)
+
+
+def test_different_trees_are_grouped_by_where_they_part(cli: Cli) -> None:
+    words = ["alternatives", "--goal", "macaroni", "--different", "3", "--within", "20"]
+    said = cli(*words).out.splitlines()
+    assert said[2] == "they part at macaroni; cooked; in [pot]"
+    assert [line.split(" [")[0] for line in said[3:5]] == ["  trees 1, 2: tilt", "  tree 3: pour"]
+    assert said[5].startswith("trees 1, 2 part at water; ")
+    found = cli(*words, "--format", "json").json
+    first, second = found["partings"]
+    assert [way["trees"] for way in first["ways"]] == [[0, 1], [2]]
+    assert sorted(place for way in second["ways"] for place in way["trees"]) == [0, 1]
+    for parting in found["partings"]:
+        for way in parting["ways"]:
+            for place in way["trees"]:
+                ids = {unit["id"] for unit in found["trees"][place]["units"]}
+                assert ids >= {unit["id"] for unit in way["made_by"]}

@@ -750,6 +750,10 @@ FAULTS: dict[str, tuple[Callable[[Foon], object], str]] = {
         lambda f: f.vary(without="apple crumble"),
         "the kitchen has nothing with the label 'apple",
     ),
+    "several items": (
+        lambda f: f.vary(adding=["pie crust; rolled", "pie crust; chilled"], without="pie crust"),
+        "the kitchen has 2 items with the label 'pie crust'; name those you mean",
+    ),
     "not there": (lambda f: f.vary(without="bowl; dirty"), "the kitchen does not have 'bowl; dirty'"),
     "motion": (
         lambda f: f.vary(rates={"crus": 1}),

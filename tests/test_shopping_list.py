@@ -8,7 +8,9 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
+from shopping_lists import cases
 
+import foon_asp
 from foon_asp import shopping_list
 from foon_asp.asp import Status
 from foon_asp.errors import UserError
@@ -20,7 +22,7 @@ from foon_asp.text.diagnostics import InputError
 from foon_asp.text.line import parse_node
 from foon_asp.text.price_list import read_prices
 from tests import oracle
-from tests.conftest import Cli
+from tests.conftest import CORPUS, Cli
 from tests.random_problems import random_problem
 
 
@@ -228,6 +230,64 @@ def test_what_is_for_sale() -> None:
         "batter; frozen",
     }
     assert {name for name, o in names.items() if shop.is_dish(o)} == {"cake; baked", "cake; frozen"}
+
+
+PLATE = kitchen_problem(
+    ["lemon; whole", "knife; clean"],
+    "lemon; sliced; on [plate]",
+    (["lemon; whole", "knife; clean"], ["lemon; sliced"]),
+    (["lemon; sliced", "plate; empty"], ["lemon; sliced; on [plate]", "plate; contains {lemon}"]),
+    (["plate; contains {lemon}"], ["lemon; sliced; on [plate]"]),
+    (["plate; dirty", "soap"], ["plate; empty"]),
+)
+
+
+def test_what_is_empty_or_clean_is_for_sale_although_it_can_be_washed() -> None:
+    assert ["plate; empty"] in bought(PLATE)
+    assert ["plate; dirty", "soap"] in bought(PLATE)
+
+
+@pytest.mark.parametrize("objective", ["units", "inputs"])
+def test_among_lists_of_one_size_that_with_the_best_tree_comes_first(objective: str) -> None:
+    problem = kitchen_problem(
+        [],
+        "tea; hot",
+        (["water; cold"], ["water; hot"]),
+        (["water; hot"], ["tea; hot"]),
+        (["kettle; empty", "faucet; on"], ["tea; hot"]),
+        (["faucet; off"], ["faucet; on"]),
+        (["tap; off", "kettle; full"], ["tea; hot"]),
+        (["tap; off"], ["kettle; full"]),
+        (["teabag"], ["tea; hot"]),
+    )
+    found = shopping_list(problem, objective, lists=9)
+    costs = [each.costs for each in found.lists]
+    assert [(len(each.items), each.costs.units) for each in found.lists if each.costs is not None] == [
+        (1, 1),
+        (1, 2),
+        (1, 2),
+        (2, 2),
+    ]
+    assert [each.inputs for each in costs if each is not None] == [1, 2, 3, 3]
+    assert found.complete
+    first = shopping_list(problem, objective, lists=1)
+    assert first.lists == found.lists[:1]
+    assert not first.complete
+    assert "there are more lists than these" in first.text()
+    assert "or, list 2 (1 object node), with 2 units, 2 inputs:\n  water; cold\n" in found.text()
+    assert "any other set of things on offer" in found.text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("folder", [None, CORPUS / "universal"])
+@pytest.mark.filterwarnings("ignore")
+def test_a_kitchen_item_that_is_taken_away_is_on_a_list(folder: Path | None) -> None:
+    """In 95 of 100 cases: all goals of the goals files, and each item they cannot do without."""
+    if folder is not None and not folder.is_dir():
+        pytest.skip(f"the real corpus is not at {CORPUS}")
+    found = list(cases(foon_asp.load(folder), 3, list(ContainerRule)))
+    assert len(found) > 20
+    assert sum(case.place is not None for case in found) >= 0.95 * len(found)
 
 
 def test_a_limit_is_told(cli: Cli) -> None:

@@ -202,6 +202,16 @@ def test_exit_codes(cli: Cli) -> None:
     assert "there is a task tree" in cli("why-not", "--goal", "ice", "--encodings", "by_need").out
 
 
+def test_the_last_line_is_the_cheapest_fix(cli: Cli) -> None:
+    ran = cli("why-not", "--goal", "hot cocoa")
+    fix = "cheapest fix: add cocoa tin; contains {cocoa powder} (foon-asp shopping-list says more)"
+    assert ran.out.splitlines()[-1] == fix
+    fix = cli("why-not", "--goal", "hot cocoa", "--format", "json").json["fix"]
+    assert ([item["label"] for item in fix["items"]], fix["proved"]) == (["cocoa tin"], True)
+    ran = cli("why-not", "--goal", "hot cocoa", "--time-limit", "0")
+    assert ran.out.splitlines()[-1].startswith("foon-asp shopping-list with the same options")
+
+
 def test_the_text_is_a_small_tree(cli: Cli, universal: Path) -> None:
     for rule in ContainerRule:
         words = ["why-not", "--data", universal, "--goal", "whipped cream", "--containers", rule]

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
-from foon_asp.dataset.names import changed_prices, changed_rates, item_ids, listed, node_id, node_ids
+from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -223,7 +223,7 @@ class Dataset:
             only = frozenset(node_ids(self, kitchen, "kitchen item"))
         more = frozenset(node_ids(self, adding, "kitchen item"))
         with_more = dataset.varied(more, frozenset(), only)
-        less = frozenset(o for name in listed(without) for o in item_ids(with_more, name))
+        less = frozenset(item_id(with_more, name) for name in listed(without))
         return with_more.varied((), less, None) if less else with_more
 
     def posed_anew(

@@ -7,7 +7,7 @@ from typing import Protocol
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitPrices, node_at_level
 from foon_asp.problem import Names, Number, UnitPricesNamed, success_rate, unit_price
-from foon_asp.text.goal_name import GoalError, NodeNames, Wording, find_goal
+from foon_asp.text.goal_name import GoalError, NodeNames, Wording, find_goal, notation
 from foon_asp.text.object_list import ListedObject
 
 
@@ -55,22 +55,31 @@ def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
     return [node_id(dataset, name, what) for name in listed(names)]
 
 
-def item_ids(dataset: Named, name: str | ObjectNode) -> list[int]:
-    """Give the kitchen items that a name stands for: a label for all that have it."""
+def item_id(dataset: Named, name: str | ObjectNode) -> int:
+    """Find a kitchen item by name: a label means the node that is only that, or the one item that has it.
+
+    Raises :class:`UserError` with candidates for a label that several items have.
+    """
     names = dataset.names
     if isinstance(name, str) and ";" not in name:
+        plain = names.object_id(ObjectNode(name))
+        if plain is not None and dataset.at_hand(plain):
+            return plain
         count, found = names.labelled(name)
         if count > len(found):
-            raise UserError(f"{count} object nodes have the label {name!r}: name those you mean in full")
+            raise UserError(f"{count} object nodes have the label {name!r}: name the one you mean in full")
+        there = [o for o in found if dataset.at_hand(o)]
+        if len(there) > 1:
+            said = f"the kitchen has {len(there)} items with the label {name!r}; name those you mean"
+            raise UserError(in_python(GoalError(said, [notation(names.node(o)) for o in there])))
         if count:
-            there = [o for o in found if dataset.at_hand(o)]
             if not there:
                 raise UserError(f"the kitchen has nothing with the label {name!r}")
-            return there
+            return there[0]
     found_one = node_id(dataset, name, "kitchen item")
     if not dataset.at_hand(found_one):
         raise UserError(f"the kitchen does not have {str(name)!r}")
-    return [found_one]
+    return found_one
 
 
 def changed_rates(

@@ -5,6 +5,8 @@ from collections.abc import Collection
 from foon_asp.network import ObjectNode
 from foon_asp.problem.problem import Problem
 
+_FRESH = frozenset({"empty", "clean"})
+
 
 class Shop:
     """Tells what of a problem's object nodes can be bought.
@@ -13,7 +15,8 @@ class Shop:
     container rule lets skip it), and a node without any state that holds at most one ingredient, where what
     it is or holds is nobody's product. A *product* is a name that some unit makes out of things that neither
     bear nor hold it: whipped cream, dough, lemon juice. States are how a FOON says that something was done,
-    so what has none is taken to be unprocessed.
+    so what has none is taken to be unprocessed. What is empty or clean, and nothing else, is a vessel or a
+    tool as shops have it, and for sale although washing up makes it too.
 
     A goal is not for sale, nor is any node that bears or holds the name of the *dish*: the label of a goal
     (or, where that is a utensil, the one ingredient in it), if that is a product.
@@ -28,7 +31,7 @@ class Shop:
     def sells(self, o: int) -> bool:
         """Whether a node, by id, can be bought, dish or not."""
         node = self._problem.network.objects[o]
-        if self.is_raw(o):
+        if self.is_raw(o) or _is_fresh(node):
             return True
         return (
             not node.states
@@ -48,8 +51,14 @@ class Shop:
         return o in self._problem.goals or not names.isdisjoint(self._dishes)
 
     def is_second_choice(self, o: int) -> bool:
-        """Whether a node is bought only where nothing better will do: units make it, or it is a mixture."""
-        return not self.is_raw(o) or len(self._problem.network.objects[o].ingredients) > 1
+        """Whether another node is better where trees are as good: units make this one, or it is a mixture."""
+        node = self._problem.network.objects[o]
+        return not (self.is_raw(o) or _is_fresh(node)) or len(node.ingredients) > 1
+
+
+def _is_fresh(node: ObjectNode) -> bool:
+    """Whether a node is an empty or clean vessel or tool."""
+    return bool(node.states) and node.states <= _FRESH and not node.contents
 
 
 def _substance(node: ObjectNode, utensils: Collection[str]) -> str | None:

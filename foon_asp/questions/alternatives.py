@@ -9,7 +9,7 @@ from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
 from foon_asp.dataset.paths import File, Files
-from foon_asp.document.json_document import costs_json, document, steps_json
+from foon_asp.document.json_document import costs_json, document, mention_json, nodes_json, steps_json
 from foon_asp.encoding.facts import write_distances
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.encoding.search import run
@@ -44,6 +44,16 @@ class Alternative(NamedTuple):
     costs: Costs
 
 
+class Parting(NamedTuple):
+    """Where some trees part: an object node, by id, that they make in different ways.
+
+    Each of ``ways`` has the units, by id, that make it and the places of the trees that make it so.
+    """
+
+    object: int
+    ways: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]
+
+
 @dataclass(frozen=True, repr=False)
 class Alternatives(Result):
     """Trees in order of their costs, the optimal ones first; none contains all units of another.
@@ -52,7 +62,7 @@ class Alternatives(Result):
     ``units`` by id and its ``costs``; :attr:`task_trees` has the trees as values. ``complete`` tells whether
     all trees asked for were found. If not, a limit was reached, and unknown trees may come before each of
     the last ``unproved`` ones. ``wanted`` is the number of trees asked for, or ``None`` for all optimal
-    ones.
+    ones; ``different`` says that they are those that differ most.
 
     Example:
         >>> found = foon_asp.alternatives(foon_asp.load().problem("ice"), best=2)
@@ -66,6 +76,38 @@ class Alternatives(Result):
     complete: bool
     wanted: int | None = None
     unproved: int = 0
+    different: bool = False
+
+    @property
+    def partings(self) -> tuple[Parting, ...]:
+        """Where the trees part, from the goals backwards: first all of them, then each group by itself."""
+        found: list[Parting] = []
+        groups = [tuple(range(len(self.trees)))]
+        while groups:
+            group = groups.pop(0)
+            parting = self._parting(group)
+            if parting is not None:
+                found.append(parting)
+                groups += [trees for _, trees in parting.ways if len(trees) > 1]
+        return tuple(found)
+
+    def _parting(self, group: tuple[int, ...]) -> Parting | None:
+        """Find the first object node behind the goals that some trees make in different ways."""
+        problem = self.problem
+        units = [frozenset(self.trees[place].units) for place in group]
+        queue = list(problem.goals)
+        for o in queue:  # grows on the way
+            if o in problem.kitchen:
+                continue
+            makers = [unit for unit in problem.makers[o] if o not in problem.needs[unit]]  # not handed on
+            ways: dict[tuple[int, ...], list[int]] = {}
+            for place, tree in zip(group, units, strict=True):
+                ways.setdefault(tuple(unit for unit in makers if unit in tree), []).append(place)
+            if len(ways) > 1:
+                return Parting(o, tuple((made, tuple(places)) for made, places in ways.items()))
+            further = dict.fromkeys(need for made in ways for unit in made for need in problem.needs[unit])
+            queue += [need for need in further if need not in queue]
+        return None
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
@@ -121,6 +163,19 @@ class Alternatives(Result):
             optimal=len(self.optimal),
             in_every_optimal=sorted(map(number, self.in_every)),
             in_some_optimal=sorted(map(number, self.in_some)),
+            partings=[
+                {
+                    "object": nodes_json(self.problem.network, [parting.object])[0],
+                    "ways": [
+                        {
+                            "made_by": [mention_json(self.problem.network, unit) for unit in made],
+                            "trees": trees,
+                        }
+                        for made, trees in parting.ways
+                    ],
+                }
+                for parting in self.partings
+            ],
             trees=[
                 {"costs": costs_json(tree.costs), "units": steps_json(self.problem, tree.units)}
                 for tree in self.trees
@@ -226,7 +281,7 @@ def alternatives(
 
 def _most_different(pool: Alternatives, count: int, how: Settings) -> Alternatives:
     """Choose ``count`` trees of a pool that differ most."""
-    pool = replace(pool, wanted=count)
+    pool = replace(pool, wanted=count, different=True)
     if len(pool.trees) <= count:
         return pool
     ended = run(
@@ -313,6 +368,8 @@ def _lines(found: Alternatives, wanted: int) -> Iterator[str]:
             yield f"other trees may come before the last {found.unproved} of them"
     else:
         yield f"{counted(len(found.trees), 'tree')} ({rule})"
+    if found.different:
+        yield from _parting_lines(found)
     yield from _trees(found)
 
 
@@ -335,6 +392,22 @@ def _optimal_lines(found: Alternatives) -> Iterator[str]:
         yield f"in every one{' found' * (not found.complete)}: {counted(len(found.in_every), 'unit')}"
         yield from unit_lines(found.problem.network, found.in_every)
     yield from _trees(found)
+
+
+def _parting_lines(found: Alternatives) -> Iterator[str]:
+    """Say where the trees part, and which go the same way."""
+    network = found.problem.network
+    for parting in found.partings:
+        trees = sorted(place for _, places in parting.ways for place in places)
+        who = "they part" if len(trees) == len(found.trees) else f"{_numbered(trees)} part"
+        yield f"{who} at {network.objects[parting.object]}"
+        for made, places in parting.ways:
+            makers = " and ".join(f"{network.motions[unit]} [{network.sources[unit][0]}]" for unit in made)
+            yield f"  {_numbered(places)}: {makers}"
+
+
+def _numbered(places: Sequence[int]) -> str:
+    return f"tree{'s' * (len(places) > 1)} {', '.join(str(place + 1) for place in places)}"
 
 
 def _trees(found: Alternatives) -> Iterator[str]:

@@ -9,17 +9,17 @@ from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.asp import Status, solve
+from foon_asp.asp import Reporter, Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.dataset.paths import File, Files
-from foon_asp.document.json_document import document, fraction_json, nodes_json
+from foon_asp.document.json_document import costs_json, document, fraction_json, nodes_json
 from foon_asp.encoding.facts import write_for_sale, write_list
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source, counted
-from foon_asp.problem import Number, Objective, Problem, exact
+from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
 from foon_asp.problem.dead_ends import Cause, dead_ends
 from foon_asp.problem.shop import Shop
 from foon_asp.questions.answer import Answer, WithOutcome
@@ -28,7 +28,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
-from foon_asp.report.answer import answer_json, goal_lines, headline, steps
+from foon_asp.report.answer import answer_json, costs_text, goal_lines, headline, steps
 from foon_asp.text.line import LineError, parse_node
 from foon_asp.text.price_list import Price, read_prices
 
@@ -52,13 +52,17 @@ class Offer(StrEnum):
 class ShoppingList(NamedTuple):
     """Object nodes to add to the kitchen, by id, and what they cost: their number or the sum of prices.
 
-    ``proved`` says that no list is cheaper, among those that do not hold all of an earlier one.
+    ``proved`` says that no list is cheaper, among those that do not hold all of an earlier one. ``costs`` are
+    those of the best tree with the things on this list, ``None`` where a limit came before.
     """
 
     items: tuple[int, ...]
     price: Fraction
     proved: bool
+    costs: Costs | None = None
 
+
+_COMPARED = 30  # lists of one price whose trees are compared, at most
 
 _REMARKS = {
     Offer.CYCLE: "what is for sale is not enough: something from a cycle that feeds only itself is needed",
@@ -72,12 +76,14 @@ _REMARKS = {
 class Shopping(WithOutcome):
     """Lists of things to add to the kitchen, in order of cost, and the best tree with the first list.
 
+    Among lists of one cost and one number of things, the one with the best tree comes first.
+
     ``problem`` and ``objectives`` are those asked about. Each of ``lists`` has its ``items`` by id, its
-    ``price`` (their number, or the sum of prices) and whether it is ``proved`` that none is cheaper;
-    :attr:`items` are those of the first list as values. ``offer`` tells what the lists are made of.
-    ``lists`` is empty if no list helps; ``complete`` tells whether the search ended, so that there are no
-    more lists than these. ``outcome`` is the best tree with the first list in the kitchen, or ``None``
-    without a list. ``prices`` are those of a price list, or ``None`` if every node counts one.
+    ``price`` (their number, or the sum of prices), whether it is ``proved`` that none is cheaper, and the
+    ``costs`` of its best tree; :attr:`items` are those of the first list as values. ``offer`` tells what the
+    lists are made of. ``lists`` is empty if no list helps; ``complete`` tells whether the search ended, so
+    that there are no more lists than these. ``outcome`` is the best tree with the first list in the kitchen,
+    or ``None`` without a list. ``prices`` are those of a price list, or ``None`` if every node counts one.
 
     Example:
         >>> shopping = foon_asp.shopping_list(foon_asp.load().problem("hot cocoa"), lists=1)
@@ -126,10 +132,10 @@ class Shopping(WithOutcome):
                 lines.append(remark)
         for number, other in enumerate(others, 2):
             claim = "" if other.proved else ", not proved next"
-            lines.append(f"or, list {number} ({_price(self, other)}{claim}):")
+            lines.append(f"or, list {number} ({_price(self, other)}{claim}), with {_costs(other)}:")
             lines += [f"  {problem.network.objects[o]}" for o in other.items]
-        if first.items and self.complete:
-            lines.append("any other list contains all of one above")
+        if first.items:
+            lines.append(_others(self))
         if self.outcome is not None and self.outcome.units is not None:
             outcome = self.outcome
             lines += ["", f"with {'the first list' if others else 'it'}: {headline(outcome)}", ""]
@@ -150,6 +156,7 @@ class Shopping(WithOutcome):
                     "items": [_item_json(self, o) for o in found.items],
                     "price": fraction_json(found.price),
                     "proved": found.proved,
+                    "costs": costs_json(found.costs),
                 }
                 for found in self.lists
             ],
@@ -172,10 +179,11 @@ class Shopping(WithOutcome):
     foon-asp shopping-list --goal 'hot cocoa'
     foon-asp shopping-list --goal 'hot cocoa' --goal omelet --prices prices.txt
 
-    For sale is what no unit makes, and what has no state and holds at most one ingredient, unless it is a
-    product of some unit. The dish itself is proposed only if nothing else is enough. A line of a price list
-    is an object node in one-line notation, or a label, then a tab and a price. Every list is proved to be the
-    cheapest of those that do not contain all of an earlier one.
+    For sale is what no unit makes, what is empty or clean, and what has no state and holds at most one
+    ingredient, unless it is a product of some unit. The dish itself is proposed only if nothing else is
+    enough. A line of a price list is an object node in one-line notation, or a label, then a tab and a price.
+    Every list is proved to be the cheapest of those that do not contain all of an earlier one; among lists of
+    one size, that with the best tree comes first.
 
     Exits with 0 when there is a list, proved; with 1 when no list helps, proved; with 3 when stopped at a
     limit.
@@ -196,8 +204,8 @@ def shopping_list(
     """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
 
     Every list is proved: there is no shorter or cheaper one, except those that contain all of an earlier
-    list. Among lists of the same cost, one with fewer mixtures and objects that units make comes first, then
-    one with a smaller tree. All of a store is read.
+    list. Among lists of the same cost, one with fewer things comes first, then one with a better tree, then
+    one with fewer mixtures and objects that units make. All of a store is read.
 
     Parameters:
         prices: The path of a price list, or prices by name; only what has a price can be bought. A label
@@ -241,18 +249,40 @@ def shopping_list(
                 break
             offer, wares = following
             first = prepare(problem, chosen, how, program, for_sale=wares)
-            found, complete = _lists(first, shop, wares, most)
+            found, complete = _lists(first, shop, wares, most, chosen != (Objective.UNITS,))
     except KeyboardInterrupt:
         deadline.interrupt()
         complete = False
-    outcome = None
-    if found:
-        stocked = replace(problem, kitchen=problem.kitchen.union(found[0].items))
-        outcome = Answer._make(solve(stocked, chosen, how, reporter))
+    outcomes: dict[ShoppingList, Answer] = {}
+    for each in found:
+        stocked = replace(problem, kitchen=problem.kitchen.union(each.items))
+        who = Reporter() if outcomes else reporter
+        outcome = Answer._make(solve(stocked, chosen, how, who))
         if outcome.status is Status.INFEASIBLE:
             _refuse_far_rules(program)
             raise BugError("the shopping list does not make a tree possible")
-    return Shopping(problem, offer, tuple(found), complete, outcome, by_id, chosen)
+        outcomes[each._replace(costs=outcome.costs)] = outcome
+    in_order = _in_order(outcomes, shop, chosen) if found else []
+    complete = complete and len(in_order) <= most
+    shown = tuple(in_order[:most])
+    best = outcomes[shown[0]] if shown else None
+    return Shopping(problem, offer, shown, complete, best, by_id, chosen)
+
+
+def _in_order(
+    outcomes: Mapping[ShoppingList, Answer], shop: Shop, objectives: tuple[Objective, ...]
+) -> list[ShoppingList]:
+    """Put lists in order: by price, by number, by what their best trees cost, if that is proved."""
+    if any(outcome.status is not Status.OPTIMAL for outcome in outcomes.values()):
+        return list(outcomes)
+    order = levels(objectives)
+
+    def key(found: ShoppingList) -> tuple[Fraction, int, tuple[int | Fraction, ...], int]:
+        assert found.costs is not None
+        second = sum(map(shop.is_second_choice, found.items))
+        return found.price, len(found.items), tuple(found.costs.key(order)), second
+
+    return sorted(outcomes, key=key)
 
 
 def _refuse_far_rules(program: Program) -> None:
@@ -323,9 +353,12 @@ def _offers(
 
 
 def _lists(
-    first: Prepared, shop: Shop, wares: Mapping[int, Fraction], most: int
+    first: Prepared, shop: Shop, wares: Mapping[int, Fraction], most: int, compared: bool
 ) -> tuple[list[ShoppingList], bool]:
-    """Find the cheapest lists from some wares, one run each; say whether there are no others."""
+    """Find the cheapest lists from some wares, one run each; say whether there are no others.
+
+    Where trees are to be ``compared`` by more than their size, all lists of the last price come along.
+    """
     if first.tree is None:
         return [], not first.stopped
     problem = first.problem
@@ -338,7 +371,9 @@ def _lists(
     more = write_for_sale(prices, filter(shop.is_second_choice, sold))
     encoding = question_encoding("shopping_list.lp")
     lists: list[ShoppingList] = []
-    while len(lists) < most:
+    while len(lists) < most or (
+        compared and len(lists) < _COMPARED and lists[-1].price == lists[most - 1].price
+    ):
         ended = first.run(more, encodings=(encoding,), predicates=[("_buy", 1)])
         if ended.units is not None:
             items = tuple(sorted(ended.atoms["_buy"]))
@@ -350,6 +385,18 @@ def _lists(
         if not items:
             return lists, True
     return lists, False
+
+
+def _costs(found: ShoppingList) -> str:
+    return "a tree that is not known" if found.costs is None else costs_text(found.costs)
+
+
+def _others(shopping: Shopping) -> str:
+    """Say what there is beside the lists shown."""
+    if not shopping.complete:
+        return "there are more lists than these: --lists finds more"
+    these = "this list" if len(shopping.lists) == 1 else "one of these lists"
+    return f"that is all: any other set of things on offer that makes a tree possible holds all of {these}"
 
 
 def _none(shopping: Shopping) -> Sequence[str]:

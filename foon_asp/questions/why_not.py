@@ -18,8 +18,9 @@ from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import goal_lines
 from foon_asp.text.object_list import ListedObject
 
-if TYPE_CHECKING:  # clingo, which is needed where rules have a say
+if TYPE_CHECKING:  # clingo, which is needed where rules have a say, and for what helps
     from foon_asp.questions.clash import Clash
+    from foon_asp.questions.shopping_list import ShoppingList
 
 _ALIKE = 2  # nodes with the same label that are named beside a missing one
 _OBJECTS = 12  # dead ends that are opened up in the text
@@ -27,6 +28,8 @@ _OTHERS = 2  # other units that are named beside the first
 _ROOTS = 8
 _STEPS = 6  # of a cycle
 _STOPS = 3
+_FIX_SECONDS = 10.0  # to look for what helps; the causes are known without
+_FIX_ITEMS = 4  # that are named in one line
 
 
 @dataclass(frozen=True, repr=False)
@@ -39,7 +42,8 @@ class Explanation(Result):
     ``object``, ``cause``, ``stops``, ``cycle`` and ``near`` names), first those on the easiest way.
     ``available`` has a 1 for every node that is at hand or can be made. All are ids, positions in
     ``problem.network.objects``; ``json()`` has names. If all goals can be made, ``clash`` tells whether
-    rules leave a tree; it is ``None`` without rules.
+    rules leave a tree; it is ``None`` without rules. Otherwise ``fix`` is the shortest list of things to add
+    to the kitchen, rules left aside; ``None`` where none was found within some seconds.
 
     Example:
         >>> explanation = foon_asp.why_not(foon_asp.load().problem("apple pie"))
@@ -53,6 +57,7 @@ class Explanation(Result):
     roots: tuple[Root, ...]
     available: bytearray
     clash: "Clash | None" = None
+    fix: "ShoppingList | None" = None
 
     @property
     def tree_exists(self) -> bool:
@@ -91,7 +96,7 @@ class Explanation(Result):
         if len(self.roots) > len(shown):
             more = counted(len(self.roots) - len(shown), "more")
             yield f"{more} behind other units; --format json lists all"
-        yield "foon-asp shopping-list with the same options says what to add to the kitchen"
+        yield _fix_line(self.problem, self.fix)
 
     def json_dict(self) -> object:
         """Give everything that is known of the dead ends, without the bounds of the text."""
@@ -113,6 +118,9 @@ class Explanation(Result):
                 for o, makers in self.dead_ends.items()
             ],
             clash=None if self.clash is None else self.clash.json_dict(),
+            fix=None
+            if self.fix is None
+            else {"items": nodes_json(network, self.fix.items), "proved": self.fix.proved},
         )
 
 
@@ -128,7 +136,8 @@ class Explanation(Result):
     What cannot be made is shown as a tree from the goals to the causes: an object node that is missing
     in the kitchen, or a cycle of nodes that can only be made from each other. A missing node is compared
     with what is at hand and with kitchen entries that match nothing: its name may be one edit away. If the
-    constraints are the reason, those that clash are listed.
+    constraints are the reason, those that clash are listed. The last line is the cheapest fix: the fewest
+    things to add to the kitchen.
 
     Exits with 0 when there is a tree, 1 when there is none, 3 when stopped at a limit.
     """,
@@ -167,7 +176,29 @@ def why_not(
         clash = find_clash(problem, (Objective.UNITS,), how)
     spellings = _Spellings(problem, Foon.of(problem).dataset.data.kitchen_items, found.available)
     roots = tuple(map(spellings.look_up, found.roots))
-    return Explanation(problem, found.goals, found.makers, roots, found.available, clash)
+    fix = _fix(problem, time_limit) if found.goals else None
+    return Explanation(problem, found.goals, found.makers, roots, found.available, clash, fix)
+
+
+def _fix(problem: Problem, time_limit: float | None) -> "ShoppingList | None":
+    """Find the shortest list of things to add to the kitchen, if that takes only some seconds."""
+    if problem.items is not None:
+        return None
+    from foon_asp.questions.shopping_list import shopping_list  # noqa: PLC0415
+
+    most = _FIX_SECONDS if time_limit is None else min(time_limit, _FIX_SECONDS)
+    lists = shopping_list(problem, lists=1, time_limit=most).lists
+    return lists[0] if lists else None
+
+
+def _fix_line(problem: Problem, fix: "ShoppingList | None") -> str:
+    if fix is None:
+        return "foon-asp shopping-list with the same options says what to add to the kitchen"
+    named = [str(problem.network.objects[o]) for o in fix.items[:_FIX_ITEMS]]
+    if len(fix.items) > len(named):
+        named.append(f"{len(fix.items) - len(named)} more")
+    proved = "" if fix.proved else ", not proved the cheapest"
+    return f"cheapest fix: add {' and '.join(named)} (foon-asp shopping-list says more{proved})"
 
 
 class _Spellings:

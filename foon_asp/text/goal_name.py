@@ -76,11 +76,12 @@ def find_goal(
 ) -> int:
     """Give the id of the object node that a goal names.
 
-    A name is a label (of an entry of the goals file first, then of the network's nodes) or the one-line
-    notation ``sweet potato; chopped; in [cutting board]``; a semicolon at the end (``onion;``) makes the
-    notation of a node that is only a label. ``by_beginning`` takes the beginning of a notation too, where
-    one node alone begins so and no name is just this. Raises :class:`GoalError` with candidates ready
-    to paste when it is unknown or means several nodes; ``wording`` is for other things than goals.
+    A name is the label of an entry of the goals file, the one-line notation ``sweet potato; chopped; in
+    [cutting board]``, or a label that one node alone has. A node that is only a label comes before others
+    with that label, so that ``str(node)`` finds the node; a semicolon at the end (``onion;``) makes it the
+    notation also where the goals file has such an entry. ``by_beginning`` takes the beginning of a notation
+    too, where one node alone begins so and no name is just this. Raises :class:`GoalError` with candidates
+    ready to paste when it is unknown or means several nodes; ``wording`` is for other things than goals.
     """
     begun = [] if not by_beginning else nodes_beginning(name, names, 2)
     try:
@@ -97,17 +98,12 @@ def find_goal(
     if entries:
         found = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
         return _only(name, names, len(found), found, wording)
-    if bare:
-        count, labelled = names.labelled(node.label)
-        if count:
-            return _only(name, names, count, labelled, wording)
     exact = names.object_id(node)
     if exact is not None:
         return exact
-    if not bare:  # a label with a semicolon in it, as it is
-        count, labelled = names.labelled(name)
-        if count:
-            return _only(name, names, count, labelled, wording)
+    count, labelled = names.labelled(node.label if bare else name)  # also one with a semicolon, as it is
+    if count:
+        return _only(name, names, count, labelled, wording)
     if len(begun) == 1:
         return begun[0]
     count, labelled = names.labelled(node.label)
