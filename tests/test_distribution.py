@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -179,3 +180,52 @@ def test_an_editable_install_runs_the_encodings_and_the_kitchen_of_the_checkout(
     (checkout / "data" / "kitchen" / "kitchen.json").write_text("[]", encoding="utf-8")
     ended = subprocess.run([python, *question], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (ended.returncode, json.loads(ended.stdout)["status"]) == (1, "infeasible"), ended.stderr
+
+
+def bare_clingo_lines() -> list[str]:
+    """Give the lines of the READMEs that run clingo by itself, with those that stand before them."""
+    lines: list[str] = []
+    for page in ("README.md", "encodings/README.md"):
+        blocks = re.findall(r"^```(\w*)\n(.*?)^```$", (ROOT / page).read_text("utf-8"), re.S | re.M)
+        for language, block in blocks:
+            if language in {"", "sh"} and "-m clingo" in block:
+                lines += block.splitlines()
+    copying = next(line for line in lines if "--copy" in line)  # which both pages begin with
+    return [copying.partition("    #")[0], *(line for line in lines if "--copy" not in line)]
+
+
+@pytest.fixture(scope="module")
+def environment(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Install the wheel with its dependencies into an environment of its own, as a user does."""
+    folder = tmp_path_factory.mktemp("environment")
+    run("-m", "venv", folder / "venv", cwd=folder)
+    scripts = folder / "venv" / ("Scripts" if os.name == "nt" else "bin")
+    pip = [str(scripts / "python"), "-m", "pip", "--disable-pip-version-check", "install", "-q", str(wheel)]
+    ended = subprocess.run(pip, cwd=folder, capture_output=True, text=True, check=False)
+    if ended.returncode and ("No matching distribution" in ended.stderr or "connection" in ended.stderr):
+        pytest.skip("pip finds no dependencies: there is no network")
+    assert ended.returncode == 0, ended.stderr
+    return scripts
+
+
+def test_the_lines_for_bare_clingo_run_after_pip_install(environment: Path, tmp_path: Path) -> None:
+    (tmp_path / "mine.lp").write_text(':- use(U), motion(U,"fry").\n', encoding="utf-8")
+    path = os.pathsep.join((str(environment), os.environ["PATH"]))
+    variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    ran = 0
+    for line in bare_clingo_lines():
+        ended = subprocess.run(
+            line,
+            shell=True,
+            cwd=tmp_path,
+            env=variables | {"PATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if "-m clingo" in line:
+            assert "OPTIMUM FOUND" in ended.stdout, (line, ended.stdout, ended.stderr)
+            ran += 1
+        else:
+            assert ended.returncode == 0, (line, ended.stderr)
+    assert ran >= 3

@@ -117,3 +117,23 @@ def test_a_shopping_list_needs_its_own_encoding(folder: Path, cli: Cli) -> None:
     with (folder / "questions" / "shopping_list.lp").open("a") as file:
         file.write(":- use(1).\n")
     assert cli(*words).code == 2
+
+
+def test_they_are_printed_and_copied(cli: Cli, tmp_path: Path) -> None:
+    assert cli("encodings").out == f"{encodings_folder()}\n"
+    mine = tmp_path / "mine"
+    assert cli("encodings", "--copy", mine).code == 0
+    files = {path.relative_to(mine) for path in mine.rglob("*") if path.is_file()}
+    ours = encodings_folder()
+    assert files == {path.relative_to(ours) for path in ours.rglob("*") if path.is_file()}
+    assert all((mine / file).read_bytes() == (ours / file).read_bytes() for file in files)
+    (mine / "task_tree.lp").chmod(0o644)
+    (mine / "task_tree.lp").write_text(
+        (ours / "task_tree.lp").read_text() + ':- use(U), motion(U,"crush").\n'
+    )
+    free = cli("solve", "--goal", "ice", "--format", "json").json
+    edited = cli("solve", "--goal", "ice", "--encodings", mine, "--format", "json").json
+    assert free["costs"]["units"] < edited["costs"]["units"]
+    again = cli("encodings", "--copy", mine)
+    assert again.code == 2
+    assert "is there already" in again.err

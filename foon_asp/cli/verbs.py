@@ -14,6 +14,7 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
     "stats": Entry("Show", "Count what is in a network."),
     "facts": Entry("Show", "Print the facts that clingo is given for a goal."),
+    "encodings": Entry("Show", "Print where the answer-set programs are, or copy them to edit."),
     "constraints": Entry("Show", "List the ready-made constraints."),
     "schema": Entry("Show", "Print the JSON Schema of what a verb prints with --format json."),
     "init": Entry("Files", "Write a data folder to start from, of a recipe of yours or a small one of ours."),
