@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -13,10 +14,12 @@ import foon_asp
 from foon_asp import ObjectNode, Source, UserError, parse_node
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.problem import Fate, Objective, UsedUp, levels
+from foon_asp.deadline import Deadline
+from foon_asp.problem import Fate, Objective, Problem, UsedUp, levels
 from foon_asp.problem.items import fate
 from foon_asp.proof.replay import replay_for
 from foon_asp.resources import bundled_kitchen
+from foon_asp.rules.constraint import given_constraint
 from foon_asp.text.item_list import read_stays, read_stock
 from tests.conftest import Cli
 from tests.used_up_oracle import UTENSILS, key, plans, random_problem, stays
@@ -318,7 +321,6 @@ def test_rules_hold_for_plans(constraint: str, constants: dict[str, int | str], 
     [
         ("before", "the constraint before is not built"),
         ("require_intermediate", "the constraint require_intermediate is not built"),
-        ("at_most_units:max_units=2", "the constraint at_most_units is not built"),
         ("at_most_price", "the constraint at_most_price is not built"),
         (":- available(1).", "rules over available/1 are not built"),
         (":- use(U), input(U,O), output(V,O), not use(V).", "looks at more than the units of a plan"),
@@ -474,3 +476,62 @@ def test_bare_clingo_finds_the_same_optimum_from_the_facts(seed: int) -> None:
         )
     )
     assert counts[-1:] == ([] if outcome.costs is None else [outcome.costs.units])
+
+
+# --- Rules about how often, against brute force.
+
+RULES: tuple[tuple[str, Callable[[Problem, Counter[int]], bool]], ...] = (
+    ("at_most_units:max_units=3", lambda _, n: n.total() <= 3),
+    (":- #sum { N,U : times(U,N) } < 3.", lambda _, n: n.total() >= 3),
+    (
+        "at_most_motion:limited_motion=a,max_uses=1",
+        lambda p, n: sum(n[u] for u in n if p.network.motions[u] == "a") <= 1,
+    ),
+    (
+        ":- #sum { N*M,U : times(U,N), inputs(U,M) } >= 6.",
+        lambda p, n: sum(n[u] * len(p.network.inputs[u]) for u in n) < 6,
+    ),
+    (":- times(U,N), N > 1.", lambda _, n: max(n.values(), default=0) <= 1),
+    (":- times(U,1).", lambda _, n: 1 not in n.values()),
+    (":- #count { U : use(U) } < 2.", lambda _, n: len(n) >= 2),
+    (":- #count { U : use(U) } > 2.", lambda _, n: len(n) <= 2),
+    (
+        ":- #sum { M,U : use(U), inputs(U,M) } <= 3.",
+        lambda p, n: sum(len(p.network.inputs[u]) for u in n) > 3,
+    ),
+    (
+        ':- use(U), motion(U,"a"), use(V), motion(V,"b").',
+        lambda p, n: not {"a", "b"} <= {p.network.motions[u] for u in n},
+    ),
+    (":- use(0), not use(1).", lambda _, n: 0 not in n or 1 in n),
+)
+
+
+def hold_under_a_rule(seed: int) -> Status:
+    problem, (rule, allows) = random_problem(seed), RULES[seed % len(RULES)]
+    objectives = OBJECTIVES[seed // 3 % len(OBJECTIVES)]
+    asked = levels(objectives)
+    found = [plan for plan in plans(problem, _LONGEST) if allows(problem, plan[0])]
+    best = min((key(problem, *plan, asked) for plan in found), default=None)
+    outcome = solve(problem, objectives, Settings((given_constraint(rule),), deadline=Deadline(20)))
+    if outcome.costs is None:
+        assert best is None or outcome.status is Status.UNKNOWN
+        return outcome.status
+    cost = tuple(map(Fraction, outcome.costs.key(asked)))
+    assert allows(problem, Counter(outcome.units))
+    if outcome.status is Status.OPTIMAL:
+        short = outcome.costs.units <= _LONGEST
+        assert best == cost if short else best is None or cost <= best
+    return outcome.status
+
+
+@pytest.mark.parametrize("seed", range(22))
+def test_rules_on_small_networks(seed: int) -> None:
+    assert hold_under_a_rule(seed) is not Status.UNKNOWN
+
+
+@pytest.mark.slow
+def test_rules_on_many_small_networks() -> None:
+    statuses = Counter(map(hold_under_a_rule, range(22, 700)))
+    assert statuses[Status.UNKNOWN] + statuses[Status.FEASIBLE] < 20
+    assert min(statuses[Status.OPTIMAL], statuses[Status.INFEASIBLE]) > 100

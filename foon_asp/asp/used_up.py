@@ -14,24 +14,22 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.solver import Reporter
+from foon_asp.asp.solver import solve as solve_lasting
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
 from foon_asp.encoding.exact_success import RateScale, rate_scale
 from foon_asp.errors import BugError, UserError
 from foon_asp.problem import Costs, Objective, Problem, Restriction, levels, multiplies, reach
 from foon_asp.proof.replay import replay_for
+from foon_asp.rules.limit import TIMES, Limit
 
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
 
-_TIMES = ("times", 2)
 _LARGEST = 10**9  # a cost that is not rounded
 _FINE = 10**6  # steps of the greatest cost, where costs are rounded
-# Constraints of ours about what is available before something else, those that count units and not
-# executions, and predicates of the first kind.
-_NOT_BUILT = (
-    *("before", "require_intermediate"),
-    *("at_most_units", "at_most_motion", "at_most_utensil_uses", "at_most_price"),
-)
+# Constraints of ours about what is available before something else, or that count units and not executions,
+# and predicates of the first kind.
+_NOT_BUILT = ("before", "require_intermediate", "at_most_price")
 _NOT_READ = frozenset({"available", "executes", "taken", "makes"})
 _MOST_COPIES = 4  # executions of a unit beyond its count, up to which a first plan is looked for
 
@@ -112,11 +110,12 @@ class _Solver:
         reporter: Reporter,
     ) -> None:
         self.problem, self.objectives, self.levels = problem, objectives, asked
-        self.deadline, self.reporter = settings.begun, reporter
+        self.settings, self.deadline, self.reporter = settings, settings.begun, reporter
         self.program = assemble(settings, reporter.warning, used_up=True)
         self._require_rules()
         self.removed: Callable[[int], bool] = lambda _: False
         self.required: tuple[frozenset[int], ...] = ()
+        self.limits: Sequence[Limit] = ()
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
         self.bounds: dict[Objective, int | Fraction] = {}
@@ -153,13 +152,14 @@ class _Solver:
     def _apply_rules(self) -> bool:
         """Take what rules say of single units, and of sets of which one is needed; whether they allow a plan.
 
-        A rule about how often a unit is executed is left to the search, like all others: what is said of it
-        is meant for items that last, where that is once.
+        Of rules about how often a unit is executed, those that limit sums are taken along, too; the others
+        are left to the search, since what is said of them is meant for items that last, where that is once.
         """
         rules = self.program.understood
-        if rules is None or _TIMES in self.program.looked_at:
+        if rules is None:
             return True
-        found = rules.applied(self.problem, self.deadline)
+        self.limits = rules.limits(self.problem, self.deadline)
+        found = rules.varying({TIMES}).applied(self.problem, self.deadline)
         if isinstance(found, Restriction):
             self.removed, self.required = found.removed, found.required
         return found is None or isinstance(found, Restriction)
@@ -168,9 +168,7 @@ class _Solver:
     def _keeps_spare(self) -> bool:
         """Whether a rule may ask for units that lead to no goal."""
         rules = self.program.understood
-        return rules is not None and (
-            bool(self.required) or _TIMES in self.program.looked_at or not rules.shrinking
-        )
+        return rules is not None and not (rules.shrinking and rules.only_limits)
 
     def _cut(self) -> list[int] | None:
         """Give the units that can matter, ascending; ``None`` where no goal is reached even if items last.
@@ -205,24 +203,29 @@ class _Solver:
         return sorted(chosen)
 
     def _search(self, units: list[int]) -> Outcome:
-        if not units and self.program.own:  # every goal is there
+        counting = _Counting(self, units)
+        if not units:  # every goal is there, and a plan without steps is the only one, or keeps to most rules
+            if not self.program.own and counting.order({}) is None:
+                return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
             self._take(())
             return self._outcome(Status.OPTIMAL, Proof.CUTS)
-        counting = _Counting(self, units)
         self.deadline.doing = "counting executions"
         began = time.perf_counter()
         counts = counting.bound.counts([counting.measure(objective) for objective in self.levels])
         self._spent("bound", began)
-        if counts is None:
-            if counting.bound.none():
-                return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
-            raise Stopped
-        plan = counting.order(counts)
-        if plan is None:
-            plan = counting.any_order(counts)
-        if plan is None:
-            raise Stopped
-        self._take(plan)
+        plan = None
+        if counts is not None:
+            plan = counting.order(counts)
+            if plan is None:
+                plan = counting.any_order(counts)
+        elif counting.bound.none():
+            return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
+        if plan is not None:
+            self._take(plan)
+        elif self._none_lasts():
+            return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
+        elif counting.none_is_left():
+            return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
         while True:
             try:
                 began = time.perf_counter()
@@ -233,6 +236,16 @@ class _Solver:
             finally:
                 self.bounds = counting.proved()
                 self._spent("bound", began)
+
+    def _none_lasts(self) -> bool:
+        """Whether it is proved that rules allow no tree even if items last: a plan executes a tree."""
+        rules, problem = self.program.understood, self.problem
+        if rules is None or not rules.only_limits:
+            return False
+        there = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
+        lasting = replace(problem, kitchen=there, items=None)
+        settings = self.settings._replace(session=None)
+        return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
     def _take(self, plan: Plan) -> bool:
         """Keep a plan if it is the best so far."""
@@ -299,6 +312,10 @@ class _Counting:
                 [goal for goal in problem.goals if goal not in problem.endless],
             ),
             [[a for a, unit in enumerate(units) if unit in each] for each in solver.required],
+            [
+                Limit({a: each.weights[u] for a, u in enumerate(units) if each.weights.get(u)}, *each[1:])
+                for each in solver.limits
+            ],
             expired=lambda: solver.deadline.passed,
             left=lambda: solver.deadline.left,
         )
@@ -367,6 +384,22 @@ class _Counting:
         assert self._solver.best is not None
         costs = self._solver.best[1]
         self.bound.prove([self.level(objective, costs) for objective in self._solver.levels], self._is_better)
+
+    def none_is_left(self) -> bool:
+        """Prove that no counts are those of a plan, where there are not too many; whether that is so.
+
+        If a plan is found on the way, it is kept. Raises :class:`Stopped` where nothing is proved.
+        """
+        most = self.bound.most_executions()
+        if most is None:
+            raise Stopped
+        try:
+            self.bound.prove(
+                [Level(self.measure(Objective.UNITS), Fraction(most + 1), most)], self._is_better
+            )
+        except BetterError:
+            return False
+        return True
 
     def proved(self) -> dict[Objective, int | Fraction]:
         """Give what the first objective costs at least, where that is not rounded and something is proved."""

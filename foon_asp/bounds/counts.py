@@ -68,6 +68,10 @@ class Landmark(NamedTuple):
     action: int | None = None
 
 
+SumLimit = tuple[Mapping[int, int], int, bool, bool]
+"""Weights by action, their greatest sum or, if the next is true, their least, and whether use counts."""
+
+
 class Level(NamedTuple):
     """An objective, and what the plan in hand costs by it.
 
@@ -95,17 +99,20 @@ class CountBound:
     """The counts of plans for one question.
 
     ``expired`` says when to give up, and ``left`` in how many seconds, if time is limited: methods then raise
-    :class:`Stopped`. ``required`` are sets of actions of each of which one has to be executed.
+    :class:`Stopped`. ``required`` are sets of actions of each of which one has to be executed. ``limits`` say
+    of sums with a weight from 0 for each action how large they are, at most or at least: over executions, or
+    over the actions that are used.
     """
 
     def __init__(
         self,
         flows: Flows,
         required: Sequence[Sequence[int]] = (),
+        limits: Sequence[SumLimit] = (),
         expired: Callable[[], bool] = lambda: False,
         left: Callable[[], float | None] = lambda: None,
     ) -> None:
-        self._flows, self._expired, self._left = flows, expired, left
+        self._flows, self._limits, self._expired, self._left = flows, limits, expired, left
         self._size = len(flows.asks)
         self.proved: float | Fraction = 0  # what every plan costs at least by the first level, so far
         self._landmarks = [Landmark(tuple(units)) for units in required]
@@ -150,6 +157,12 @@ class CountBound:
                 return False
             self._check()
         return False
+
+    def most_executions(self) -> int | None:
+        """Give how many executions a plan can have in all; ``None`` if not known."""
+        program = _Model(self, ()).program
+        bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
+        return None if abs(bound) == math.inf else math.floor(-bound)
 
     def caps(self, level: Level) -> list[int | None]:
         """Give for each action how often a plan that is as good can execute it; ``None`` if not known."""
@@ -364,6 +377,11 @@ class _Model:
         self._items = list(items.values())
         for landmark in bound._landmarks:
             self.add_landmark(landmark)
+        for weights, limit, at_least, used in bound._limits:
+            first, sign = size if used else 0, 1 if at_least else -1
+            program.row({first + a: sign * weight for a, weight in weights.items()}, sign * limit)
+            for a, weight in weights.items() if not at_least and not used else ():
+                program.cap(a, max(limit, 0) // weight)
         for measure in measures:
             if measure.exact is not None and not far:
                 self._add_classes(measure)

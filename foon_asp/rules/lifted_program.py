@@ -36,15 +36,21 @@ class LiftedProgram:
 
     In its one answer, ``_removed(U)`` says that a unit breaks a rule, or that it is broken by ``NOBODY``;
     ``_asks(R)`` that requiring rule number R asks for a unit, and ``_helps_R(U)`` that this is one. ``reads``
-    are the predicates of facts that it looks at.
+    are the predicates of facts that it looks at. ``more`` are heads and bodies of other rules, which no unit
+    of the tree decides.
     """
 
-    def __init__(self, analysis: Analysis, numbers: Iterable[int]) -> None:
+    def __init__(
+        self, analysis: Analysis, numbers: Iterable[int], more: Iterable[tuple[str, tuple[Part, ...]]] = ()
+    ) -> None:
         self._analysis = analysis
         definitions = [str(each) for each in analysis.definitions]
         self._lines = [*definitions, _BASE]
         self.predicates: list[Signature] = [("_removed", 1), ("_asks", 1)]
         reads: set[Signature] = set()
+        for head, body in more:
+            self._line(head, [part.text for part in body])
+            reads |= {literal.signature for literal in literals(body)}
         for number in numbers:
             for clause in analysis.of_rule[number]:
                 if analysis.rules[number].kind is Kind.REQUIRING:

@@ -14,13 +14,15 @@ from foon_asp.encoding.encoding import Encoding, read_encoding
 from foon_asp.encoding.facts import hundredths, write_facts_read
 from foon_asp.encoding.search import run
 from foon_asp.errors import UserError
+from foon_asp.grounding.run import Run
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.problem import Problem, Restriction, reach
-from foon_asp.rules.clause import Clause, Signature, written
+from foon_asp.rules.clause import Clause, Signature, literals, written
 from foon_asp.rules.flat_answers import FlatAnswers
 from foon_asp.rules.flat_body import Asking, FlatBodies, NotFlatError, Way
 from foon_asp.rules.lifted_program import NOBODY, LiftedProgram, stands_alone
+from foon_asp.rules.limit import TIMES, Limit, Limiting, limiting
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
 _DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}
@@ -193,6 +195,48 @@ class Rules:
             return _Flat((), tuple(asking for clause in clauses for asking in bodies.askings(clause)))
         return _Flat(tuple(way for clause in clauses for way in bodies.ways(clause)), ())
 
+    @cached_property
+    def _limiting(self) -> dict[int, Limiting]:
+        """The rules that limit executions, by their places."""
+        found = {
+            number: limiting(self._analysis, each[0])
+            for number, each in enumerate(self._live)
+            if len(each) == 1
+        }
+        return {number: each for number, each in found.items() if each is not None}
+
+    @property
+    def only_limits(self) -> bool:
+        """Whether no rule looks at how often units are executed but to say how often at most."""
+        at_most = {number for number, each in self._limiting.items() if not each.at_least}
+        others = (c for number, each in enumerate(self._live) if number not in at_most for c in each)
+        return all(literal.signature != TIMES for clause in others for literal in literals(clause.body))
+
+    def limits(self, problem: Problem, deadline: Deadline) -> list[Limit]:
+        """Give what rules say of how often units are executed, as far as these are limits of sums.
+
+        Raises as :meth:`applied`.
+        """
+        limiting = self._limiting
+        if not limiting:
+            return []
+        rows = [
+            (f"_counts({number},{row})", body) for number, each in limiting.items() for row, body in each.rows
+        ]
+        program = LiftedProgram(self._analysis, (), rows)
+        found = self._ask(program, [("_counts", 3)], problem, deadline)
+        counts: dict[int, list[tuple[int, int]]] = {number: [] for number in limiting}
+        for number, weight, unit in () if found is None else found.rows["_counts"]:
+            here = problem.network.unit_of_number(unit)
+            if here is not None:
+                counts[number].append((weight, here))
+        return [
+            limit
+            for number, each in limiting.items()
+            if found is not None
+            for limit in each.limits(counts[number])
+        ]
+
     def applied(
         self, problem: Problem, deadline: Deadline | None = None
     ) -> Restriction | Contradiction | None:
@@ -241,19 +285,8 @@ class Rules:
     ) -> Restriction | Contradiction | None:
         """Let clingo derive what rules remove and require, from the facts that they look at."""
         program = LiftedProgram(self._analysis, numbers)
-        with deadline.watched("writing facts"):
-            text = program.text + write_facts_read(problem, sorted(reach(problem).units), program.reads)
-        constants = [word for constant in self._constants for word in ("-c", constant)]
-        try:
-            found = run(
-                (), text, constants, deadline, "ignore", predicates=program.predicates, endless=self._endless
-            )
-        except UserError:
-            return None
-        if found.units is None:
-            if not found.exhausted:
-                deadline.check()
-                raise KeyboardInterrupt
+        found = self._ask(program, program.predicates, problem, deadline)
+        if found is None:
             return None
         removed = found.atoms["_removed"]
         helps = [found.atoms[f"_helps_{number}"] for number in found.atoms["_asks"]]
@@ -261,6 +294,24 @@ class Rules:
             return Contradiction()
         required = [_ids(problem, each) for each in helps if NOBODY not in each]
         return Restriction(_ids(problem, removed).__contains__, tuple(required))
+
+    def _ask(
+        self, program: LiftedProgram, predicates: Sequence[Signature], problem: Problem, deadline: Deadline
+    ) -> Run | None:
+        """Let clingo derive some predicates; ``None`` where it has no answer or something is wrong."""
+        with deadline.watched("writing facts"):
+            text = program.text + write_facts_read(problem, sorted(reach(problem).units), program.reads)
+        constants = [word for constant in self._constants for word in ("-c", constant)]
+        try:
+            found = run((), text, constants, deadline, "ignore", predicates=predicates, endless=self._endless)
+        except UserError:
+            return None
+        if found.units is None:
+            if not found.exhausted:
+                deadline.check()
+                raise KeyboardInterrupt
+            return None
+        return found
 
 
 def _ids(problem: Problem, numbers: Iterable[int]) -> frozenset[int]:
