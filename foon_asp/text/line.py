@@ -1,7 +1,7 @@
 """One line of FOON text and what it says, through the Lark grammar ``foon.lark``."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from typing import NamedTuple, cast
 
@@ -103,6 +103,8 @@ class LineError(Exception):
 MOTION_FLAGS = {"0", "1"}
 _SLIPPED_FLAGS = {"00", "01"}
 _BATCH = 500  # lines handed to the parser at once: one at fault sends only these back, one by one
+# The terminals that are a whole line each: a line that matches one means the same to the parser, but slower.
+_WHOLE_LINES = ("CLEAN_OBJECT", "CLEAN_PLAIN", "CLEAN_RELATED", "CLEAN_HOLDING", "CLEAN_MOTION")
 
 _TERMINALS = {
     "OBJECT": "an object line (O, tab, label)",
@@ -127,23 +129,37 @@ def parse_line(text: str) -> Line:
 
     Raises :class:`LineError` when the grammar does not accept it.
     """
-    return cast(list[Line], _parse("lines", text + "\n"))[0]
+    return _clean_line(text) or cast(list[Line], _parse("lines", text + "\n"))[0]
 
 
 def parse_lines(texts: Sequence[str]) -> list[Line | LineError]:
     """Read many lines, which is faster than one by one."""
-    found: list[Line | LineError] = []
-    for start in range(0, len(texts), _BATCH):
-        batch = texts[start : start + _BATCH]
+    found: list[Line | LineError | None] = [_clean_line(text) for text in texts]
+    others = [place for place, line in enumerate(found) if line is None]
+    for start in range(0, len(others), _BATCH):
+        batch = others[start : start + _BATCH]
+        lines: list[Line | LineError] = []
         try:
-            found += cast(list[Line], _parser().parse("".join(f"{text}\n" for text in batch), start="lines"))
+            text = "".join(f"{texts[place]}\n" for place in batch)
+            lines += cast(list[Line], _parser().parse(text, start="lines"))
         except UnexpectedInput:
-            for text in batch:
+            for place in batch:
                 try:
-                    found.append(parse_line(text))
+                    lines.append(parse_line(texts[place]))
                 except LineError as error:
-                    found.append(error)
-    return found
+                    lines.append(error)
+        for place, line in zip(batch, lines, strict=True):
+            found[place] = line
+    return cast(list[Line | LineError], found)
+
+
+def _clean_line(text: str) -> Line | None:
+    """Read a line that is a single token of the grammar; ``None`` for any other."""
+    match = _whole_lines()(f"{text}\n")
+    if not match or not match.lastgroup:
+        return None
+    clean: Callable[[list[str]], Line] = getattr(_BUILDER, match.lastgroup.lower())
+    return clean([match[0]])
 
 
 def parse_node(notation: str) -> ObjectNode:
@@ -189,20 +205,27 @@ class _LineBuilder(Transformer[Token, object]):
     def lines(self, lines: list[Line]) -> list[Line]:
         return lines
 
-    def clean_object(self, tokens: list[Token]) -> ObjectLine:
+    def clean_object(self, tokens: list[str]) -> ObjectLine:
         letter, label, *fields = tokens[0][:-1].split("\t")
         return ObjectLine(label, letter[1:], tuple(fields))
 
-    def clean_plain(self, tokens: list[Token]) -> StateLine:
+    def clean_plain(self, tokens: list[str]) -> StateLine:
         letter, state = tokens[0][:-1].split("\t")
         return StateLine(state, letter[1:])
 
-    def clean_related(self, tokens: list[Token]) -> StateLine:
+    def clean_related(self, tokens: list[str]) -> StateLine:
         letter, word, bracket = tokens[0][:-1].split("\t")
         return StateLine(Relation(word, bracket[1:-1]), letter[1:])
 
-    def clean_holding(self, tokens: list[Token]) -> StateLine:
+    def clean_motion(self, tokens: list[str]) -> MotionLine:
+        letter, motion, *fields = tokens[0][:-1].split("\t")
+        return MotionLine(motion, letter[1:], fields=tuple(fields))
+
+    def clean_holding(self, tokens: list[str]) -> StateLine:
         letter, word, bracket = tokens[0][:-1].split("\t")
+        items = bracket[1:-1].split(",")
+        if len(set(items)) == len(items) and all(item and item[0] != " " != item[-1] for item in items):
+            return StateLine(Contents(word, tuple(sorted(items))), letter[1:], tuple(items))
         column = len(letter) + len(word) + 3
         return _bracketed(word, Token("LIST", bracket, column=column), letter[1:], [])
 
@@ -431,9 +454,18 @@ def _items(bracket: Token, remarks: list[Remark]) -> tuple[str, ...]:
     return tuple(items)
 
 
+_BUILDER = _LineBuilder()
+
+
 @cache
 def _parser() -> Lark:
-    return parser(_LineBuilder())
+    return parser(_BUILDER)
+
+
+@cache
+def _whole_lines() -> Callable[[str], re.Match[str] | None]:
+    terminals = (f"(?P<{name}>{_parser().get_terminal(name).pattern.to_regexp()})" for name in _WHOLE_LINES)
+    return re.compile("|".join(terminals)).fullmatch
 
 
 def _parse(start: str, text: str) -> object:

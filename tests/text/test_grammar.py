@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from lark import Lark
 
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text import grammar, line
+from tests.text.foon_strategies import dirty_lines
 from tests.text.grammar_tables import tables
 
 # what is written as it should be, what is mended, and what is refused, of every kind
@@ -70,3 +73,19 @@ def test_tables_read_what_the_grammar_reads(tmp_path: Path, monkeypatch: pytest.
     line._parser.cache_clear()
     assert by_tables == by_grammar
     assert len(by_tables) > len(LINES) + len(NODES) + 100
+
+
+@pytest.fixture(scope="module")
+def token_by_token() -> Lark:
+    """The grammar without the tokens that are a whole line each."""
+    text = grammar.GRAMMAR.read_text(encoding="utf-8")
+    clean, bar, rest = text.partition("lines: (")[2].partition("| object")
+    assert "clean_motion" in clean
+    text = text.replace(clean + bar + rest, "object" + rest)
+    return Lark(text, start="lines", parser="lalr", transformer=line._LineBuilder())
+
+
+@given(dirty_lines())
+def test_a_clean_line_means_what_its_tokens_do(token_by_token: Lark, text: str) -> None:
+    clean = line._clean_line(text)
+    assert clean is None or [clean] == token_by_token.parse(text + "\n")
