@@ -96,7 +96,7 @@ if TYPE_CHECKING:
     from foon_asp.questions.view import view as view
     from foon_asp.questions.why_not import Explanation as Explanation
     from foon_asp.questions.why_not import why_not as why_not
-    from foon_asp.text.line import parse_node as parse_node
+    from foon_asp.text.line_parser import parse_node as parse_node
     from foon_asp.text.reader import FoonReader as FoonReader
     from foon_asp.text.writer import write_units as write_units
 
@@ -118,7 +118,7 @@ _ROOMS = {
     "proof.replay": ("Copy",),
     "proof.simulation": ("Simulation", "Verdict"),
     "proof.verify": ("RefusedError",),
-    "text.line": ("parse_node",),
+    "text.line_parser": ("parse_node",),
     "text.reader": ("FoonReader",),
     "text.writer": ("write_units",),
 }

@@ -12,11 +12,12 @@ _UNSAFE = (
     "\ud800-\udfff\U000e0000-\U000e007f"
 )
 UNSAFE = re.compile(f"[{_UNSAFE}]")  # within a text of several lines
-_IN_A_LINE = re.compile(f"[{_UNSAFE}\n\t]")
+# Patterns as text are compiled when they are needed.
+_IN_A_LINE = f"[{_UNSAFE}\n\t]"
 # What moves over a line that keeps changing goes back to its beginning first.
-_UNSAFE_BUT_ESCAPE = re.compile(f"[{_UNSAFE}]|\r(?!\x1b)".replace("\x0b-\x1f", "\x0b\x0c\x0e-\x1a\x1c-\x1f"))
+_UNSAFE_BUT_ESCAPE = f"[{_UNSAFE}]|\r(?!\x1b)".replace("\x0b-\x1f", "\x0b\x0c\x0e-\x1a\x1c-\x1f")
 # Commands of GitHub's and Azure's logs: ``::error::`` at the beginning of a line, ``##[error]`` anywhere.
-_COMMAND = re.compile(r"^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))", re.MULTILINE)
+_COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 
 # Names with line ends in them, which a text of several lines has as they are.
@@ -40,7 +41,7 @@ def forget_line_ends() -> None:
 
 def escaped(name: str) -> str:
     """Give a name as it is shown within a line, whose end and tabs are escaped too."""
-    return _IN_A_LINE.sub(_escape, name)
+    return re.sub(_IN_A_LINE, _escape, name)
 
 
 def escaped_lines(text: str, styled: bool = False) -> str:
@@ -48,8 +49,8 @@ def escaped_lines(text: str, styled: bool = False) -> str:
     if _names and "\n" in text and text[0] not in "{[":  # in JSON no name has a line end as it is
         for name in sorted(_names, key=len, reverse=True):
             text = text.replace(name, escaped(name))
-    shown = (_UNSAFE_BUT_ESCAPE if styled else UNSAFE).sub(_escape, text)
-    return _COMMAND.sub(_without_command, shown) if "::" in shown or "##" in shown else shown
+    shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape, text) if styled else UNSAFE.sub(_escape, text)
+    return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown
 
 
 def encodable(text: str, encoding: str = "utf-8") -> str:

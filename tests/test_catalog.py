@@ -54,15 +54,16 @@ encoding: own_encodings
 grounding: stated
 network: counted functional_unit level network node_pattern object_node source spelling
     starting task_tree unit_prices
-problem: containers costs items number objective order problem relevance restriction root
+problem: containers costs items number objective order problem relevance restriction
 proof: simulation
 questions: answer arguments caller contract docstring index options posing result solve
 reduce: derivation dominance exact_costs forced graph narrow near reduction reductions
     upper_bound wide
 report: answer
 rules: constraint
-text: assumed_goals data_folder diagnostics exact_price goal_name grammar item_list json_fault json_list
-    json_node json_object json_value label_list line listed_unit motion_times object_list
+text: assumed_goals clean_line data_folder diagnostics exact_price goal_name grammar item_list
+    json_fault json_list json_node json_object json_value label_list line line_parser listed_unit
+    motion_times object_list
     plain_file provenance rate_table reader stated_prices table_rows unit_price_list writer
 """
 ALONE = {"deadline", "errors", "escapes", "resources", "warning"}
@@ -200,5 +201,5 @@ def test_solve_imports_what_a_plain_answer_needs() -> None:
         may |= {room, *(f"{room}.{name}" for name in names.split())}
     assert ours <= may
     others = {name.partition(".")[0] for name in loaded} - {*sys.stdlib_module_names}
-    assert others <= {"foon_asp", "click", "lark", "__main__", "_distutils_hack"}  # the last is of setuptools
+    assert others <= {"foon_asp", "click", "__main__", "_distutils_hack"}  # the last is of setuptools
     assert not loaded & {"asyncio", "difflib", "sqlite3", "subprocess", "importlib.metadata"}

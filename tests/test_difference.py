@@ -10,7 +10,7 @@ from foon_asp.network import FunctionalUnit, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule
 from foon_asp.questions.diff import Side, diff, side
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text.line import parse_node
+from foon_asp.text.line_parser import parse_node
 from tests.conftest import Cli
 
 

@@ -13,7 +13,8 @@ from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import find_goal
 from foon_asp.text.label_list import read_labels
-from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_node
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.rate_table import read_rates

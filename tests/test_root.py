@@ -5,8 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from foon_asp.problem import Root
-from foon_asp.problem.root import whole_root
+from foon_asp.problem.root import Root, whole_root
 
 
 def test_the_whole_part_of_a_root() -> None:

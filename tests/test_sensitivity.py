@@ -13,7 +13,8 @@ import foon_asp
 from foon_asp.asp import Outcome, Status, solve
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Objective, Problem, Root
+from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.problem.root import Root
 from foon_asp.questions.result import Ending
 from foon_asp.questions.sensitivity import Sensitivity, sensitivity
 from foon_asp.questions.sensitivity.interval import End, Interval

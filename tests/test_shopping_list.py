@@ -19,7 +19,7 @@ from foon_asp.problem import ContainerRule, Problem
 from foon_asp.problem.shop import Shop
 from foon_asp.questions.shopping_list import Offer
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.line import parse_node
+from foon_asp.text.line_parser import parse_node
 from foon_asp.text.price_list import read_prices
 from tests import oracle
 from tests.conftest import CORPUS, Cli

@@ -10,7 +10,7 @@ from foon_asp.network import NetworkBuilder, NodePattern, ObjectNode, Source
 from foon_asp.network.near_nodes import slip_between
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.problem.dead_ends import Cause
-from foon_asp.text.line import parse_node
+from foon_asp.text.line_parser import parse_node
 from tests import oracle
 from tests.conftest import ROOT, Cli
 from tests.random_problems import random_problem

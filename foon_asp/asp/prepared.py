@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # often there is nothing left to ask clingo
 _BY_PERSON = ("_by_person", 1)  # what rules look at that are about who does a unit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Prepared:
     """A question, prepared for the search.
 

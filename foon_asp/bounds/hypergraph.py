@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Hypergraph:
     """Actions ``0 .. len(needs) - 1`` over objects ``0 .. size - 1``.
 

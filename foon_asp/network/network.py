@@ -253,10 +253,10 @@ class Network:
         """
         ids: dict[tuple[str, frozenset[str], tuple[str, ...], str | None], list[int]] = {}
         for object_id, node in enumerate(self.objects):
-            places = {relation.object for relation in node.relations} or (None,)
-            for place in places:
-                key = (node.label, node.states, node.ingredients, place)
-                ids.setdefault(key, []).append(object_id)
+            label, states, relations, contents = node
+            ingredients = node.ingredients if contents else ()
+            for place in {relation.object for relation in relations} if relations else (None,):
+                ids.setdefault((label, states, ingredients, place), []).append(object_id)
         return ids
 
 

@@ -4,18 +4,18 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable
 
-_DOUBLED = re.compile(r"([^\W\d_])\1+")
-_BETWEEN = re.compile(r"[\s\-_'’.]+")
+_DOUBLED = r"([^\W\d_])\1+"
+_BETWEEN = r"[\s\-_'’.]+"
 
 
 def joined(name: str) -> str:
     """Give a name without capitals, blanks, hyphens and the like."""
-    return _BETWEEN.sub("", name.casefold()) or name
+    return re.sub(_BETWEEN, "", name.casefold()) or name
 
 
 def without_doubles(name: str) -> str:
     """Give a name :func:`joined`, with letters that stand doubled once."""
-    return _DOUBLED.sub(r"\1", joined(name))
+    return re.sub(_DOUBLED, r"\1", joined(name))
 
 
 def one_letter_apart(word: str, other: str) -> bool:

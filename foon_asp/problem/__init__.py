@@ -43,4 +43,3 @@ from foon_asp.problem.relevance import reach as reach
 from foon_asp.problem.relevance import relevant as relevant
 from foon_asp.problem.restriction import Left as Left
 from foon_asp.problem.restriction import Restriction as Restriction
-from foon_asp.problem.root import Root as Root

@@ -6,7 +6,7 @@ from functools import cache
 from typing import overload
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Restriction:
     """Units that no tree may have, and sets of units of each of which a tree has to have one.
 

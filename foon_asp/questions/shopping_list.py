@@ -29,7 +29,8 @@ from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import answer_json, costs_text, goal_lines, headline, steps
-from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_node
 from foon_asp.text.price_list import Price, read_prices
 
 

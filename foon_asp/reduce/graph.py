@@ -7,7 +7,7 @@ from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.problem import Left, Objective, Problem, backwards
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Graph(Hypergraph):
     """A hypergraph with goals; nothing is copied where the network has it already.
 

@@ -14,7 +14,7 @@ from foon_asp.reduce.near import near
 _ROUNDS = 6  # of cuts and what they leave
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Wide:
     """A question with cuts that hold for every tree, before anything was left out.
 

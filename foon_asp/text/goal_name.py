@@ -6,7 +6,8 @@ from typing import NamedTuple, Protocol
 
 from foon_asp.errors import UserError
 from foon_asp.network import NodePattern, ObjectNode, node_at_level
-from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_node
 from foon_asp.text.object_list import ListedObject
 
 _SHOWN = 12

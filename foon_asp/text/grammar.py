@@ -5,11 +5,13 @@ To make a parser of a grammar takes longer than to read some thousand lines with
 
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import lark
+if TYPE_CHECKING:  # which often is not needed
+    import lark
 
 GRAMMAR = Path(__file__).with_name("foon.lark")
 TABLES = Path(__file__).with_name("foon.tables.json")  # `make tables`
@@ -18,16 +20,40 @@ OPTIONS: dict[str, Any] = {"start": ["lines", "node"], "parser": "lalr", "lexer"
 
 def made_of() -> list[str]:
     """Say what tables are made of: which Lark, and which grammar."""
-    return [lark.__version__, hashlib.sha256(GRAMMAR.read_bytes().replace(b"\r\n", b"\n")).hexdigest()]
+    import lark  # noqa: PLC0415
+
+    return [lark.__version__, _digest()]
 
 
-def parser(transformer: lark.Transformer[lark.Token, object]) -> lark.Lark:
+def parser(transformer: "lark.Transformer[lark.Token, object] | None" = None) -> "lark.Lark":
     """Give a parser of the grammar that hands what it reads to a transformer."""
-    tables = json.loads(TABLES.read_text(encoding="ascii"), object_hook=_with_numbers)
+    import lark  # noqa: PLC0415
+
+    tables = _tables()
     if tables["made_of"] == made_of():
         load: Callable[..., lark.Lark] = lark.Lark._load_from_dict
         return load(tables["data"], tables["memo"], transformer=transformer)
     return lark.Lark(GRAMMAR.read_text(encoding="utf-8"), transformer=transformer, **OPTIONS)
+
+
+def patterns(names: Iterable[str]) -> dict[str, str]:
+    """Give the regular expressions of tokens, by name: from the tables, if they are those of the grammar."""
+    tables = _tables()
+    if tables["made_of"][1] != _digest():
+        made = parser()
+        return {name: made.get_terminal(name).pattern.to_regexp() for name in names}
+    values = {each["name"]: each["pattern"]["value"] for each in tables["memo"].values() if "pattern" in each}
+    return {name: values[name] for name in names}
+
+
+def _digest() -> str:
+    return hashlib.sha256(GRAMMAR.read_bytes().replace(b"\r\n", b"\n")).hexdigest()
+
+
+@cache
+def _tables() -> dict[Any, Any]:
+    found: dict[Any, Any] = json.loads(TABLES.read_text(encoding="ascii"), object_hook=_with_numbers)
+    return found
 
 
 def _with_numbers(table: dict[str, Any]) -> dict[str | int, Any]:

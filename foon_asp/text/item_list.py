@@ -4,7 +4,8 @@ import re
 from pathlib import Path
 
 from foon_asp.network import ObjectNode, Source
-from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_node
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.table_rows import read_rows

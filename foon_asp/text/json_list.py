@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -136,11 +135,11 @@ class JsonList:
         return match.end() if match else position
 
 
-@dataclass(frozen=True)
 class JsonNumber:
     """A number as it is written: none is calculated with, and ids and rates are kept to the letter."""
 
-    text: str
+    def __init__(self, text: str) -> None:
+        self.text = text
 
 
 class _FaultError(Exception):

@@ -8,7 +8,8 @@ from foon_asp.escapes import note_line_end
 from foon_asp.network import Contents, Relation
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_value import json_line
-from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number, read_state
+from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number
+from foon_asp.text.line_parser import read_state
 from foon_asp.text.listed_unit import ObjectBlock
 
 # The names that say the same, and which of them are read at all.
@@ -52,11 +53,11 @@ def read_object(value: object) -> JsonObject:
         states = _with_contents(states, ingredients)
     container = optional_name(value.get("container"), "container")
     flag, category = number(value, "object_in_motion"), number(value, "recipe_category")
-    fields = tuple(field for field in (flag, category) if field)
+    fields = tuple(filter(None, (flag, category)))
     line = ObjectLine(label, number(value, "object_id"), fields)
-    remarks = (remark.message for state in states for remark in state.remarks)
-    plain = tuple(state._replace(remarks=()) if state.remarks else state for state in states)
-    return JsonObject(line, plain, container, (*remarks, *_left_out(value, flag, category, listed)))
+    remarks = [remark.message for state in states for remark in state.remarks]
+    plain = [state._replace(remarks=()) for state in states] if remarks else states
+    return JsonObject(line, tuple(plain), container, (*remarks, *_left_out(value, flag, category, listed)))
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, str | None, tuple[str, ...]]]:

@@ -7,6 +7,7 @@ from typing import Any
 Json = dict[str, Any]
 """An object as plain values, in the order in which JSON has them."""
 
+_encode = json.JSONEncoder(ensure_ascii=False).encode
 _WIDTH = 95  # of a line of a text, without the key before it
 _VERSIONS = {"verify": 2}  # 1 of all else; what changes the meaning of a key, or takes one away, is another
 
@@ -22,18 +23,24 @@ def json_text(value: object) -> str:
 
 
 def _laid_out(value: object, newline: str) -> str:
-    line, inner = json_line(value), f"{newline}  "
-    if len(newline) + len(line) <= _WIDTH or not isinstance(value, dict | list | tuple):
-        return line
+    inner = f"{newline}  "
     if isinstance(value, dict):
-        pairs = (f"{json_line(str(key))}: {_laid_out(part, inner)}" for key, part in value.items())
-        return f"{{{inner}{f',{inner}'.join(pairs)}{newline}}}"
-    return f"[{inner}{f',{inner}'.join(_laid_out(part, inner) for part in value)}{newline}]"
+        opening, closing = "{}"
+        parts = [f"{json_line(str(key))}: {_laid_out(part, inner)}" for key, part in value.items()]
+    elif isinstance(value, list | tuple):
+        opening, closing = "[]"
+        parts = [_laid_out(part, inner) for part in value]
+    else:
+        return json_line(value)
+    line = f"{opening}{', '.join(parts)}{closing}"
+    if len(newline) + len(line) <= _WIDTH and "\n" not in line:
+        return line
+    return f"{opening}{inner}{f',{inner}'.join(parts)}{newline}{closing}"
 
 
 def json_line(value: object, default: Callable[[Any], object] | None = None) -> str:
     """Write plain values as JSON on one line; ``default`` makes plain what is not."""
-    line = json.dumps(value, ensure_ascii=False, default=default)
+    line = _encode(value) if default is None else json.dumps(value, ensure_ascii=False, default=default)
     try:
         line.encode()
     except UnicodeEncodeError:  # half a character, as in the name of a file that is no UTF-8

@@ -1,7 +1,7 @@
 """Object blocks and functional units as they stand in a file, with all that is no part of their identity."""
 
 from collections.abc import Iterable
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text.line import Line, MotionLine, ObjectLine, StateLine
@@ -57,12 +57,11 @@ def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> Obje
     relations: list[Relation] = []
     contents: list[Contents] = []
     for attribute in attributes:
-        kind = type(attribute)
-        if kind is Relation:
-            relations.append(cast(Relation, attribute))
-        elif kind is Contents:
-            contents.append(cast(Contents, attribute))
+        if isinstance(attribute, str):
+            states.append(attribute)
+        elif isinstance(attribute, Contents):
+            contents.append(attribute)
         else:
-            states.append(cast(str, attribute))
+            relations.append(attribute)
     contents.sort()
     return ObjectNode(label, frozenset(states), frozenset(relations), tuple(contents))

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import ObjectNode, Source
-from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_node
 from foon_asp.text.table_rows import read_rows
 
 _DECIMAL = re.compile(r"\d{1,9}(\.\d{1,6})?", re.ASCII)

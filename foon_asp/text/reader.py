@@ -1,21 +1,13 @@
 """Reading FOON files into a network: FOON text of every dialect, and JSON."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, cast
 
 from foon_asp.network import Contents, FunctionalUnit, Network, NetworkBuilder, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.line import (
-    Line,
-    LineError,
-    MotionLine,
-    ObjectLine,
-    StateLine,
-    parse_line,
-    parse_lines,
-)
+from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
+from foon_asp.text.line_parser import parse_line, parse_lines
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, node_of
 from foon_asp.text.plain_file import is_json, read_plain_text
 from foon_asp.text.provenance import is_video, read_copy, read_video
@@ -485,7 +477,6 @@ class _FileReading:
         reader.diagnostics.append(Diagnostic(severity, code, message, place, self.lines[index]))
 
 
-@dataclass
 class _Piece:
     """The lines between two separators, while they are read one by one; places are indices of lines.
 
@@ -494,17 +485,15 @@ class _Piece:
     the lines can be why a motion or an object is missing. ``left_out`` is the count of before.
     """
 
-    end: int
-    closed: bool
-    left_out: int
-    first: int = -1
-    motions: list[tuple[int, MotionLine]] = field(default_factory=list)
-    inputs: list[ObjectBlock] = field(default_factory=list)
-    outputs: list[ObjectBlock] = field(default_factory=list)
-    copies: list[Source] = field(default_factory=list)
-    states: list[StateLine] | None = None
-    lost: bool = False
-    blamed: bool = False
+    def __init__(self, end: int, closed: bool, left_out: int) -> None:
+        self.end, self.closed, self.left_out = end, closed, left_out
+        self.first = -1
+        self.motions: list[tuple[int, MotionLine]] = []
+        self.inputs: list[ObjectBlock] = []
+        self.outputs: list[ObjectBlock] = []
+        self.copies: list[Source] = []
+        self.states: list[StateLine] | None = None
+        self.lost = self.blamed = False
 
 
 def _settled(blocks: list[ObjectBlock]) -> tuple[ObjectBlock, ...]:

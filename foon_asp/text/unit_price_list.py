@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices
 from foon_asp.text.exact_price import decimal_text, read_price
-from foon_asp.text.line import LineError, parse_node
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_node
 from foon_asp.text.table_rows import read_rows
 
 _ARROWS = ("→", "->")

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from foon_asp.errors import UserError
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import InputError, Severity
-from foon_asp.text.line import MotionLine, ObjectLine, StateLine, parse_line
+from foon_asp.text.line import MotionLine, ObjectLine, StateLine
+from foon_asp.text.line_parser import parse_line
 from foon_asp.text.listed_unit import ListedUnit
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.plain_file import read_plain_text

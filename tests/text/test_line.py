@@ -5,17 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foon_asp.network import Contents, ObjectNode, Relation
-from foon_asp.text.line import (
-    Line,
-    LineError,
-    MotionLine,
-    ObjectLine,
-    StateLine,
-    parse_line,
-    parse_lines,
-    parse_node,
-    read_state,
-)
+from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
+from foon_asp.text.line_parser import parse_line, parse_lines, parse_node, read_state
 from foon_asp.text.writer import write_line
 from tests.text.foon_strategies import dirty_lines, lines, names, nodes, steady
 

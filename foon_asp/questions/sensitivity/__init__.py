@@ -12,7 +12,8 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.errors import UserError
 from foon_asp.network import counted
-from foon_asp.problem import Objective, Problem, Root, success_rate
+from foon_asp.problem import Objective, Problem, success_rate
+from foon_asp.problem.root import Root
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, asked_with, settings
 from foon_asp.questions.caller import caller

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.problem import Costs, Objective, Problem, Root, levels, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
+from foon_asp.problem.root import Root
 from foon_asp.questions.sensitivity.interval import End, Interval
 
 _SUCCESS = (Objective.SUCCESS,)

@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.problem import Root
+from foon_asp.problem.root import Root
 
 _DIGITS = 4  # of an end in words, at least
 

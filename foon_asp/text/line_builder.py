@@ -1,0 +1,283 @@
+"""Lines of FOON text token by token, through the Lark grammar ``foon.lark``."""
+
+import re
+from functools import cache
+
+from lark import Lark, Token, Transformer
+from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken
+
+from foon_asp.network import Contents, ObjectNode, Relation
+from foon_asp.text.clean_line import CLEAN, items, no_tab
+from foon_asp.text.grammar import parser
+from foon_asp.text.line import (
+    MOTION_FLAGS,
+    SLIPPED_FLAGS,
+    Line,
+    LineError,
+    MotionLine,
+    ObjectLine,
+    Remark,
+    StateLine,
+    is_number,
+)
+from foon_asp.text.motion_times import MotionFields, is_time, mended_time
+
+_TERMINALS = {
+    "OBJECT": "an object line (O, tab, label)",
+    "STATE": "a state line (S, tab, state)",
+    "MOTION": "a motion line (M, tab, motion)",
+    "SEPARATOR": "a separator (//)",
+    "TEXT": "a name",
+    "NAME": "a name",
+    "FIELD": "a tab and a flag or time",
+    "RELATED": "[object]",
+    "LIST": "{ingredient,ingredient}",
+    "PLACE": "[object]",
+    "ITEMS": "{ingredient,ingredient}",
+    "SEMICOLON": "a semicolon",
+    "_NEWLINE": "the end of the line",
+    "$END": "the end of the line",
+}
+
+
+class _LineBuilder(Transformer[Token, object]):
+    """Turns parsed lines into values; columns in remarks come from the tokens."""
+
+    def lines(self, lines: list[Line]) -> list[Line]:
+        return lines
+
+    def clean(self, tokens: list[Token]) -> Line:
+        return CLEAN[tokens[0].type](tokens[0][:-1])
+
+    def object(self, tokens: list[Token]) -> ObjectLine:
+        remarks: list[Remark] = []
+        id_ = _id(tokens[0], remarks)
+        label = _name(tokens[1], remarks)
+        fields = _fields(tokens[2:], remarks) if len(tokens) > 2 else ()
+        if len(fields) > 1 or (fields and fields[0] not in MOTION_FLAGS):
+            fields = _flag_and_tag(tokens, fields, remarks)
+        return ObjectLine(label, id_, fields, tuple(remarks))
+
+    def motion(self, tokens: list[Token]) -> MotionLine:
+        remarks: list[Remark] = []
+        id_ = _id(tokens[0], remarks)
+        motion = _name(tokens[1], remarks)
+        composite = motion[-1] == "*" and motion.strip("* ") != ""
+        if composite:
+            written, motion = motion, motion.rstrip("* ")
+            if written != motion + "*":
+                remarks.append(
+                    _remark(tokens[1], "outer-space", f"{written!r} read as '{motion}*'", len(motion))
+                )
+        fields = _fields(tokens[2:], remarks)
+        times = MotionFields.of(fields).times
+        mended = tuple(map(mended_time, times))
+        column = (tokens[2].column or 1) + 1 if times else 1
+        for raw, time, token in zip(times, mended, tokens[2:], strict=False):
+            if raw != time:
+                remarks.append(Remark(column, "time", f"{raw!r} read as the time {time!r}"))
+            elif not is_time(raw):
+                remarks.append(Remark(column, "time", f"{raw!r} is not a time (m:ss or Assumed)"))
+            column += len(token)
+        return MotionLine(motion, id_, composite, mended + fields[len(times) :], tuple(remarks))
+
+    def plain(self, tokens: list[Token]) -> StateLine:
+        remarks: list[Remark] = []
+        id_ = _id(tokens[0], remarks)
+        _blank_end(tokens, remarks)
+        word = _name(tokens[1], remarks)
+        if len(tokens) == 2 or tokens[2].type != "BARE":
+            return StateLine(word, id_, (), tuple(remarks))
+        token = tokens[2]
+        column = (token.column or 1) + len(token) - len(token.lstrip("\t "))
+        name = token.strip("\t ")
+        bracket, what = ("{%s}", "a list") if "," in name or word == "contains" else ("[%s]", "an object")
+        shown = bracket % name.rstrip("]}")
+        remarks.append(Remark(column, "bracket", f"{name!r} is not in brackets; read as {what}, {shown}"))
+        # the first item stands where the remark says, behind a bracket that is not there
+        return _bracketed(word, Token("BARE", shown, column=column - 1), id_, remarks)
+
+    def related(self, tokens: list[Token]) -> StateLine:
+        remarks: list[Remark] = []
+        id_ = _id(tokens[0], remarks)
+        _blank_end(tokens, remarks)
+        return _bracketed(*_tabbed(tokens, remarks), id_, remarks)
+
+    holding = related
+
+    def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
+        label, *notes = (part for part in parts if not isinstance(part, Token) or part.type == "NAME")
+        return ObjectNode(
+            _unquoted(label),
+            frozenset(note for note in notes if isinstance(note, str)),
+            frozenset(note for note in notes if isinstance(note, Relation)),
+            tuple(sorted(note for note in notes if isinstance(note, Contents))),
+        )
+
+    def note_plain(self, tokens: list[Token]) -> str:
+        return _unquoted(tokens[0])
+
+    def note_related(self, tokens: list[Token]) -> str | Relation | Contents:
+        word, bracket = tokens
+        return _bracketed(_unquoted(word), Token(bracket.type, bracket.strip("\t ")), "", []).attribute
+
+    note_holding = note_related
+
+
+def _unquoted(name: object) -> str:
+    """Give a name as it is from how it is written in the notation."""
+    return re.sub(r"\\([;\\])", r"\1", str(name).strip(" "))
+
+
+def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
+    return Remark((token.column or 1) + offset, code, message)
+
+
+def _id(letter: Token, remarks: list[Remark]) -> str:
+    """Give the id behind the letter; one tab has to follow."""
+    if letter[-1] == "\t" and letter[-2] not in "\t ":
+        return letter[1:-1]
+    id_ = letter[1:].rstrip("\t ")
+    column = (letter.column or 1) + 1 + len(id_)
+    if "\t" not in letter:
+        remarks.append(
+            Remark(column, "space-for-tab", f"no tab after {letter[0]}{id_}; read as if there were one")
+        )
+    else:
+        remarks.append(Remark(column + 1, "outer-space", f"blanks after {letter[0]}{id_} left out"))
+    return id_
+
+
+def _fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
+    """Give the fields behind a name without blanks around them; empty ones are left out."""
+    fields: list[str] = []
+    for token in tokens:
+        field = token[1:].strip(" ")
+        if not field:
+            remarks.append(_remark(token, "empty-field", "nothing after the tab; left out"))
+        else:
+            if field != token[1:]:
+                remarks.append(_remark(token, "outer-space", f"spaces around {field!r} left out", 1))
+            fields.append(field)
+    return tuple(fields)
+
+
+def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Remark]) -> tuple[str, ...]:
+    """Check what follows a label: a motion flag, then for a goal its category or ``!``."""
+    places = [token for token in tokens[2:] if token.strip("\t ")]
+    flag = fields[0]
+    if flag in SLIPPED_FLAGS:
+        remarks.append(_remark(places[0], "motion-flag", f"motion flag {flag!r} read as {flag[1]!r}", 1))
+        fields = (flag[1], *fields[1:])
+    elif flag not in MOTION_FLAGS and flag != "!":
+        remarks.append(_remark(places[0], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
+    for field, place in zip(fields[1:], places[1:], strict=True):
+        if not is_number(field) and field != "!":
+            message = f"{field!r} is neither a category nor the goal mark !"
+            remarks.append(_remark(place, "unknown-field", message, 1))
+    return fields
+
+
+def _blank_end(tokens: list[Token], remarks: list[Remark]) -> None:
+    """Drop the blanks at the end of a state line."""
+    if tokens[-1].type == "BLANK":
+        remarks.append(_remark(tokens.pop(), "outer-space", "blanks at the end of the line left out"))
+
+
+def _tabbed(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
+    """Give the word and the bracket without the tab that should stand between them."""
+    _, word, bracket = tokens
+    column = bracket.column or 1
+    if bracket[0] == "\t" and bracket[1] in "[{":
+        return _name(word, remarks), Token(bracket.type, bracket[1:], column=column + 1)
+    bare = bracket.lstrip("\t ")
+    column += len(bracket) - len(bare)
+    if "\t" in bracket:
+        remarks.append(Remark(column, "outer-space", f"blanks before {bare} left out"))
+        return _name(word, remarks), Token(bracket.type, bare, column=column)
+    gap = column - 1 if word[-1] == " " or bare != bracket else column
+    remarks.append(no_tab(bare, gap))
+    return word.strip(" "), Token(bracket.type, bare, column=column)
+
+
+def _name(token: Token, remarks: list[Remark]) -> str:
+    name = token.rstrip(" ")
+    if name != token:
+        remarks.append(_remark(token, "outer-space", f"spaces after {name!r} left out", len(name)))
+        return name
+    return str(token)
+
+
+def _bracketed(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
+    """``word [object]`` or ``word {list}``; a list, or the word ``contains``, in ``[]`` is still a list.
+
+    Empty ``[]`` leave the word alone, which then is a state, as in ``on``.
+    """
+    closing = "]" if bracket[0] == "[" else "}"
+    if bracket[-1] != closing or len(bracket) == 1:
+        whole = bracket.rstrip("]}") + closing
+        what = "closed by the wrong bracket" if bracket[-1] in "]}" else "not closed"
+        remarks.append(_remark(bracket, "bracket", f"{bracket} is {what}; read as {whole}"))
+        bracket = Token(bracket.type, whole, column=bracket.column)
+    if closing == "]":
+        if "," not in bracket and name != "contains":
+            return _related(name, bracket, id_, remarks)
+        listed = items(bracket[1:-1], (bracket.column or 1) + 1, remarks)
+        braces = "{" + ",".join(listed) + "}"
+        remarks.append(_remark(bracket, "contents-bracket", f"{bracket} read as contents {braces}"))
+    else:
+        listed = items(bracket[1:-1], (bracket.column or 1) + 1, remarks)
+    return StateLine(Contents(name, tuple(sorted(listed))), id_, listed, tuple(remarks))
+
+
+def _related(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
+    related = bracket[1:-1].strip(" ")
+    if not related:
+        remarks.append(
+            _remark(bracket, "empty-relation", f"nothing in {bracket}; read as the state {name!r}")
+        )
+        return StateLine(name, id_, (), tuple(remarks))
+    if related != bracket[1:-1]:
+        remarks.append(_remark(bracket, "outer-space", f"spaces around {related!r} left out"))
+    return StateLine(Relation(name, related), id_, (), tuple(remarks))
+
+
+@cache
+def _parser() -> Lark:
+    return parser(_LineBuilder())
+
+
+def build(start: str, text: str) -> object:
+    """Parse lines, or a node in one-line notation, and give what they say.
+
+    Raises :class:`LineError` for a text that the grammar does not accept, taken as one line.
+    """
+    try:
+        return _parser().parse(text, start=start)
+    except UnexpectedInput as error:
+        raise _line_error(error, text, in_file=start == "lines") from None
+
+
+def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
+    column = len(text) + 1
+    names: set[str] = set()
+    if isinstance(error, UnexpectedCharacters):
+        column, names = error.column, set(error.allowed or ())
+    elif isinstance(error, UnexpectedToken):
+        names = set(error.accepts or error.expected)
+        if error.token.type != "$END":
+            column = error.token.column or column
+    elif isinstance(error, UnexpectedEOF):
+        names = set(error.expected)
+    if in_file:
+        names.discard("$END")  # a line ends by its newline
+    rest = text[column - 1 :]
+    if in_file:
+        rest = rest.removesuffix("\n")
+    found = "the end of the line"
+    if rest:
+        found = repr(rest if len(rest) <= 24 else rest[:24] + "...")
+    if in_file and {"OBJECT", "STATE", "MOTION"} <= names:
+        names.add("SEPARATOR")
+    expected = tuple(dict.fromkeys(phrase for name, phrase in _TERMINALS.items() if name in names))
+    return LineError(column, found, expected)
