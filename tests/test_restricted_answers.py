@@ -10,8 +10,11 @@ import pytest
 
 from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
+from foon_asp.asp.solver import _Solver
+from foon_asp.grounding.run import Run
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Objective, Problem
+from foon_asp.reduce import Wide
 from foon_asp.rules.constraint import given_constraint
 from tests.test_reductions import LISTS, Measured, posed
 
@@ -92,6 +95,26 @@ def test_the_best_tree_is_the_best_by_brute_force(mix: list[str], seeds: range, 
         assert key == expected, (seed, names, file.read_text())
         cuts += outcome.proof is Proof.CUTS
     assert cuts > len(seeds) / 6
+
+
+@pytest.mark.parametrize("mix", [["shrinking"], ["deleting", "requiring", "shrinking"]], ids="+".join)
+@pytest.mark.parametrize("seeds", [range(20), pytest.param(range(20, 600), marks=pytest.mark.slow)])
+def test_few_units_are_known_at_first(
+    mix: list[str], seeds: range, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settled = 0
+    found = _Solver._with_loose_ends
+
+    def noted(solver: _Solver, wide: Wide, tree: frozenset[int]) -> Run | None:
+        nonlocal settled
+        ended = found(solver, wide, tree)
+        settled += ended is not None
+        return ended
+
+    monkeypatch.setattr(_Solver, "_with_loose_ends", noted)
+    monkeypatch.setattr("foon_asp.asp.solver._NEAR", 0)
+    test_the_best_tree_is_the_best_by_brute_force(mix, seeds, tmp_path)
+    assert settled > 0
 
 
 @pytest.mark.parametrize("mix", MIXES, ids="+".join)

@@ -2,7 +2,7 @@
 
 import itertools
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.settings import Settings
+from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.reduce import ExactCosts, Listener, Reduced, Reduction, Wide
@@ -22,6 +23,7 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.grounding.run import Run
 
 _NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
+_LOOSE = 3  # times that trees with loose ends are looked for, with ever fewer of these
 _MORE = 4  # times as many, where there is none
 
 Units = frozenset[int]
@@ -172,39 +174,84 @@ class _Solver:
     def _under_rest(self, reduced: Reduced, wide: Wide, tree: Units) -> Outcome:
         """Find the best tree that keeps to rules that the reductions did not know of.
 
-        If the best tree without them keeps to them, it is the one. Else a tree that does is looked for near
-        the goals. One that is better than the tree in hand has only units that trees up to its cost can have.
+        If the best tree without them keeps to them, it is the one. Else one is looked for that has units
+        without what they need, and then one near the goals.
         """
-        among, ended = Units(), None
         if self.first.keeps(tree):
             self.heard.tree(tree)
-            if reduced.settled:
-                return self._optimal(tree)
-        else:
-            self.first = replace(self.first, reduced=reduced._replace(settled=False))
-            known, most = wide.everything(), _NEAR
-            while ended is None or (ended.units is None and ended.exhausted and among < known):
-                among = known if most >= len(known) else wide.nearest(most) | tree
-                most *= _MORE
-                self._look_at(among)
-                ended = self._run(self.levels)
-            if ended.units is None:
-                return self._outcome(Status.INFEASIBLE if ended.exhausted else Status.UNKNOWN, None, {})
-            tree = self._in_hand(ended.units)
-            if not ended.exhausted:
-                return self._limited(tree, ())
+            return self._optimal(tree) if reduced.settled else self._up_to(wide, tree, None)
+        self.first = replace(self.first, reduced=reduced._replace(settled=False))
+        ended = None if wide.spare else self._with_loose_ends(wide, tree)
+        is_best = ended is not None and self._scaled().rounded is None
+        if ended is None:
+            ended = self._near(wide, tree)
+        if ended.units is None:
+            return self._outcome(Status.INFEASIBLE if ended.exhausted else Status.UNKNOWN, None, {})
+        self.heard.tree(ended.units)
+        if is_best:
+            return self._ended(ended, ended.units)
+        if not ended.exhausted:
+            return self._limited(ended.units, ())
+        return self._up_to(wide, self._in_hand(ended.units), ended)
+
+    def _near(self, wide: Wide, tree: Units) -> "Run":
+        """Look for the best tree that keeps to all rules near the goals, then ever farther from them."""
+        known, most = wide.everything(), _NEAR
+        while True:
+            among = known if most >= len(known) else wide.nearest(most) | tree
+            most *= _MORE
+            self._look_at(among)
+            ended = self._run(self.levels)
+            if ended.units is not None or not ended.exhausted or among >= known:
+                return ended
+
+    def _up_to(self, wide: Wide, tree: Units, ended: "Run | None") -> Outcome:
+        """Look for what is better than a tree, among all units that trees up to its cost can have.
+
+        ``ended`` is the search that found the tree, if one did.
+        """
         try:
             with self.deadline.watched("cutting the network", late=True):
                 within = wide.within(wide.total(tree), lambda: self.deadline.passed)
         except KeyboardInterrupt:
             self.deadline.interrupt()
             return self._limited(tree, ())
-        if ended is not None and ended.units is not None and within <= among:
+        if ended is not None and ended.units is not None and within <= set(self.first.units):
             return self._ended(ended, ended.units)
         self._look_at(within | tree)
         return self._search(tree)
 
-    def _look_at(self, units: Units) -> None:
+    def _with_loose_ends(self, wide: Wide, tree: Units) -> "Run | None":
+        """Look for the best tree that keeps to rules, some units of which run without what they need.
+
+        Of any tree some units are one with loose ends, and keep to the rules where it does. So there is none
+        where there is none with loose ends, and the best of these is the best of all if it has none. Every
+        tree has a unit of each landmark, too. ``None`` where nothing is settled so after some times.
+        """
+        from foon_asp.encoding.facts import write_known, write_objectives, write_required  # noqa: PLC0415
+
+        program, number = self.program, self.problem.network.unit_number
+        files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
+        sets = wide.landmarks()
+        text = write_objectives(self.levels)
+        text += write_required([map(number, sorted(each)) for each in sets])
+        known = set(tree).union(*(each for each in sets if len(each) <= _NEAR))
+        for _ in range(_LOOSE):
+            self._look_at(known.union(wide.makers(known), *sets))
+            asked = replace(self.first, program=program._replace(files=files))
+            ended = asked.run(text + write_known(map(number, sorted(known))))
+            if not ended.exhausted or ended.units is None:
+                return ended if ended.exhausted else None
+            ended.units = self._ids(ended.units)
+            fresh, most = set(ended.units - known), _MORE * len(known)
+            if not fresh:
+                return ended
+            while fresh and len(known) < most:  # what they need, and what that needs
+                known |= fresh
+                fresh = wide.makers(fresh) - known
+        return None
+
+    def _look_at(self, units: Collection[int]) -> None:
         """Search among these units from now on."""
         self.first = replace(self.first, units=tuple(sorted(units)))
         self._scales = None

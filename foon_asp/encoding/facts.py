@@ -411,6 +411,11 @@ def write_required(sets: Sequence[Iterable[int]]) -> str:
     )
 
 
+def write_known(numbers: Iterable[int]) -> str:
+    """Give the units of which all is there that may make what they need, by their numbers."""
+    return "".join(f"_known({_check(number)}).\n" for number in numbers)
+
+
 def write_tree(units: Collection[int]) -> str:
     """Ask for a tree of exactly these units."""
     return f"_tree_size({len(units)}).\n" + "".join(f"_in_tree({unit}).\n" for unit in units)

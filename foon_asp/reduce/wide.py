@@ -29,6 +29,21 @@ class Wide:
     cuts: Cuts
     spare: bool
 
+    def landmarks(self) -> list[frozenset[int]]:
+        """Give sets of units of each of which every tree has one: those of the cuts, and those required."""
+        graph, restriction = self.graph, self.problem.restriction
+        found = [frozenset(cut.members) for cut in self.cuts.cuts if max(cut.members) < graph.units]
+        if restriction is not None:
+            size = len(self.problem.network.objects)
+            found += [frozenset(graph.makers[size + n]) for n in range(len(restriction.required))]
+        return found
+
+    def makers(self, units: Iterable[int]) -> set[int]:
+        """Give all units that a tree can have to make the goals and what some units need."""
+        graph, kitchen = self.graph, self.problem.kitchen
+        needed = {o for unit in units for o in graph.needs[unit] if o not in kitchen}
+        return {maker for o in needed.union(graph.goals) for maker in graph.makers[o]}
+
     def total(self, units: Iterable[int]) -> int:
         """Give what a tree costs, with the items that it takes where these are counted."""
         tree = set(units)
