@@ -146,17 +146,13 @@ class CountBound:
     def none(self) -> bool:
         """Whether it is proved that no counts satisfy the conditions, so that there is no plan."""
         model = _Model(self, ())
-        return self._hopeless(model)
-
-    def _hopeless(self, model: "_Model") -> bool:
-        for _ in range(self._size + 1):
+        while True:
             solved = model.program.solve({})
             if solved.x is None:
-                return solved.bound > 0
+                return solved.bound == math.inf
             if not self._add_landmark(solved.x, model):
                 return False
             self._check()
-        return False
 
     def most_executions(self) -> int | None:
         """Give how many executions a plan can have in all; ``None`` if not known."""
@@ -232,9 +228,7 @@ class CountBound:
             loose = [
                 a
                 for a in range(self._size)
-                if solved.x[self._size + a] < min(1.0, solved.x[a]) - _NEAR
-                and a not in probed
-                and program.upper[a] != 1
+                if solved.x[self._size + a] < min(1.0, solved.x[a]) - _NEAR and a not in probed
             ]
             if not loose:
                 return
@@ -295,7 +289,7 @@ class CountBound:
         """
         flows = self._flows
         used = {a for a in range(self._size) if x[self._size + a] > _NEAR}
-        reached = {o for o, n in flows.start.items() if n and x[model.stock.get(o, 0)] > _NEAR}
+        reached = {o for o, column in model.stock.items() if x[column] > _NEAR}
         if not model.stock:
             reached = {o for o, n in flows.start.items() if n}
         waiting = set(used)
@@ -364,10 +358,8 @@ class _Model:
                 program.row(*self._with_stock(o, row, int(o in wanted)))
         items: dict[int, int] = {}
         for action in range(size):
-            reads = [o for o in flows.asks[action] if o not in flows.uses[action]]
-            reads = [o for o in reads if not flows.start.get(o) or o in self.stock]
             y = size + action
-            for o in reads:
+            for o in (each for each in flows.asks[action] if each not in flows.uses[action]):
                 makers = {size + maker: 1 for maker in bound._makers.get(o, ())}
                 program.row(*self._with_stock(o, {**makers, y: -1}, 0))
             for o in flows.items[action] if priced else ():

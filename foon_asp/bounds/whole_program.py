@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 # What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
-_PARTS = (1, 12, 720720, 2**40)
+_PARTS = (720720, 2**40)
 
 
 class Solved(NamedTuple):
@@ -35,7 +35,7 @@ class WholeProgram:
         self.lower: list[int] = [0] * columns
         self.upper: list[int | None] = [None] * columns
         self._rows: list[tuple[dict[int, int], int]] = []
-        self._sent = 0  # rows that HiGHS has
+        self._sent: int  # rows that HiGHS has
         self._changed: set[int] = set()
 
     @property
@@ -85,16 +85,13 @@ class WholeProgram:
             return Solved(None, math.inf)
         highs = self._send(objective)
         highs.run()
-        status, kinds = highs.getModelStatus(), self._library.HighsModelStatus
-        if status == kinds.kOptimal:
+        if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
             solution = highs.getSolution()
             weights = list(solution.row_dual)
             return Solved(list(solution.col_value), self._bound(objective, weights, cutoff))
-        if status == kinds.kInfeasible:
-            found = highs.getDualRay()
-            ray = [abs(weight) for weight in found[2]] if found[1] else []
-            if ray and self._bound({}, [weight / max(ray) for weight in ray], 0) > 0:
-                return Solved(None, math.inf)
+        ray = [abs(weight) for weight in highs.getDualRay()[2]]
+        if any(ray) and self._bound({}, [weight / max(ray) for weight in ray], 0) > 0:
+            return Solved(None, math.inf)
         return Solved(None, -math.inf)
 
     def whole_optimum(self, objective: Mapping[int, int], seconds: float | None = None) -> list[float] | None:
@@ -124,15 +121,13 @@ class WholeProgram:
                 self._highs.setOptionValue(option, value)
             self._highs.addVars(count, np.zeros(count), np.full(count, inf))
             self._sent = 0
-            self._changed.clear()
         highs = self._highs
         for parts, least in self._rows[self._sent :]:
             columns = np.array(list(parts), dtype="int32")
             highs.addRow(float(least), inf, len(parts), columns, np.array(list(parts.values()), dtype=float))
         for row in self._changed:
-            if row < self._sent:
-                for column, part in self._rows[row][0].items():
-                    highs.changeCoeff(row, column, float(part))
+            for column, part in self._rows[row][0].items():
+                highs.changeCoeff(row, column, float(part))
         self._sent = len(self._rows)
         self._changed.clear()
         every = np.arange(count, dtype="int32")
@@ -161,13 +156,10 @@ class WholeProgram:
                     for column, part in row.items():
                         left[column] -= weight * part
             for column, rest in left.items():
-                if rest > 0:
-                    total += rest * self.lower[column]
-                elif rest < 0:
-                    most = self.upper[column]
-                    if most is None:
-                        break
-                    total += rest * most
+                cheapest = self.lower[column] if rest >= 0 else self.upper[column]
+                if cheapest is None:
+                    break
+                total += rest * cheapest
             else:
                 best = max(best, Fraction(total, parts))
                 if best > cutoff:
