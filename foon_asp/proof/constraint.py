@@ -179,11 +179,8 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
     for o in question.labelled(required_intermediate):
         if o not in question.kitchen:
             makers = frozenset(network.producers[o]).difference(network.consumers[o])
-            sets = [
-                frozenset(unit for unit in makers if o in question.gives(unit)),
-                frozenset(unit for unit in network.consumers[o] if o in question.needs(unit)),
-            ]
-            wanted.append(sets)
+            takers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
+            wanted.append([makers, takers])
     return Meaning(wanted=[wanted])
 
 
@@ -245,19 +242,14 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
 
     def barred(used: Units, without: Units) -> Units:
         at_hand = early(used)
-        found: Units = frozenset()
-        while True:
-            late: set[int | None] = set()
-            stack = list(first - without)
-            for unit in stack:  # grows while it is walked through
-                for o in gives(unit) - at_hand - late:
-                    late.add(o)
-                    takers = network.consumers[o] if o is not None else ()
-                    stack += (u for u in takers if u not in without | found and o in needs(u))
-            more = frozenset(unit for unit in later if late.isdisjoint(needs(unit)))
-            if more == found:
-                return found
-            found = more
+        late: set[int | None] = set()
+        stack = list(first - without)
+        for unit in stack:  # grows while it is walked through
+            for o in gives(unit) - at_hand - late:
+                late.add(o)
+                takers = network.consumers[o] if o is not None else ()
+                stack += (u for u in takers if u not in without and o in needs(u))
+        return frozenset(unit for unit in later if late.isdisjoint(needs(unit)))
 
     return Meaning(barred=barred)
 

@@ -1,0 +1,254 @@
+"""What constraints mean for trees, by their own words: of every set of units of small problems."""
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from foon_asp.certificate import Coverage
+from foon_asp.certificate.arrays import Arrays
+from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
+from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, looked_at
+from foon_asp.proof.ruled import Limit, Ruled
+from foon_asp.text.line_parser import parse_node
+from tests import oracle
+from tests.constraint_oracle import keeps, random_rule
+from tests.random_problems import MOTIONS, random_problem
+
+SEEDS = range(24)
+
+
+def drawn(seed: int) -> tuple[Problem, list[dict[str, Any]], random.Random]:
+    """Draw a problem and a constraint of each kind."""
+    rng = random.Random(seed)
+    problem = random_problem(seed, list(ContainerRule)[seed % 2], units=6)
+    prices = {motion: Fraction(place * place, 10) for place, motion in enumerate(MOTIONS)}
+    problem = replace(problem, unit_prices=UnitPrices(prices, {}))
+    rules: dict[str, dict[str, Any]] = {}
+    while len(rules) < 19:
+        rule = random_rule(rng, problem)
+        rules[rule["rule"]] = rule
+    return problem, [rules[name] for name in sorted(rules)], rng
+
+
+def trees(problem: Problem) -> Iterator[tuple[frozenset[int], tuple[Any, ...]]]:
+    for tree in oracle.trees(problem):
+        ids = frozenset(u for u in range(len(problem.network)) if problem.network.unit(u) in tree)
+        yield ids, tree
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_tree_keeps_to_a_constraint_by_its_words(seed: int) -> None:
+    problem, rules, rng = drawn(seed)
+    every = frozenset(range(len(problem.network)))
+    found = [*trees(problem)]
+    for rule in rules:
+        arrays = Arrays(problem, (Objective.UNITS,), Coverage((rule,)))
+        for units, tree in found:
+            kept = keeps(problem, tree, rule)
+            assert (arrays.ruled.fault(units, every - units) is None) == kept, (rule, units)
+            actions = arrays.actions(sorted(units))
+            breaking = arrays.breaking(frozenset(actions))
+            assert derives(arrays, actions) == (kept or bool(breaking)), (rule, units)
+            assert not kept or not breaking
+            # what is barred from some trees is in none of them
+            used = frozenset(a for a in actions if rng.random() < 0.5)
+            without = frozenset(u for u in every - units if rng.random() < 0.5)
+            for barred in arrays.bars(used, without).values():
+                assert not kept or units.isdisjoint(barred), (rule, units, used, without)
+
+
+def derives(arrays: Arrays, actions: list[int]) -> bool:
+    """Whether actions reach the goals, all of them running, within limits and with none that is forbidden."""
+    graph, at_hand, left = arrays.graph, set(arrays.graph.start), set(actions)
+    while ready := {a for a in left if at_hand.issuperset(graph.needs[a])}:
+        left -= ready
+        at_hand.update(o for a in ready for o in graph.gives[a])
+    spent = [sum(amounts.get(a, 0) for a in actions) for amounts, _ in arrays.limits]
+    return (
+        not left
+        and not arrays.ruled.never
+        and at_hand.issuperset(arrays.goals)
+        and arrays.forbidden.isdisjoint(actions)
+        and all(total <= most for total, (_, most) in zip(spent, arrays.limits, strict=True))
+    )
+
+
+# --- By hand.
+
+
+def small(*units: str, rule: ContainerRule = ContainerRule.STRICT) -> Problem:
+    """Make a problem of units such as ``mix: a, b > end``, which is the goal; what none makes is at hand."""
+    builder = NetworkBuilder()
+    made: set[ObjectNode] = set()
+    for line, unit in enumerate(units, 1):
+        motion, _, nodes = unit.partition(": ")
+        inputs, outputs = ([parse_node(node) for node in side.split(", ")] for side in nodes.split(" > "))
+        builder.add(motion, inputs, outputs, Source(f"{motion}.txt", line))
+        made.update(outputs)
+    network = builder.build()
+    kitchen = frozenset(o for o, node in enumerate(network.objects) if node not in made)
+    (goal,) = (o for o, node in enumerate(network.objects) if node.label == "end")
+    return Problem(network, kitchen, (goal,), None, frozenset({"cup", "pan"}), rule)
+
+
+def arrays_of(problem: Problem, *rules: dict[str, Any]) -> Arrays:
+    return Arrays(problem, (Objective.UNITS,), Coverage(rules))
+
+
+def barred(arrays: Arrays, used: set[int], without: set[int]) -> frozenset[int]:
+    (found,) = arrays.bars(frozenset(used), frozenset(without)).values()
+    return found
+
+
+def test_what_is_barred_where_a_motion_has_to_come_before_another() -> None:
+    kitchen = small(
+        *("cut: start > a", "mix: a > b", "mix: start > b"),
+        *("fry: b > end", "fry: a > end", "fry: start > end"),
+        *("mix: x > b", "mix: start > x"),
+    )
+    arrays = arrays_of(kitchen, {"rule": "before", "earlier_motion": "cut", "later_motion": "fry"})
+    assert barred(arrays, set(), set()) == {5}  # which never runs on what was cut
+    assert barred(arrays, {2}, set()) == {3, 5}  # there is a b that was not
+    assert barred(arrays, {7, 6}, set()) == {3, 5}
+    assert barred(arrays, {6}, set()) == {5}  # of an x that may come late
+    assert barred(arrays, {0, 1}, set()) == {5}
+    assert barred(arrays, set(), {1}) == {3, 5}  # nothing makes a b of what was cut
+    assert barred(arrays, set(), {0}) == {3, 4, 5}
+    same = arrays_of(kitchen, {"rule": "before", "earlier_motion": "fry", "later_motion": "fry"})
+    assert barred(same, set(), {3, 4, 5}) == frozenset()
+    # a tree that breaks it is told by as few units as do, what they bar first
+    assert arrays.breaking(frozenset({0, 1, 3, 4})) == []
+    assert arrays.breaking(frozenset({0, 2, 3, 4})) == [3, 2]
+    assert arrays.breaking(frozenset({0, 1, 5})) == [5]
+
+
+def test_what_is_barred_by_claims_of_units() -> None:
+    claims = [[[0], []], [[], [1, 2]], [[3, 4], [5]], [[6], [7]], [[8, 9], []]]
+    own = {"rule": OWN, "claims": claims, "constants": [], "files": [], "library": []}
+    arrays = arrays_of(small(*(f"mix: start > x{n}, end" for n in range(10))), own)
+    assert arrays.forbidden == {0}
+    assert [arrays.ruled.makers[goal] for goal in arrays.ruled.goals] == [[1, 2]]
+    for used, without, expected in (
+        ({3}, {5}, {4}),
+        ({3}, set(), set()),
+        (set(), {5}, set()),
+        ({3, 4, 1}, {5, 2}, {3, 4}),
+        (set(), {7}, {6}),
+        ({6}, {7}, {6}),
+        ({8}, set(), {9}),
+        ({9}, {7}, {6, 8}),
+    ):
+        assert barred(arrays, used, without) == expected
+    every = frozenset(range(10))
+    for units, fault in (
+        ({1}, "breaks a rule"),  # has not 7, so 6 is barred: but 6 is not there
+        ({0, 1}, "has unit 0, which a rule removes"),
+        ({3}, "lacks what a rule asks for"),
+        ({2, 6}, "breaks a rule"),
+        ({1, 3, 4}, "breaks a rule"),
+        ({1, 8, 9}, "breaks a rule"),
+    ):
+        found = arrays.ruled.fault(frozenset(units), every - units)
+        assert found == (None if units == {1} else fault)
+    assert arrays.ruled.fault(frozenset({2, 3, 4, 5, 6, 7}), every - {2, 3, 4, 5, 6, 7}) is None
+    assert looked_at(own, arrays.problem.network) is None
+    alone = {**own, "claims": claims[:2]}
+    assert arrays_of(arrays.problem, alone).ruled.barred == {}
+
+
+def test_an_intermediate_is_made_by_one_and_needed_by_another() -> None:
+    def kept(units: set[int], problem: Problem, label: str = "cup") -> bool:
+        arrays = arrays_of(problem, {"rule": "require_intermediate", "required_intermediate": label})
+        return arrays.ruled.fault(frozenset(units), frozenset()) is None
+
+    units = ("fill: tea > cup; contains {salt}", "pour: cup; contains {salt}, salt; in [cup] > end")
+    assert kept({0, 1}, small(*units))
+    assert not kept({1}, small(*units))
+    assert not kept({0}, small(*units))
+    assert not kept({0, 1}, small(*units, rule=ContainerRule.IMPLIED))  # where no unit needs the cup
+    assert not kept({1}, small(units[1]))
+    assert not kept({0, 1}, small(*units), "tea")
+    # a unit that has it makes none
+    assert not kept({1, 2}, small(*units, "wash: cup; contains {salt} > cup; contains {salt}"))
+
+
+def test_which_constraints_only_remove_units_and_which_look_at_places() -> None:
+    assert {name for name, constraint in LIBRARY.items() if constraint.removes} == {
+        *("forbid_motion", "forbid_object", "least_rate", "only_sources", "at_least_videos"),
+        *("motion_only_with", "never_heated"),
+    }
+    network = small("mix: a > b", "cut: b > end").network
+    assert looked_at({"rule": "only_sources", "allowed": ["cut.txt", "no.txt"]}, network) == [[], ["cut.txt"]]
+    assert looked_at({"rule": "at_least_videos", "least_videos": 1}, network) == [[], []]
+    assert looked_at({"rule": "forbid_motion", "forbidden_motion": "cut"}, network) is None
+
+
+def test_constraints_are_nodes_steps_and_limits() -> None:
+    def units(*numbers: int) -> frozenset[int]:
+        return frozenset(numbers)
+
+    ways = [[units(0, 1)]], [[units(1), units(0)], [units(2)]]
+    things = [(units(0), Fraction(1)), (units(1, 2), Fraction(2)), (units(0), Fraction(3))]
+    ruled = Ruled(
+        [
+            Meaning(units(7), barred=lambda used, without: used | without),
+            Meaning(units(8), [*ways], things, Fraction(4)),
+            Meaning(never=True, things=[(units(2), Fraction(1, 2))], most=Fraction(1)),
+        ],
+        10,
+        20,
+    )
+    assert ruled.removed == {7, 8}
+    assert (ruled.never, set(ruled.barred)) == ({2}, {0})
+    assert ruled.goals == [10, 11]
+    assert ruled.makers == {10: [0, 1], 11: [20, 2], 12: [1], 13: [0], 14: [21]}
+    assert ruled.gives == {0: [10, 13], 1: [10, 12], 2: [11]}
+    assert ruled.needs == {1: [14], 2: [14]}
+    assert ruled.steps == {20: ([12, 13], 11), 21: ((), 14)}
+    assert ruled.limits == {
+        1: Limit({0: Fraction(4), 21: Fraction(2)}, Fraction(4)),
+        2: Limit({2: Fraction(1, 2)}, Fraction(1)),
+    }
+    assert ruled.used(units(0)) == {0}
+    assert ruled.used(units(2)) == {2, 21}
+    assert ruled.used(units(0, 1)) == {0, 1, 20, 21}
+    assert [limit.left({0, 21, 5}) for limit in ruled.limits.values()] == [-2, 1]
+    assert ruled.bars(units(1), units(2)) == {0: {1, 2}}
+    assert ruled.fault(units(0, 7), units()) == "has unit 7, which a rule removes"
+    assert ruled.fault(units(0), units()) == "lacks what a rule asks for"
+    assert ruled.fault(units(0, 2), units()) == "exceeds what a rule limits"
+    assert ruled.fault(units(1, 2), units()) == "breaks a rule"
+
+
+def test_arrays_have_what_constraints_add_after_the_items() -> None:
+    kitchen = small("fill: tea > pan", "fry: pan > cup", "pour: cup > end", "drink: tea > end")
+    rules = (
+        {"rule": "at_most_utensils", "max_utensils": 1},
+        {"rule": "require_motion", "required_motion": "fry"},
+    )
+    arrays = Arrays(kitchen, (Objective.KITCHEN, Objective.UNITS), Coverage(rules))
+    tea, pan, cup, end = range(4)
+    # 4 takes the tea; 5 and 6 are the steps of the two utensils, of which 4 and 5 are the nodes
+    assert [list(needs) for needs in arrays.graph.needs] == [
+        *([tea, 5], [pan, 4, 5], [cup, 4], [tea]),
+        *([], [], []),
+    ]
+    assert [list(gives) for gives in arrays.graph.gives] == [[pan], [cup, 6], [end], [end], [tea], [4], [5]]
+    assert arrays.graph.size == 7
+    assert arrays.goals == [end, 6]
+    assert [({**amounts}, most) for amounts, most in arrays.limits] == [
+        ({5: Fraction(1), 6: Fraction(1)}, Fraction(1))
+    ]
+    assert [tuple(map(int, cost)) for cost in arrays.costs] == [*[(0, 1)] * 4, (1, 0), (0, 0), (0, 0)]
+    assert [arrays.member(action) for action in range(7)] == [
+        *({"unit": unit} for unit in range(4)),
+        *({"item": tea}, {"step": 0}, {"step": 1}),
+    ]
+    assert arrays.actions([0, 1, 2]) == [0, 1, 2, 4, 5, 6]
+    assert arrays.actions([3]) == [3, 4]
+    assert arrays.bars(frozenset(range(7)), frozenset()) == {}
