@@ -1,4 +1,5 @@
-# make demo   solve every goal of the bundled kitchen, compare the searches with the optimum, draw a tree
+# make demo   one screen: five goals, the searches beside the optimum; more of it is left in demo/
+# make docs   the documentation as a site, in site/html, with a reference made from the program
 # make test   the tests, in less than three minutes; make test-slow for the long ones
 # make test-lowest   the tests with the lowest versions of our dependencies that pyproject.toml allows
 # make coverage  which lines and branches of the package the tests reach, in one process: some minutes
@@ -19,16 +20,19 @@ PAGE := --page docs/performance.md
 # pip compiles what it installs, but not what stays in a checkout: a third of a start where Python may not do so later
 COMPILE = $(BIN)/python -m compileall -q foon_asp
 
-.PHONY: demo test test-slow test-lowest coverage mutants tables lint bench bench-full clean
+.PHONY: demo docs test test-slow test-lowest coverage mutants tables lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
-	@$(BIN)/foon-asp compare --chart demo/searches.svg --chart demo/searches.png
-	@echo
-	@$(BIN)/foon-asp optima
-	@echo
+	@$(BIN)/foon-asp compare --chart demo/searches.svg --chart demo/searches.png > demo/compare.txt 2>&1
+	@$(BIN)/foon-asp optima > demo/optima.txt
 	@$(BIN)/foon-asp draw --goal macaroni -o demo/macaroni.svg
 	@$(BIN)/foon-asp view --goal macaroni -o demo/macaroni.html
+	@$(BIN)/python benchmarks/demo.py
+
+docs: $(VENV)/installed-docs
+	$(BIN)/python docs/build.py
+	@echo "built: site/html/index.html"
 
 test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES)
@@ -71,7 +75,7 @@ bench-full: $(VENV)/installed-bench
 	rm -f recipe-like.jsonl deep.jsonl large.jsonl
 
 clean:
-	rm -rf .venv .venv-* .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
+	rm -rf .venv .venv-* site .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
 
 $(VENV)/bin/python:
 	@test -n "$(PYTHON)" || { echo "foon-asp needs Python 3.11 or newer"; exit 1; }
@@ -85,6 +89,10 @@ $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 $(VENV)/installed-dev: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,pictures]'
 	@$(COMPILE)
+	@touch $(VENV)/installed $@
+
+$(VENV)/installed-docs: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs,pictures]'
 	@touch $(VENV)/installed $@
 
 $(VENV)/installed-bench: pyproject.toml | $(VENV)/bin/python

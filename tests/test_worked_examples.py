@@ -13,6 +13,10 @@ from tests.conftest import ROOT, Cli
 
 PAGES = (
     "README.md",
+    pytest.param("docs/guide.md", marks=pytest.mark.slow),
+    "docs/tutorial-robot.md",
+    "docs/tutorial-logic.md",
+    "docs/tutorial-planning.md",
     pytest.param("docs/questions.md", marks=pytest.mark.slow),
     "docs/writing-constraints.md",
     "docs/writing-objectives.md",
