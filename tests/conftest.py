@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import jsonschema
 import pytest
+from hypothesis.internal.conjecture import providers
 
 from foon_asp.cli.main import main
 from foon_asp.document.schema import schema
@@ -19,6 +20,11 @@ from foon_asp.text.json_value import schema_name
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = ROOT.parent / "shared" / "corpus"
 
+# Hypothesis also draws what is written in modules of ours that are imported by then. So examples would depend
+# on which tests ran before, and a sixth of all time would go into choosing among thousands of texts.
+if hasattr(providers, "_get_local_constants"):
+    none = providers._local_constants
+    providers._get_local_constants = lambda: none
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # started in the background by a shell, we ignore ctrl-C, and so would all commands that tests interrupt

@@ -112,18 +112,17 @@ def may_import(here: str, there: str) -> bool:
     return (here, there) not in FORBIDDEN and (floor(there) < floor(here) or (here, there) in SIDEWAYS)
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_module_is_in_a_known_room(module: str) -> None:
-    assert any(room(module) in rooms for rooms in FLOORS), f"{module}: say in FLOORS where {room(module)} is"
+def test_every_module_is_in_a_known_room() -> None:
+    unknown = {room(module) for module in MODULES} - {name for rooms in FLOORS for name in rooms}
+    assert not unknown, "say in FLOORS where they are"
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_imports_go_downwards(module: str) -> None:
-    here = room(module)
+def test_imports_go_downwards() -> None:
     wrong = [
-        f"{module}:{line}: {here} imports {name}"
+        f"{module}:{line}: {room(module)} imports {name}"
+        for module in MODULES
         for line, name in imports(module)
-        if name.split(".")[0] == "foon_asp" and not may_import(here, room(name))
+        if name.split(".")[0] == "foon_asp" and not may_import(room(module), room(name))
     ]
     assert not wrong, "\n".join(wrong)
 
@@ -151,10 +150,10 @@ def test_every_exception_is_needed() -> None:
     assert all(floor(here) == floor(there) for here, there in SIDEWAYS)
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_libraries_stay_in_their_rooms(module: str) -> None:
+def test_libraries_stay_in_their_rooms() -> None:
     wrong = [
         f"{module}:{line}: {name}"
+        for module in MODULES
         for line, name in imports(module)
         if room(module) not in LIBRARIES.get(name.split(".")[0], {room(module)})
     ]
@@ -231,11 +230,11 @@ def public(
                 yield from public(child)
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_what_is_public_is_documented(module: str) -> None:
-    assert ast.get_docstring(tree(module)), f"{module}: no docstring"
-    silent = [
+def test_what_is_public_is_documented() -> None:
+    silent = [f"{module}: no docstring" for module in MODULES if not ast.get_docstring(tree(module))]
+    silent += [
         f"{module}:{node.lineno}: {node.name} has no docstring"
+        for module in MODULES
         for node in public(tree(module))
         if not ast.get_docstring(node)
     ]
