@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from foon_asp.proof.replay import Copy as Copy
     from foon_asp.proof.simulation import Simulation as Simulation
     from foon_asp.proof.simulation import Verdict as Verdict
+    from foon_asp.proof.timetable import TimedStep as TimedStep
+    from foon_asp.proof.timetable import Tool as Tool
     from foon_asp.proof.verify import RefusedError as RefusedError
     from foon_asp.questions.alternatives import Alternatives as Alternatives
     from foon_asp.questions.alternatives import alternatives as alternatives
@@ -76,6 +78,8 @@ if TYPE_CHECKING:
     from foon_asp.questions.regret import regret as regret
     from foon_asp.questions.relax import Relaxed as Relaxed
     from foon_asp.questions.relax import relax as relax
+    from foon_asp.questions.schedule import Schedule as Schedule
+    from foon_asp.questions.schedule import schedule as schedule
     from foon_asp.questions.search import Retrieved as Retrieved
     from foon_asp.questions.search import retrieve as retrieve
     from foon_asp.questions.sensitivity import Sensitivity as Sensitivity
@@ -96,6 +100,7 @@ if TYPE_CHECKING:
     from foon_asp.questions.view import view as view
     from foon_asp.questions.why_not import Explanation as Explanation
     from foon_asp.questions.why_not import why_not as why_not
+    from foon_asp.text.duration_list import Duration as Duration
     from foon_asp.text.line_parser import parse_node as parse_node
     from foon_asp.text.reader import FoonReader as FoonReader
     from foon_asp.text.writer import write_units as write_units
@@ -117,7 +122,9 @@ _ROOMS = {
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
     "proof.replay": ("Copy",),
     "proof.simulation": ("Simulation", "Verdict"),
+    "proof.timetable": ("TimedStep", "Tool"),
     "proof.verify": ("RefusedError",),
+    "text.duration_list": ("Duration",),
     "text.line_parser": ("parse_node",),
     "text.reader": ("FoonReader",),
     "text.writer": ("write_units",),

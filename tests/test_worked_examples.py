@@ -5,12 +5,16 @@ import re
 import shlex
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from tests.conftest import ROOT, Cli
 
+needs_or_tools = pytest.mark.skipif(
+    find_spec("ortools") is None, reason="OR-Tools is not installed (foon-asp[schedule])"
+)
 PAGES = (
     "README.md",
     pytest.param("docs/guide.md", marks=pytest.mark.slow),
@@ -23,6 +27,7 @@ PAGES = (
     "docs/json.md",
     "docs/pddl.md",
     "docs/plans.md",
+    pytest.param("docs/schedules.md", marks=needs_or_tools),
 )
 # A block with a file name is a file; one without is a session.
 FENCE = re.compile(r"^```(?:[\w-]* )?(\S+\.\w+)?\n((?:.*\n)*?)```$", re.MULTILINE)
@@ -74,7 +79,14 @@ def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch
     assert run >= 5
 
 
-@pytest.mark.parametrize(("page", "least"), [("docs/api.md", 50), ("README.md", 4)])
+@pytest.mark.parametrize(
+    ("page", "least"),
+    [
+        ("docs/api.md", 50),
+        ("README.md", 4),
+        pytest.param("docs/schedules.md", 5, marks=needs_or_tools),
+    ],
+)
 def test_the_examples_in_python(
     page: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

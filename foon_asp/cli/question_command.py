@@ -137,8 +137,12 @@ def _form(question: Question, named: str | None, output: Path | None) -> str:
 def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
     """Write the result to standard output, and to stderr what its format cannot tell."""
     renderable = found.renderable() if format_ == "text" else None
-    if renderable is not None:
+    if renderable is not None and sys.stdout.isatty():
         console().print(renderable)
+    elif renderable is not None:
+        from foon_asp.report.renderable import plain_text
+
+        click.echo(plain_text(renderable), nl=False)
     elif format_ == "text":
         click.echo(found.text(**how), nl=False)
     elif format_ == "json":

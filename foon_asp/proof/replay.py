@@ -1,7 +1,7 @@
 """Does a plan run where items are used up? Replayed copy by copy, in plain Python, without a solver."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from foon_asp.network import FunctionalUnit, ObjectNode
@@ -66,6 +66,25 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
     The kitchen never runs out, but for what the stock counts. A repeated unit runs again.
     """
     return _Kitchen(problem).run(list(plan))
+
+
+def waits(replay: Replay) -> Iterator[set[int]]:
+    """Give for each step, in order, the positions of those that have to be done before it.
+
+    They made the copies that it takes, or read a copy that it uses up. Of what never runs out there is
+    always another copy.
+    """
+    readers: dict[tuple[Copy, int], set[int]] = {}
+    spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
+    for number, step in enumerate(replay.steps):
+        after = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
+        for copy in step.stayed:
+            readers.setdefault((copy, spent[copy]), set()).add(number)
+        for copy in step.gone:
+            if copy.made is not None or copy.node in replay.stock:
+                after |= readers.get((copy, spent[copy]), set())
+            spent[copy] += 1
+        yield after
 
 
 class _Kitchen:

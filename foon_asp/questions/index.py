@@ -107,6 +107,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Find the cheapest plan of a planning task without its deletes (h+), and prove it.",
         ("relax", "Relaxed"),
     ),
+    "schedule": Entry(
+        "Plan",
+        "Find the shortest schedule of a plan for one or more agents, and prove it.",
+        ("schedule", "Schedule"),
+    ),
     "draw": Entry(
         "Show",
         "Draw an optimal task tree, a given one, some functional units, or a whole network.",

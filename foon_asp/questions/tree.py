@@ -13,7 +13,7 @@ from foon_asp.questions.result import NoTreeError
 from foon_asp.report.drawing import Drawing, draw_tree
 from foon_asp.report.notebook import picture_bundle, svg_text
 from foon_asp.report.tree_drawing import given_tree, plan_drawing
-from foon_asp.text.answer_file import read_listed_tree
+from foon_asp.text.answer_file import ListedTree, read_listed_tree
 from foon_asp.text.diagnostics import summarize
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_units
@@ -121,6 +121,12 @@ def read_listed(file: Path) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Se
 
     Who asks hears of what was assumed. Raises :class:`UserError` as :meth:`Tree.read`.
     """
+    listed = read_answer(file)
+    return listed.units or (), listed.goals
+
+
+def read_answer(file: Path) -> ListedTree:
+    """Read the same, and whatever else an answer knows; there are units, if not always any."""
     who = caller()
     reader = FoonReader(who.lenient)
     listed = read_listed_tree(file, reader)
@@ -128,4 +134,4 @@ def read_listed(file: Path) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Se
         who.reporter.warning(remark)
     if listed.units is None:
         raise NoTreeError(f"{file}: the answer has no tree ({listed.status})")
-    return listed.units, listed.goals
+    return listed

@@ -182,7 +182,7 @@ def view(
 
     Example:
         >>> foon_asp.view(foon_asp.load().problem("ice"))
-        <View of <Answer: optimal by units (strict containers): 2 units, 6 inputs, success ≈ 0.644>>
+        <View of <Answer: optimal by units (strict containers): 2 units, 6 inputs, success 0.644>>
     """
     wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
     for name in sorted(wanted - {*Beside}):

@@ -1,12 +1,12 @@
 """Plans for a robot's program: each step with its objects by role, and the steps that it waits for."""
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 from foon_asp.document.json_document import document, fraction_json, mention_json, named_json
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Objective, Problem, UsedUp
-from foon_asp.proof.replay import Replay, replay_for
+from foon_asp.proof.replay import replay_for, waits
 from foon_asp.text.json_value import Json
 
 
@@ -23,7 +23,8 @@ def robot_steps(problem: Problem, objectives: Iterable[Objective], plan: Collect
     tree = problem.tree(plan)
     replay = replay_for(replayable(problem, tree), tree)
     steps = []
-    for (step, unit, after), id_ in zip(waits(replay), plan, strict=True):
+    for step, (done, after, id_) in enumerate(zip(replay.steps, waits(replay), plan, strict=True)):
+        unit = done.unit
         roles = _roles(unit, problem.utensils)
         steps.append(
             {
@@ -35,27 +36,12 @@ def robot_steps(problem: Problem, objectives: Iterable[Objective], plan: Collect
                 },
                 "from": roles_labels(unit.inputs),
                 "to": roles_labels(unit.outputs),
-                "makes": [named_json(problem.network, copy.node) for copy in replay.steps[step].came],
+                "makes": [named_json(problem.network, copy.node) for copy in done.came],
                 "after": [earlier + 1 for earlier in sorted(after)],
                 "rate": None if problem.rates is None else fraction_json(problem.rate(id_)),
             }
         )
     return document("steps", problem, objectives, steps=steps)
-
-
-def waits(replay: Replay) -> Iterator[tuple[int, FunctionalUnit, set[int]]]:
-    """Give each step with the steps that have to be done before it.
-
-    They made the copies that it takes, or read a copy that it uses up.
-    """
-    readers: dict[object, set[int]] = {}
-    for number, step in enumerate(replay.steps):
-        after = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
-        for copy in step.stayed:
-            readers.setdefault(copy, set()).add(number)
-        for copy in step.gone:
-            after |= readers.get(copy, set())
-        yield number, step.unit, after
 
 
 def roles_labels(nodes: Iterable[ObjectNode]) -> list[str]:

@@ -16,12 +16,15 @@ _WITH_TREE = ("answer", "search")  # kinds of documents
 class ListedTree(NamedTuple):
     """A tree as a file lists it: units with their places in the order listed, ``None`` for an answer without.
 
-    ``goals`` and ``status`` are those of an answer, empty for files that know neither.
+    ``goals``, ``status``, and the words for ``containers`` and ``items`` are those of an answer, empty for
+    files that do not know them.
     """
 
     units: tuple[tuple[FunctionalUnit, Source], ...] | None
     goals: tuple[ObjectNode, ...] = ()
     status: str = ""
+    containers: str = ""
+    items: str = ""
 
 
 def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
@@ -40,7 +43,8 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         answer = _with_tree(found)
         units = None if answer["units"] is None else tuple(map(_unit, answer["units"]))
         goals = tuple(map(read_node_json, answer["goals"]))
-        return ListedTree(units, goals, str(answer.get("status", "")))
+        said = (str(answer.get(key, "")) for key in ("status", "containers", "items"))
+        return ListedTree(units, goals, *said)
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise UserError(f"{file}: expected an answer of foon-asp in JSON, but {what}") from None

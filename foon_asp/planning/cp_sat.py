@@ -1,0 +1,130 @@
+"""The other process: CP-SAT of OR-Tools, which cannot be in one process with HiGHS, looks for a schedule.
+
+It answers with what it finds on the way, and with how it ended. A thread reads the tasks, so that the end of
+the parent is noticed while one is worked on, and the process ends with it.
+"""
+
+import os
+import queue
+import signal
+import sys
+import threading
+from collections.abc import Mapping
+from io import FileIO
+from typing import Any
+
+from foon_asp.pipe import receive, send
+from foon_asp.planning.schedule_task import ScheduleTask
+from foon_asp.proof.timetable import ToolName
+
+_WORKERS = 1  # more find no schedule sooner for plans of some hundred steps, and not always the same one
+
+
+def serve() -> None:
+    """Read tasks from standard input, and write what is found to what was standard output."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    requests, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    asked: queue.SimpleQueue[ScheduleTask] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(requests, asked), daemon=True).start()
+    try:
+        from ortools.sat.python import cp_model  # noqa: PLC0415 (this process alone may have it)
+    except ImportError as error:
+        send(answers, ("missing", str(error)))
+        return
+    while True:
+        task = asked.get()
+        found = _Model(cp_model, task).shortest(answers)
+        lacking = _Model(cp_model, task).lacking() if found == "infeasible" else {}
+        send(answers, ("end", (found, lacking)))
+
+
+def _read(requests: FileIO, asked: "queue.SimpleQueue[ScheduleTask]") -> None:
+    while True:
+        try:
+            asked.put(receive(requests))
+        except EOFError:  # nobody asks any more
+            os._exit(0)
+
+
+class _Model:
+    """The variables of a task: when each step starts, and how long each tool is in use."""
+
+    def __init__(self, cp_model: Any, task: ScheduleTask) -> None:
+        self._library, self._task = cp_model, task
+        self._model = model = cp_model.CpModel()
+        self._end = end = sum(task.lengths)  # of a schedule that does one step after the other
+        self._starts = [model.new_int_var(0, end - length, "") for length in task.lengths]
+        self._steps = [
+            model.new_fixed_size_interval_var(start, length, "")
+            for start, length in zip(self._starts, task.lengths, strict=True)
+        ]
+        for step, after in enumerate(task.after):
+            for earlier in after:
+                model.add(self._over(earlier) <= self._starts[step])
+        by_hand = [each for each, passive in zip(self._steps, task.passive, strict=True) if not passive]
+        model.add_cumulative(by_hand, [1] * len(by_hand), task.agents)
+
+    def shortest(self, answers: FileIO) -> str:
+        """Look for a shortest schedule; say whether one is ``proved``, or ``infeasible``, or how it ended."""
+        model, library = self._model, self._library
+        self._hold(self._task.counts)
+        makespan = model.new_int_var(self._task.bound, self._end, "")
+        for step in range(len(self._starts)):
+            model.add(self._over(step) <= makespan)
+        model.minimize(makespan)
+        starts, writing = self._starts, threading.Lock()
+
+        def say(kind: str, value: object) -> None:
+            with writing:
+                send(answers, (kind, value))
+
+        class Listener(library.CpSolverSolutionCallback):  # type: ignore[misc, name-defined]
+            def on_solution_callback(self) -> None:
+                say("found", [self.value(start) for start in starts])
+
+        solver = self._solver()
+        solver.best_bound_callback = lambda bound: say("bound", bound)
+        status = solver.solve(model, Listener())
+        if status == library.OPTIMAL:
+            return "proved"
+        return "infeasible" if status == library.INFEASIBLE else str(solver.status_name(status))
+
+    def lacking(self) -> dict[ToolName, int]:
+        """Give how many there have to be of some tools, so that there is a schedule: the fewest more."""
+        counts, model = self._task.counts, self._model
+        more = {name: model.new_int_var(0, len(self._task.uses), "") for name in counts}
+        self._hold({name: counts[name] + each for name, each in more.items()})
+        model.minimize(sum(more.values()))
+        solver = self._solver()
+        solver.solve(model)
+        return {name: counts[name] + n for name, each in more.items() if (n := solver.value(each))}
+
+    def _hold(self, counts: Mapping[ToolName, Any]) -> None:
+        """Let no more tools be in use than there are, and each at one step at a time."""
+        model = self._model
+        in_use: dict[ToolName, list[Any]] = {}
+        for name, steps in self._task.uses:
+            if len(steps) == 1:
+                in_use.setdefault(name, []).append(self._steps[steps[0]])
+                continue
+            begin, end = (model.new_int_var(0, self._end, "") for _ in range(2))
+            for step in steps:
+                model.add(begin <= self._starts[step])
+                model.add(end >= self._over(step))
+            model.add_no_overlap([self._steps[step] for step in steps])
+            length = model.new_int_var(0, self._end, "")
+            in_use.setdefault(name, []).append(model.new_interval_var(begin, length, end, ""))
+        for name, intervals in in_use.items():
+            model.add_cumulative(intervals, [1] * len(intervals), counts[name])
+
+    def _over(self, step: int) -> Any:
+        return self._starts[step] + self._task.lengths[step]
+
+    def _solver(self) -> Any:
+        solver = self._library.CpSolver()
+        solver.parameters.num_workers = _WORKERS
+        solver.parameters.random_seed = 1
+        return solver

@@ -1,0 +1,178 @@
+"""The shortest schedule of a task: asked of another process, and put in order."""
+
+import contextlib
+import os
+import queue
+from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
+from io import RawIOBase
+from itertools import pairwise
+from math import ceil
+from typing import Any, NamedTuple
+
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.errors import BugError, UserError
+from foon_asp.pipe import receive, send
+from foon_asp.planning.schedule_task import ScheduleTask, Use
+from foon_asp.proof.timetable import TimedStep, Tool, ToolName
+from foon_asp.python_process import PythonProcess
+
+_MISSING = "a schedule needs OR-Tools: pip install 'foon-asp[schedule]'"
+_EXACT = 1e-6  # a bound arrives as a float: one so little above a whole number is that number
+
+
+class Found(NamedTuple):
+    """What was found: ``starts`` in ticks, ``None`` without a schedule, and a ``bound`` that none is below.
+
+    ``proved`` says that there is nothing shorter; without a schedule, that there is none, and ``lacking``
+    how many tools there have to be at least.
+    """
+
+    starts: tuple[int, ...] | None
+    bound: int
+    proved: bool
+    lacking: dict[ToolName, int]
+
+
+def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
+    """Look for a shortest schedule until the limits, or ctrl-C.
+
+    Raises :class:`UserError` where OR-Tools is not installed.
+    """
+    if find_spec("ortools") is None:
+        raise UserError(_MISSING)
+    best: tuple[int, ...] | None = None
+    bound, ended, lacking = task.bound, "", dict[ToolName, int]()
+    deadline.doing = "scheduling"
+    process = _idle.pop() if _idle and _idle[-1].alive else _CpSat()
+    try:
+        for kind, value in process.ask(task, deadline):
+            if kind == "missing":
+                raise UserError(f"{_MISSING} ({value})")
+            if kind == "found":
+                best = tuple(value)
+            elif kind == "bound":
+                bound = max(bound, ceil(value - _EXACT))
+            else:
+                ended, lacking = value
+                _idle.append(process)
+                break
+    except LimitError:
+        ended = "limit"
+    except KeyboardInterrupt:
+        deadline.interrupt()
+        ended = "limit"
+    finally:
+        if process not in _idle:
+            process.end()
+    if ended not in {"proved", "infeasible", "limit"}:
+        raise BugError(f"CP-SAT ends with {ended or 'its process'}")
+    if ended == "proved" and best is not None:
+        bound = _length(task, best)
+    proved = ended != "limit" or (best is not None and _length(task, best) == bound)
+    return Found(best, bound, proved, lacking)
+
+
+def _length(task: ScheduleTask, starts: Sequence[int]) -> int:
+    return max((start + n for start, n in zip(starts, task.lengths, strict=True)), default=0)
+
+
+def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
+    """Say who does each step with what, and let each start as early as that allows."""
+    ends = [start + length for start, length in zip(starts, task.lengths, strict=True)]
+    active = [step for step, passive in enumerate(task.passive) if not passive]
+    agents = _numbers({step: (starts[step], ends[step]) for step in active})
+    spans = [(min(starts[s] for s in use.steps), max(ends[s] for s in use.steps)) for use in task.uses]
+    tools: dict[int, Tool] = {}
+    for name in task.counts:
+        own = {use: spans[use] for use, (named, _) in enumerate(task.uses) if named == name}
+        tools |= {use: Tool(name, number) for use, number in _numbers(own).items()}
+    after = [set(each) for each in task.after]
+    for earlier, later in _followers(task.uses, starts, spans, agents, tools):
+        after[later].add(earlier)
+    early: dict[int, int] = {}
+    for step in sorted(range(len(starts)), key=lambda step: starts[step]):
+        early[step] = max((early[before] + task.lengths[before] for before in after[step]), default=0)
+    return [
+        TimedStep(
+            early[step] * task.tick,
+            (early[step] + task.lengths[step]) * task.tick,
+            agents.get(step),
+            tuple(tools[use] for use in uses),
+        )
+        for step, uses in enumerate(task.at_step)
+    ]
+
+
+def _numbers(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
+    """Give each span a number from 1 that no other has at the time: the one that is free the longest."""
+    free_at: list[int] = []
+    numbers: dict[int, int] = {}
+    for each, (start, end) in sorted(spans.items(), key=lambda item: (item[1], item[0])):
+        free = [number for number, time in enumerate(free_at) if time <= start]
+        number = min(free, key=lambda number: (free_at[number], number), default=len(free_at))
+        if number == len(free_at):
+            free_at.append(end)
+        free_at[number] = end
+        numbers[each] = number + 1
+    return numbers
+
+
+def _followers(
+    uses: Sequence[Use],
+    starts: Sequence[int],
+    spans: Sequence[tuple[int, int]],
+    agents: dict[int, int],
+    tools: dict[int, Tool],
+) -> Iterator[tuple[int, int]]:
+    """Give the pairs of steps of which the second follows the first, because they share a hand or a tool."""
+    hands: dict[int, list[int]] = {}
+    for step, agent in agents.items():
+        hands.setdefault(agent, []).append(step)
+    for steps in (*hands.values(), *(use.steps for use in uses)):
+        in_order = sorted(steps, key=lambda step: starts[step])
+        yield from pairwise(in_order)
+    turns: dict[Tool, list[int]] = {}
+    for use, tool in tools.items():
+        turns.setdefault(tool, []).append(use)
+    for turn in turns.values():
+        in_order = sorted(turn, key=lambda use: spans[use])
+        for first, second in pairwise(in_order):
+            yield from ((before, later) for before in uses[first].steps for later in uses[second].steps)
+
+
+class _CpSat(PythonProcess):
+    """A process that looks for schedules, one after the other."""
+
+    def __init__(self) -> None:
+        super().__init__("foon_asp.planning.cp_sat", "schedules are found")
+        self._answers: queue.SimpleQueue[tuple[str, Any] | None] = queue.SimpleQueue()
+        self.beside(_hear, self._in, self._answers)
+
+    def ask(self, task: ScheduleTask, deadline: Deadline) -> Iterator[tuple[str, Any]]:
+        """Hand it a task, and give what it answers; raises :class:`LimitError` at a limit."""
+        deadline.count(self._process.pid)
+        try:
+            with contextlib.suppress(OSError):  # that it died is seen when the answer is waited for
+                send(self._out, task)
+            while True:
+                with contextlib.suppress(queue.Empty):
+                    answer = self._answers.get(timeout=max(0.001, deadline.slice()))
+                    if answer is None:
+                        return
+                    yield answer
+                deadline.check()
+        finally:
+            deadline.uncount(self._process.pid)
+
+
+def _hear(said: RawIOBase, answers: "queue.SimpleQueue[tuple[str, Any] | None]") -> None:
+    with contextlib.suppress(EOFError):
+        while True:
+            answers.put(receive(said))
+    answers.put(None)
+
+
+_idle: list[_CpSat] = []  # one that did its work
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_idle.clear)

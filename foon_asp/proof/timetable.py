@@ -1,0 +1,258 @@
+"""Does a schedule hold? Played through in time, in plain Python, knowing nothing of how it was found."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from foon_asp.network import Contents, FunctionalUnit, ObjectNode
+from foon_asp.problem import Problem, given_outputs, needed_inputs
+from foon_asp.text.duration_list import Duration
+
+ToolName = str | ObjectNode
+"""What tools are counted by: a label, or one that the kitchen has with something in it."""
+
+
+class Tool(NamedTuple):
+    """One tool or vessel: the ``number``-th, from 1, of its ``name``, a label or an object node.
+
+    Example:
+        >>> str(foon_asp.Tool("knife", 2))
+        'knife 2'
+    """
+
+    name: ToolName
+    number: int
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.number}"
+
+    @property
+    def label(self) -> str:
+        """The label of its object nodes."""
+        return self.name if isinstance(self.name, str) else self.name.label
+
+
+class TimedStep(NamedTuple):
+    """When a step is done, by whom, and with what.
+
+    ``start`` and ``end`` are in seconds. ``agent`` is a number from 1, ``None`` where nobody has to stand by.
+    ``tools`` are in use by it alone, in the order of the unit's objects.
+
+    Example:
+        >>> problem = foon_asp.load().problem("ice")
+        >>> tree = foon_asp.solve(problem).tree
+        >>> foon_asp.schedule(problem, tree, durations={"twist": 10, "crush": 30}).timetable[1].agent
+        1
+    """
+
+    start: Fraction
+    end: Fraction
+    agent: int | None
+    tools: tuple[Tool, ...]
+
+
+class Means(NamedTuple):
+    """What there is to work with.
+
+    ``durations`` are those of motions. ``tools`` says how many there are of some tools, ``None`` for what is
+    free: as many as are asked for. Of other utensils there is one each.
+    """
+
+    durations: Mapping[str, Duration]
+    agents: int
+    tools: Mapping[ToolName, int | None]
+
+    def waited_for(self, problem: Problem, label: str) -> bool:
+        """Whether what has a label is a tool that one may have to wait for."""
+        if label in self.tools:
+            return self.tools[label] is not None
+        named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
+        return named or label in problem.utensils
+
+    def name(self, node: ObjectNode, label: str) -> ToolName:
+        """Give what a tool of the kitchen is counted by, which has a label and is, or has in it, a node.
+
+        Those with contents are counted by these.
+        """
+        if node in self.tools:
+            return node
+        inside = node.ingredients if node.label == label else (node.label,)
+        if label in self.tools or not inside:
+            return label
+        return ObjectNode.of(label, (), (), [Contents("contains", tuple(sorted({*inside})))])
+
+    def number_of(self, problem: Problem, name: ToolName) -> int:
+        """Give how many there are: as is said, or as the stock has them, or one."""
+        said = self.tools.get(name)
+        if said is not None:
+            return said
+        stock = {} if problem.items is None else problem.items.stock
+        return max(1, sum(n for node, n in stock.items() if self.name(node, node.label) == name))
+
+
+class Asked(NamedTuple):
+    """What a unit asks of tools of one label.
+
+    It takes ``kept`` ones that are as they were when it is done, and ``changed`` ones; ``made`` are what they
+    are then. ``others`` are those that it does not ask for as items: containers that were skipped, or
+    what is in a tool that it does not list, or ``None`` for one that something is put in, on or by.
+    """
+
+    kept: tuple[ObjectNode, ...]
+    changed: tuple[ObjectNode, ...]
+    made: tuple[ObjectNode, ...]
+    others: tuple[ObjectNode | None, ...]
+
+    @property
+    def number(self) -> int:
+        """How many tools that are."""
+        return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
+
+
+def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, Asked]:
+    """Give what a unit asks for by label: its utensils, and those that its objects are in, on or at."""
+    needed, made = _sides(problem, unit)
+    asked: dict[str, Asked] = {}
+    nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
+    around = (relation.object for node in nodes for relation in node.relations)
+    for label in dict.fromkeys([*(node.label for node in nodes), *around]):
+        if not means.waited_for(problem, label):
+            continue
+        own = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
+        kept = tuple(node for node in own if node in needed and node in unit.outputs)
+        changed = tuple(node for node in own if node in needed and node not in unit.outputs)
+        out = tuple(node for node in made if node.label == label)
+        others: list[ObjectNode | None] = [node for node in own if node not in needed]
+        if not own and not out:
+            inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
+            others.append(next(iter(inside), None))  # preferably one that was made: it is known where
+        asked[label] = Asked(kept, changed, out, tuple(others))
+    return asked
+
+
+def timetable_fault(
+    problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
+) -> str | None:
+    """Say what is wrong with a schedule of a plan, ``None`` where nothing is.
+
+    At each moment there have to be the copies that steps take, nobody may do two things, and each tool is at
+    one step, in the state in which an earlier one left it or as the kitchen has it. The problem has to be
+    one whose plans can be replayed.
+    """
+    if len(steps) != len(plan):
+        return f"there are {len(plan)} steps, and times for {len(steps)}"
+    for number, (unit, step) in enumerate(zip(plan, steps, strict=True), 1):
+        duration = means.durations[unit.motion]
+        if step.start < 0 or step.end - step.start != duration.seconds:
+            return f"step {number} does not take the time that {unit.motion} takes"
+        if (step.agent is None) != duration.passive:
+            return f"step {number} is done by nobody, or by somebody where nobody has to"
+        if step.agent is not None and not 1 <= step.agent <= means.agents:
+            return f"step {number} is done by agent {step.agent}, and there are {means.agents}"
+    return _Run(problem, plan, steps, means).fault()
+
+
+class _Run:
+    """A kitchen in which steps start and end."""
+
+    def __init__(
+        self, problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
+    ) -> None:
+        assert problem.items is not None
+        self._problem, self._items, self._means = problem, problem.items, means
+        self._plan, self._steps = plan, steps
+        self._copies = Counter({n: k for n, k in problem.items.stock.items() if problem.at_hand(n)})
+        self._read: Counter[ObjectNode] = Counter()
+        self._working: dict[int | Tool, int] = {}  # who and what is at a step
+        self._states: dict[Tool, frozenset[ObjectNode]] = {}
+
+    def fault(self) -> str | None:
+        events = [(step.end, 0, number) for number, step in enumerate(self._steps)]
+        events += [(step.start, 1, number) for number, step in enumerate(self._steps)]
+        for _, starts, number in sorted(events):
+            if not starts:
+                self._end(number)
+            elif fault := next(self._start(number), None):
+                return f"step {number + 1} ({self._plan[number].motion}) {fault}"
+        return None
+
+    def _start(self, number: int) -> Iterator[str]:
+        unit, step = self._plan[number], self._steps[number]
+        hands: list[int | Tool] = [*step.tools] + ([] if step.agent is None else [step.agent])
+        if len(set(hands)) < len(hands):
+            yield "has the same tool twice"
+        for hand in hands:
+            if hand in self._working:
+                yield f"waits for {hand}, which is at step {self._working[hand] + 1}"
+        yield from self._wrong_tools(unit, step.tools)
+        needed, _ = _sides(self._problem, unit)
+        for node in needed:
+            if self._endless(node):
+                continue
+            goes = not self._stays(unit, node)
+            if self._copies[node] < 1 + (goes and self._read[node] > 0):
+                yield f"lacks a copy of {node}"
+            self._copies[node] -= goes
+            self._read[node] += not goes
+        self._working.update(dict.fromkeys(hands, number))
+
+    def _end(self, number: int) -> None:
+        unit, step = self._plan[number], self._steps[number]
+        needed, made = _sides(self._problem, unit)
+        for node in needed:
+            if not self._endless(node) and self._stays(unit, node):
+                self._read[node] -= 1
+        for node in made:
+            if not self._endless(node):
+                self._copies[node] += 1
+        gone = {node for node in needed if not self._stays(unit, node)}
+        for tool in step.tools:
+            left = self._states.get(tool, frozenset()) - gone
+            self._states[tool] = left.union(node for node in made if _is_at(node, tool.label))
+        for hand in (*step.tools, step.agent):
+            if hand is not None:
+                self._working.pop(hand, None)
+
+    def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
+        """Give what is wrong with the tools of a step, as far as one sees it when it starts."""
+        problem, means = self._problem, self._means
+        asked, (needed, _) = tools_asked(problem, means, unit), _sides(problem, unit)
+        given = Counter(tool.label for tool in tools)
+        for label in asked.keys() | given.keys():
+            wanted = asked[label].number if label in asked else 0
+            if given[label] != wanted:
+                yield f"has {given[label]} of {label}, and asks for {wanted}"
+        for tool in tools:
+            if not 1 <= tool.number <= means.number_of(problem, tool.name):
+                yield f"has {tool}, and there are {means.number_of(problem, tool.name)}"
+        for label, each in asked.items():
+            here = [tool for tool in tools if tool.label == label]
+            there = {node for tool in here for node in self._states.get(tool, ())}
+            taken = {node for node in (*each.kept, *each.changed, *each.others) if node is not None}
+            for node in taken - there:
+                fetched = problem.at_hand(node) and means.name(node, label) in {tool.name for tool in here}
+                if not fetched and (node in needed or node.label != label):
+                    yield f"has no {label} for {node}"
+            for tool in here:  # what is fetched is as the kitchen has it, whatever it was before
+                if taken and taken.isdisjoint(self._states.get(tool, ())):
+                    self._states[tool] = frozenset()
+
+    def _endless(self, node: ObjectNode) -> bool:
+        return self._problem.at_hand(node) and node not in self._items.stock
+
+    def _stays(self, unit: FunctionalUnit, node: ObjectNode) -> bool:
+        return self._items.fate(unit, node, self._problem.utensils).stays
+
+
+def _sides(problem: Problem, unit: FunctionalUnit) -> tuple[tuple[ObjectNode, ...], tuple[ObjectNode, ...]]:
+    """Give the different nodes that a unit needs, and those that it makes and does not take."""
+    how = problem.containers, problem.utensils, problem.network
+    needed: Iterable[ObjectNode] = needed_inputs(unit, *how)
+    made = (node for node in given_outputs(unit, *how) if node not in unit.inputs)
+    return tuple(dict.fromkeys(needed)), tuple(dict.fromkeys(made))
+
+
+def _is_at(node: ObjectNode, label: str) -> bool:
+    """Whether a node is a tool, or something in, on or at it."""
+    return node.label == label or node.is_in(label)
