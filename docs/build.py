@@ -33,6 +33,7 @@ PAGES = {
         "docs/writing-constraints",
         "docs/writing-objectives",
         "docs/plans",
+        "docs/schedules",
         "docs/view",
         "docs/drawing",
         "docs/batch",
