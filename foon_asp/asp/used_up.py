@@ -18,7 +18,16 @@ from foon_asp.asp.solver import solve as solve_lasting
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
 from foon_asp.encoding.exact_success import RateScale, rate_scale
 from foon_asp.errors import BugError, UserError
-from foon_asp.problem import Costs, Objective, Problem, Restriction, levels, multiplies, reach
+from foon_asp.problem import (
+    Costs,
+    Objective,
+    Problem,
+    Restriction,
+    first_tree,
+    levels,
+    multiplies,
+    reach,
+)
 from foon_asp.proof.replay import replay_for
 from foon_asp.rules.limit import TIMES, Limit
 
@@ -116,6 +125,7 @@ class _Solver:
         self.removed: Callable[[int], bool] = lambda _: False
         self.required: tuple[frozenset[int], ...] = ()
         self.limits: Sequence[Limit] = ()
+        self.tree: frozenset[int] = frozenset()  # some that makes the goals if nothing is used up
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
         self.bounds: dict[Objective, int | Fraction] = {}
@@ -179,11 +189,13 @@ class _Solver:
         problem = self.problem
         stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         left = Restriction(self.removed, self.required)
-        reached = reach(replace(problem, kitchen=stocked, restriction=left))
+        lasting = replace(problem, kitchen=stocked, restriction=left)
+        reached = reach(lasting)
         if not all(reached.available[goal] for goal in problem.goals):
             return None
         if not all(each & set(reached.units) for each in self.required):
             return None
+        self.tree = frozenset(first_tree(lasting, reached) or ())
         if self._keeps_spare:
             return sorted(reached.units)
         allowed = set(reached.units)
@@ -222,6 +234,7 @@ class _Solver:
             return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
         if plan is not None:
             self._take(plan)
+            counting.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
         elif self._none_lasts():
             return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
         elif counting.none_is_left():
@@ -316,6 +329,7 @@ class _Counting:
                 Limit({a: each.weights[u] for a, u in enumerate(units) if each.weights.get(u)}, *each[1:])
                 for each in solver.limits
             ],
+            [a for a, unit in enumerate(units) if unit in solver.tree],
             expired=lambda: solver.deadline.passed,
             left=lambda: solver.deadline.left,
         )

@@ -7,11 +7,15 @@ the relaxations in floats; what it proves is weighed again in whole numbers, so 
 """
 
 import math
+import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import cached_property
 from heapq import heappop, heappush
 from typing import NamedTuple
 
+from foon_asp.bounds.cut import Cutter
+from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.whole_program import WholeProgram
 
 Counts = dict[int, int]
@@ -19,10 +23,13 @@ Counts = dict[int, int]
 
 _Bounds = tuple[list[int], list[int | None]]
 
+_HIT = 0.999999  # a landmark of which a greater part is executed is taken to be hit
 _NEAR = 1e-6  # what differs less from a whole number is one, for choosing where to branch
 _PROBES = 60  # actions that a root looks at to see whether they can be executed twice
 _MOST_PARTS = 20_000  # that are looked at before a proof is given up
+_ORDERS = 3  # in how many orders landmarks are looked for before there are taken to be no more
 _FAR = 1000  # executions of an action that HiGHS takes to be many when it looks for counts
+_FEWER = 8  # those that it takes to be many at first, which is much faster
 
 
 class Flows(NamedTuple):
@@ -101,7 +108,8 @@ class CountBound:
     ``expired`` says when to give up, and ``left`` in how many seconds, if time is limited: methods then raise
     :class:`Stopped`. ``required`` are sets of actions of each of which one has to be executed. ``limits`` say
     of sums with a weight from 0 for each action how large they are, at most or at least: over executions, or
-    over the actions that are used.
+    over the actions that are used. ``derivation`` are actions that reach the targets if nothing is used up:
+    landmarks are looked for around these.
     """
 
     def __init__(
@@ -109,11 +117,14 @@ class CountBound:
         flows: Flows,
         required: Sequence[Sequence[int]] = (),
         limits: Sequence[SumLimit] = (),
+        derivation: Sequence[int] = (),
         expired: Callable[[], bool] = lambda: False,
         left: Callable[[], float | None] = lambda: None,
     ) -> None:
         self._flows, self._limits, self._expired, self._left = flows, limits, expired, left
         self._size = len(flows.asks)
+        self.derivation = derivation
+        self._random, self._many = random.Random(0), _FAR
         self.proved: float | Fraction = 0  # what every plan costs at least by the first level, so far
         self._landmarks = [Landmark(tuple(units)) for units in required]
         self._makers: dict[int, list[int]] = {}
@@ -127,12 +138,20 @@ class CountBound:
         They are those of a plan in which nothing is used up, at least; whether a plan has them is left open,
         and nothing is proved.
         """
+        for self._many in (_FEWER, _FAR):
+            found = self._counts(measures, rounds)
+            if found is not None and max(found.values(), default=0) < self._many:
+                break
+        return found
+
+    def _counts(self, measures: Sequence[Measure], rounds: int) -> Counts | None:
         found: Counts | None = None
         for _ in range(rounds):
             model = _Model(self, measures, far=True)
             x: list[float] = []
             for measure in measures:
-                whole = model.program.whole_optimum(model.objective(measure), self._left())
+                relaxed = self._relaxed(model, model.objective(measure))
+                whole = relaxed or model.program.whole_optimum(model.objective(measure), self._left())
                 if whole is None:
                     return None
                 x = whole
@@ -142,6 +161,20 @@ class CountBound:
             if not self._add_landmark(x, model):
                 break
         return found
+
+    def _relaxed(self, model: "_Model", objective: Mapping[int, int]) -> list[float] | None:
+        """Add landmarks that the relaxation misses; give its counts where they are whole."""
+        while True:
+            self._check()
+            x = model.program.solve(objective).x
+            if x is None or not self._separate(x, model, at_root=True):
+                break
+        columns = {*range(model.program.columns)}.difference(range(self._size, 2 * self._size))
+        if x is None or any(abs(x[column] - round(x[column])) > _NEAR for column in columns):
+            return None
+        for a in range(self._size):
+            x[self._size + a] = float(x[a] > 0.5)
+        return x
 
     def none(self) -> bool:
         """Whether it is proved that no counts satisfy the conditions, so that there is no plan."""
@@ -205,7 +238,7 @@ class CountBound:
                 continue
             if solved.x is None:
                 raise Stopped  # floats say that there is nothing, and no whole numbers do
-            if self._add_landmark(solved.x, model):
+            if self._add_landmark(solved.x, model) or self._separate(solved.x, model, at_root=False):
                 heappush(waiting, (bound, 0, number, (model.program.lower, model.program.upper)))
                 continue
             for part in self._branches(model, solved.x, before, level, is_better):
@@ -223,7 +256,7 @@ class CountBound:
             solved = program.solve(objective, cutoff)
             if solved.x is None or solved.bound > cutoff:
                 return
-            if self._add_landmark(solved.x, model):
+            if self._add_landmark(solved.x, model) or self._separate(solved.x, model, at_root=True):
                 continue
             loose = [
                 a
@@ -308,6 +341,37 @@ class CountBound:
             model.add_landmark(landmark)
         return bool(missed)
 
+    @cached_property
+    def _cutter(self) -> Cutter:
+        flows = self._flows
+        objects = {o for side in (*flows.asks, *flows.adds, flows.targets, flows.start) for o in side}
+        start = [o for o, count in flows.start.items() if count]
+        return Cutter(Hypergraph(max(objects, default=0) + 1, flows.asks, flows.adds, start), flows.targets)
+
+    def _separate(self, x: Sequence[float], model: "_Model", at_root: bool) -> bool:
+        """Add landmarks of the targets that what is found hits in part only; whether there are any.
+
+        Actions that are executed more are next to the start, and at the root all but one of the derivation.
+        Without a derivation none are looked for.
+        """
+        derivation, size = self.derivation, self._size
+        if not derivation or self._cutter.hopeless or not self._cutter.targets:
+            return False
+        cutter, found = self._cutter, set[tuple[int, ...]]()
+        keeps = [[a for a in derivation if a != gone] for gone in derivation]
+        for number in range(_ORDERS):
+            order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
+            for keep in ((), *(keeps if at_root and number == 0 else ())):
+                cut = cutter.cut(keep, order)
+                if cut is not None and sum(x[size + a] for a in cut.members) < _HIT:
+                    found.add(cut.members)
+            if found:
+                break
+        for members in sorted(found):
+            self._landmarks.append(Landmark(members))
+            model.add_landmark(self._landmarks[-1])
+        return bool(found)
+
     def _landmark(self, o: int, reached: set[int], used: set[int], model: "_Model") -> Landmark:
         """Grow a cut backwards from an object that is not reached, as small as it can be."""
         asks = self._flows.asks
@@ -334,7 +398,7 @@ class _Model:
         flows, size = bound._flows, bound._size
         self._flows = flows
         self.program = program = WholeProgram(size)
-        self._far, self._size = far, size
+        self._far, self._size, self._many = far, size, bound._many
         for _ in range(size):
             program.column(0, 1)  # whether an action is executed at all
         self._loose = [program.row({size + a: 0, a: 0}, 0) for a in range(size)]
@@ -415,7 +479,7 @@ class _Model:
         for action, row in enumerate(self._loose):
             most = program.upper[action]
             if most is None and self._far:
-                most = _FAR
+                most = self._many
             program.change(row, {} if most is None else {self._size + action: most, action: -1})
 
     def cap(self, measure: Measure, most: int) -> None:
