@@ -1,7 +1,9 @@
 """Pages in a real browser: what a person sees, clicks and hears read out."""
 
 import time
+import warnings
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -10,6 +12,7 @@ import pytest
 
 import foon_asp
 from tests.browser import CHROMIUM, Browser, browser
+from tests.conftest import CORPUS
 from tests.test_view import strange
 
 pytestmark = [
@@ -314,6 +317,111 @@ def test_rules_that_clash_are_named(chromium: Browser, shown: Callable[..., Path
     rules = [':- use(U), motion(U,"crush").', ":- not use(27)."]
     opened(chromium, shown("ice", constraints=rules), "Why there is no tree")
     assert texts(chromium, HERE + "code")[:2] == rules
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a page of the largest network there is: the real one, or else the bundled kitchen."""
+    file = tmp_path_factory.mktemp("whole") / "whole.html"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about the data
+        data = foon_asp.load(CORPUS / "universal") if CORPUS.is_dir() else foon_asp.load()
+    foon_asp.view(data).write(file)
+    return file
+
+
+FRAMES = """window.frames = []; (function frame(now) {
+  window.frames.push(now); requestAnimationFrame(frame) })(performance.now())"""
+
+
+def test_a_whole_network_opens_and_moves_at_once(chromium: Browser, whole: Path) -> None:
+    assert whole.stat().st_size < 6_000_000
+    chromium.size(1440, 900)
+    took = []
+    for _ in range(3):  # the machine may do something else, too
+        began = time.perf_counter()
+        chromium.open(whole)
+        took.append(time.perf_counter() - began)
+    assert min(took) < 2
+    chromium.run(FRAMES)
+    chromium.mouse("mousePressed", 500, 450)
+    until = time.perf_counter() + 1.5
+    number = 0
+    while time.perf_counter() < until:
+        number += 1
+        chromium.mouse("mouseMoved", 500 + number * 7 % 300, 450 + number * 3 % 200)
+        time.sleep(0.008)
+    chromium.mouse("mouseReleased", 500, 450)
+    frames = chromium.run("window.frames.slice(3)")
+    steps = sorted(after - before for before, after in pairwise(frames))
+    assert steps[len(steps) // 2] < 1000 / 30
+    assert chromium.complaints == []
+    assert chromium.requests == [whole.resolve().as_uri()]
+
+
+def test_nodes_of_a_network_are_found_by_name(chromium: Browser, whole: Path) -> None:
+    chromium.size(1440, 900)
+    chromium.open(whole)
+    chromium.run("document.querySelector('input[type=search]').focus()")
+    for letter in "greek salad":
+        chromium.press(letter)
+    assert texts(chromium, "aside ul .label")[0] == "greek salad"
+    chromium.press("Tab")
+    chromium.press("Enter")
+    assert texts(chromium, "aside h2")[0].startswith("greek salad; mixed")
+    network = chromium.run(f"{DATA}.network")
+    objects = [node["node"] for node in network["objects"]]
+    o = objects.index(texts(chromium, "aside h2")[0])
+    makers = [unit for unit in network["units"] if o in unit["outputs"]]
+    takers = [unit for unit in network["units"] if o in unit["inputs"]]
+    assert f"made by: {len(makers)}" in texts(chromium, "aside h3")
+    around = {(True, o)} | {(False, unit["id"]) for unit in (*makers, *takers)}
+    assert texts(chromium, ".bar output")[0] == f"1 · {len(around)} nodes"
+    set_depth = (
+        "const r = document.querySelector('.far input'); r.value = {}; r.dispatchEvent(new Event('input'))"
+    )
+    chromium.run("{" + set_depth.format(0) + "}")
+    assert texts(chromium, ".bar output")[0] == "0 · 1 node"
+    chromium.run("{" + set_depth.format(2) + "}")
+    near = {n for unit in (*makers, *takers) for n in (*unit["inputs"], *unit["outputs"])}
+    assert texts(chromium, ".bar output")[0] == f"2 · {len(near | {o}) + len(around) - 1} nodes"
+
+
+COLOURS = """(() => {
+  const canvas = document.querySelector(".canvas");
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const pen = copy.getContext("2d", { willReadFrequently: true });
+  pen.drawImage(canvas, 0, 0);
+  const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+  const found = new Set();
+  for (let i = 0; i < data.length; i += 4) found.add(`${data[i]},${data[i + 1]},${data[i + 2]}`);
+  return found.size;
+})()"""
+
+
+def test_colours_of_a_network_can_be_chosen(chromium: Browser, shown: Callable[..., Path]) -> None:
+    chromium.size(1440, 900)
+    chromium.open(shown("macaroni", beside=["network"]))
+    chromium.run(
+        "[...document.querySelectorAll('[role=tab]')].find(t => t.textContent === 'The network').click()"
+    )
+    chromium.run("new Promise(done => setTimeout(done, 300))")
+    choose = (
+        "const s = document.querySelector('select'); s.value = {!r}; s.dispatchEvent(new Event('change'))"
+    )
+    assert chromium.run(COLOURS) > 20
+    drawn = len(chromium.run(f"{DATA}.answer.units"))
+    for mode, said in (("recipes", "Parts that hang together"), ("reach", "Colours"), ("tree", "Colours")):
+        chromium.run("{" + choose.format(mode) + "}")
+        assert texts(chromium, HERE + "aside h2")[0] == said
+        assert chromium.run(COLOURS) > 20
+    lit = int(texts(chromium, HERE + ".bar output")[0].split()[0])
+    assert lit > 2 * drawn
+    chromium.run("{" + choose.format("recipes") + "}")
+    chromium.run("document.querySelector('main:not([hidden]) aside section .item').click()")
+    assert texts(chromium, HERE + "aside [aria-pressed=true]") != []
+    assert chromium.complaints == []
 
 
 @pytest.mark.parametrize("name", ["</script><b>x</b>", "<img src=x onerror=boom()>", "a\u202eb"])

@@ -170,6 +170,27 @@ def test_plans_that_use_items_up_have_a_page_of_their_own() -> None:
         foon_asp.view(problem, beside=["searches"])
 
 
+@pytest.mark.parametrize("containers", ["strict", "implied"])
+def test_a_page_of_a_network_has_all_of_it(containers: str) -> None:
+    foon = foon_asp.load()
+    network = in_page(foon_asp.view(foon, containers=containers).html())["network"]
+    problem = foon.problem("macaroni", containers=containers)
+    assert [unit["motion"] for unit in network["units"]] == list(problem.network.motions)
+    assert [node["node"] for node in network["objects"]] == list(map(str, problem.network.objects))
+    assert set(network["kitchen"]) == problem.kitchen
+    unreachable = {o for o in range(len(network["objects"])) if foon_asp.why_not(problem).available[o] == 0}
+    assert set(network["reachable"]) == set(range(len(network["objects"]))) - unreachable
+    places = list(zip(network["places"][::2], network["places"][1::2], strict=True))
+    assert len(places) == len(network["units"]) + len(network["objects"])
+    assert len(set(places)) > 0.99 * len(places)
+
+
+def test_a_network_has_no_tree_to_ask_for(cli: Cli, tmp_path: Path) -> None:
+    for words in (("--objective", "success"), ("--beside", "front"), ("--rule", ":- use(1).")):
+        ran = cli("view", *words, "-o", tmp_path / "whole.html")
+        assert (ran.code, f"{words[0]} is about a tree: name a goal" in ran.err) == (2, True)
+
+
 def test_a_notebook_shows_the_page_in_a_frame() -> None:
     shown: Page = foon_asp.solve(foon_asp.load().problem("ice")).view()
     (tag, frame), *_ = Parts(shown._repr_mimebundle_()["text/html"]).tags

@@ -90,9 +90,8 @@ class Answer(Result, Outcome):
         from foon_asp.report.page import Page, view_json  # noqa: PLC0415
 
         goals = " + ".join(map(str, self.problem.goal_nodes))
-        return Page(
-            f"{goals} - foon-asp", self.text(), view_json(self.problem, self.units or (), self.json_dict())
-        )
+        shown = view_json(self.json_dict(), [(self.problem, self.units or ())])
+        return Page(f"{goals} - foon-asp", self.text(), shown)
 
     def _in_notebook(self) -> dict[str, str]:
         """Give what a notebook shows by media type: the picture with its claim, or the text."""

@@ -161,7 +161,7 @@ def _posed(
     foon-asp draw --goal macaroni -o tree.svg                the optimal task tree for a goal
     foon-asp draw --tree tree.txt --goal macaroni -o t.png   a task tree read from FOON text
     foon-asp draw --unit 12 -o unit.svg                      one functional unit, by id
-    foon-asp draw --network FILE -o whole.dot                a whole network
+    foon-asp draw --network FILE -o whole.svg                a whole network
 
     With --tree and --unit, --goal says which nodes are shown as goals, and nothing is solved. Exits with 0
     when there is a picture; for the tree of a goal as `solve` does.

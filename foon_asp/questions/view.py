@@ -1,6 +1,6 @@
 """A page that shows a tree and what else is known: one file, for any browser, without a network."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -8,20 +8,23 @@ from typing import Any
 
 from foon_asp.dataset.paths import File, Files
 from foon_asp.errors import UserError
+from foon_asp.foon import Foon
+from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered
-from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
+from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.certify import Certified, certified
-from foon_asp.questions.contract import Option, not_built, question, question_of
+from foon_asp.questions.contract import Option, Part, not_built, question, question_of
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.pareto import Front, pareto
+from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved, retrieve
 from foon_asp.questions.searching import searched
 from foon_asp.questions.shopping_list import Shopping, shopping_list
 from foon_asp.questions.why_not import Explanation, why_not
-from foon_asp.report.page import Page, view_json
+from foon_asp.report.page import Page, network_json, view_json
 from foon_asp.report.proof_cases import proof_json
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.json_value import Json
@@ -36,6 +39,7 @@ class Beside(StrEnum):
     PROOF = "proof"
     ALTERNATIVES = "alternatives"
     FRONT = "front"
+    NETWORK = "network"
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,8 +47,9 @@ class View(Result):
     """A page about an ``answer``; :meth:`html` gives it, and :meth:`write` writes it into a file.
 
     Beside it the page shows what is not empty here: the trees of ``searches``, the certificate that is
-    ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; and where there is no tree,
-    ``why_not`` and the ``shopping`` that would help.
+    ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
+    ``why_not`` and the ``shopping`` that would help; and the whole ``network`` of a problem. A page about a
+    network alone has no ``answer``.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -52,7 +57,7 @@ class View(Result):
         '<!DOCTYPE html>'
     """
 
-    answer: Answer
+    answer: Answer | None
     searches: tuple[Retrieved, ...] = ()
     certified: Certified | None = None
     without_rules: Answer | None = None
@@ -60,27 +65,25 @@ class View(Result):
     front: Front | None = None
     why_not: Explanation | None = None
     shopping: Shopping | None = None
+    network: Problem | None = None
 
     @property
     def ending(self) -> Ending:
         """As that of the answer."""
-        return self.answer.ending
+        return Ending.DONE if self.answer is None else self.answer.ending
 
     def text(self) -> str:
-        """Give the answer in words."""
-        return self.answer.text()
+        """Give the answer in words, or how large the network is."""
+        if self.answer is not None:
+            return self.answer.text()
+        assert self.network is not None
+        network = self.network.network
+        return f"{counted(len(network), 'unit')}, {counted(len(network.objects), 'object node')}\n"
 
     def json_dict(self) -> Json:
         """Give what is in the page: the documents of the answers as they are."""
-        units = set(self.answer.units or ())
-        for found in self.searches:
-            units.update(found.retrieval.units if found.simulation else ())
-        for listed in (self.alternatives and self.alternatives.trees, self.front and self.front.points):
-            units.update(unit for tree in listed or () for unit in tree.units)
-        proof = None
-        if self.certified is not None and self.certified.certificate is not None:
-            proof = proof_json(self.certified.answer.problem, self.certified.certificate.content)
-        others = {
+        proof = None if self.certified is None else self.certified.certificate
+        others: dict[str, Result | None] = {
             "without_rules": self.without_rules,
             "alternatives": self.alternatives,
             "front": self.front,
@@ -88,24 +91,37 @@ class View(Result):
             "shopping_list": self.shopping,
         }
         return view_json(
-            self.answer.problem,
-            units,
-            self.answer.json_dict(),
+            None if self.answer is None else self.answer.json_dict(),
+            self._trees(),
             searches=[found.json_dict() for found in self.searches],
-            proof=proof,
-            **{name: None if found is None else found.json_dict() for name, found in others.items()},
+            proof=proof and self.certified and proof_json(self.certified.answer.problem, proof.content),
+            network=None if self.network is None else network_json(self.network),
+            **{name: found and found.json_dict() for name, found in others.items()},
         )
+
+    def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
+        bought = None if self.shopping is None else self.shopping.outcome
+        for answer in (self.answer, self.without_rules, bought):
+            if answer is not None:
+                yield answer.problem, answer.units or ()
+        for found in self.searches:
+            yield found.problem, found.retrieval.units if found.simulation else ()
+        if self.alternatives is not None:
+            yield from ((self.alternatives.problem, tree.units) for tree in self.alternatives.trees)
+        if self.front is not None:
+            yield from ((self.front.problem, point.units) for point in self.front.points)
 
     def html(self) -> str:
         """Give the page, a document by itself."""
         return self._page().html()
 
     def _page(self) -> Page:
-        return self.answer.view()._replace(data=self.json_dict())
+        about = self.text() if self.answer is None else " + ".join(map(str, self.answer.problem.goal_nodes))
+        return Page(f"{about.strip()} - foon-asp", self.text(), self.json_dict())
 
     def remark(self, format_: str) -> str:
         """Say what is claimed, where that is not the best tree."""
-        return self.answer.remark(format_)
+        return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
         """Write the page into a file.
@@ -125,17 +141,39 @@ class View(Result):
         write_whole(Path(file), utf_8(self.html() if form == "html" else self.json_text()))
 
     def __repr__(self) -> str:
-        return f"<View of {self.answer!r}>"
+        return f"<View of {self.text().strip() if self.answer is None else repr(self.answer)}>"
 
     def _in_notebook(self) -> dict[str, str]:
         """Give what a notebook shows by media type: the page, in a frame of its own."""
         return {"text/plain": repr(self), "text/html": self._page().frame()}
 
 
+def _posed(
+    command: Command,
+    goals_named: Sequence[str],
+    containers: str,
+    items: str,
+    stock: File | None,
+    stays: File | None,
+) -> tuple[Problem | Foon]:
+    """Pose the goals that are named; without any it is about the data."""
+    if goals_named:
+        return one_problem(command, goals_named, containers, items, stock, stays)
+    for option, flag in (
+        ("objectives", "--objective"),
+        ("beside", "--beside"),
+        ("constraints", "--constraint"),
+        ("rules", "--rule"),
+    ):
+        if command.given(option):
+            raise UserError(f"{flag} is about a tree: name a goal with --goal")
+    return the_data(command)
+
+
 @question(
     GOALS,
     OBJECTIVES,
-    CONTAINERS,
+    CONTAINERS._replace(part=Part.PROBLEM | Part.QUESTION),
     *ITEMS,
     Option(
         "beside",
@@ -149,30 +187,38 @@ class View(Result):
     foon-asp view --goal macaroni -o macaroni.html
     foon-asp view --goal 'greek salad' --objective success --beside front -o salad.html
     foon-asp view --goal ice --constraint mine.lp -o ice.html
+    foon-asp view --network FILE -o whole.html          a whole network
 
     The file is whole in itself: open it in any browser, with no network. It walks through the best tree step
     by step, shows the trees of the searches and why no tree is better, and where there is none, why. Under
-    constraints it shows the tree without them, too.
+    constraints it shows the tree without them, too. Without a goal it shows the whole network.
 
     Exits with 0 when the tree is proved optimal, and otherwise as `solve` does.
     """,
     formats=("html", "json"),
     suffixes={".html": "html", ".htm": "html", ".json": "json"},
+    pose=_posed,
 )
 def view(
-    problem: Problem,
+    about: Problem | Foon,
     objectives: Objectives = "units",
     *,
     beside: Iterable[str] = (),
     constraints: Files = (),
     constants: Constants | None = None,
     encodings: File | None = None,
+    containers: str = "strict",
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> View:
-    """Solve a problem, and show what was found on a page that any browser opens.
+    """Solve a problem, and show what was found on a page that any browser opens; or show a whole network.
 
     The limits are for all of it.
+
+    Parameters:
+        about: A problem; or data that were loaded, whose whole network is shown.
+        containers: The container rule for what can be made in a whole network: ``strict`` or ``implied``. A
+            problem has its own.
 
     Returns:
         The page: ``html()`` gives it, ``write`` writes it into a file, and a notebook shows it.
@@ -183,7 +229,14 @@ def view(
     Example:
         >>> foon_asp.view(foon_asp.load().problem("ice"))
         <View of <Answer: optimal by units (strict containers): 2 units, 6 inputs, success 0.644>>
+        >>> foon_asp.view(foon_asp.load())
+        <View of 220 units, 418 object nodes>
     """
+    if isinstance(about, Foon):
+        if not len(about.dataset.data.network):
+            raise UserError("the network has no units to show")
+        return View(None, network=about.dataset.problem((0,), containers, everything=True))
+    problem = about
     wanted = {str(each) for each in ([beside] if isinstance(beside, str) else beside)}
     for name in sorted(wanted - {*Beside}):
         raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
@@ -197,9 +250,8 @@ def view(
     deadline = how.begun
     how = how._replace(deadline=deadline)
     proof = certified(problem, chosen, how) if Beside.PROOF in wanted else None
-    page = View(
-        answered(asked_with(problem, how), chosen, how) if proof is None else proof.answer, certified=proof
-    )
+    answer = answered(asked_with(problem, how), chosen, how) if proof is None else proof.answer
+    page = View(answer, certified=proof, network=whole(problem) if Beside.NETWORK in wanted else None)
 
     def left() -> dict[str, Any]:
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
@@ -207,7 +259,7 @@ def view(
     rules: dict[str, Any] = {"constraints": constraints, "constants": constants, "encodings": encodings}
     if constraints or encodings is not None:
         page = replace(page, without_rules=answered(problem, chosen, settings(**left())))
-    if page.answer.ending is Ending.NEGATIVE:
+    if answer.ending is Ending.NEGATIVE:
         explained = why_not(problem, **rules, **left())
         helped = None if explained.tree_exists else shopping_list(problem, objectives, **rules, **left())
         return replace(page, why_not=explained, shopping=helped)

@@ -35,11 +35,15 @@ class Box(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """Boxes, and arrows between boxes by their names, under a caption of a line or more."""
+    """Boxes, and arrows between boxes by their names, under a caption of a line or more.
+
+    ``graph`` says that it is the graph of a network, in which every object node is one box, and no plan.
+    """
 
     caption: tuple[str, ...]
     boxes: tuple[Box, ...]
     arrows: tuple[tuple[str, str], ...]
+    graph: bool = False
 
     @property
     def units(self) -> int:
@@ -125,7 +129,7 @@ def draw_network(
             canvas.arrow(canvas.shared(node), motion)
         for node in unit.outputs:
             canvas.arrow(motion, canvas.shared(node))
-    return canvas.drawing(caption)
+    return canvas.drawing(caption)._replace(graph=True)
 
 
 class _Canvas:

@@ -11,16 +11,17 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.document.json_document import document, fraction_json
+from foon_asp.document.json_document import document, fraction_json, mention_json, nodes_json
 from foon_asp.escapes import UNSAFE
-from foon_asp.problem import Problem
+from foon_asp.problem import Problem, reach
+from foon_asp.report.spread import spread
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.json_value import Json, json_line
 
 WEB = Path(__file__).resolve().parent / "web"
 
-_SCRIPTS = ("layout", "tree", "page", "obstacle", "answers", "proof", "start")
-_OTHERS = ("without_rules", "alternatives", "front", "proof", "why_not", "shopping_list")
+_SCRIPTS = ("layout", "tree", "page", "obstacle", "answers", "proof", "network", "start")
+_OTHERS = ("without_rules", "alternatives", "front", "proof", "why_not", "shopping_list", "network")
 
 
 class Page(NamedTuple):
@@ -65,18 +66,45 @@ class Page(NamedTuple):
         return {"text/plain": f"<Page: {self.title}>", "text/html": self.frame()}
 
 
-def view_json(problem: Problem, units: Iterable[int], answer: Json, **beside: object) -> Json:
-    """Give what a page about an answer has: its document as it is, with the rates of units.
+def view_json(answer: Json | None, trees: Iterable[tuple[Problem, Iterable[int]]], **beside: object) -> Json:
+    """Give what a page has: the document of an answer as it is, if it is about one.
 
+    ``trees`` are all trees that the page shows, each by units of a problem, for the rates of these units.
     ``beside`` are documents of other answers, as the schema names them.
     """
+    rates = {
+        problem.network.unit_number(unit): fraction_json(problem.rate(unit))
+        for problem, units in trees
+        for unit in units
+        if problem.rates is not None
+    }
+    return document(
+        "view",
+        answer=answer,
+        rates=[{"unit": unit, "rate": rates[unit]} for unit in sorted(rates)] or None,
+        **{"searches": [], **dict.fromkeys(_OTHERS), **beside},
+    )
+
+
+def network_json(problem: Problem) -> Json:
+    """Give a whole network with places for a picture: units first, then object nodes, each x and y."""
     network = problem.network
-    rates = None
-    if problem.rates is not None:
-        shown = sorted(set(units))
-        rates = [{"unit": network.unit_number(u), "rate": fraction_json(problem.rate(u))} for u in shown]
-    nothing: Json = {"searches": [], **dict.fromkeys(_OTHERS)}
-    return document("view", answer=answer, rates=rates, **{**nothing, **beside})
+    reached = reach(problem)
+    objects, units = len(network.objects), range(len(network))
+    arrows = [(len(network) + o, u) for u in units for o in network.inputs[u]]
+    arrows += [(u, len(network) + o) for u in units for o in network.outputs[u]]
+    places = spread(len(network) + objects, arrows, units)
+    return {
+        "objects": nodes_json(network, range(objects)),
+        "units": [
+            {**mention_json(network, u), "inputs": network.inputs[u], "outputs": network.outputs[u]}
+            for u in units
+        ],
+        "places": [number for place in places for number in place],
+        "kitchen": sorted(problem.kitchen),
+        "reachable": [o for o in range(objects) if reached.available[o]],
+        "possible": sorted(reached.units),
+    }
 
 
 def _web(name: str) -> str:

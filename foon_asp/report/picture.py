@@ -12,8 +12,9 @@ from pathlib import Path
 from foon_asp.errors import UserError
 from foon_asp.report.dot import FONT, dot_text
 from foon_asp.report.drawing import Drawing
+from foon_asp.report.network_picture import network_picture
 
-MOST_UNITS = 300  # laying out many more takes minutes, and nobody finds anything in the picture
+MOST_UNITS = 300  # laying out boxes of many more takes minutes, and nobody finds anything in the picture
 
 _ZOOM = 2.0  # pixels of a PNG for a point of an SVG
 _MOST_PIXELS = 40e6  # viewers refuse a PNG of many more
@@ -34,11 +35,16 @@ _FONT_FILES = ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf")
 
 
 def svg_picture(drawing: Drawing) -> bytes:
-    """Draw as SVG; raises :class:`UserError` for a drawing that is too large for a picture."""
+    """Draw as SVG, a large network without the details of its nodes.
+
+    Raises :class:`UserError` for a tree that is too large for a picture.
+    """
     if drawing.units > MOST_UNITS:
+        if drawing.graph:
+            return network_picture(drawing)
         raise UserError(
-            f"{drawing.units} functional units are too many for a picture, which shows at most {MOST_UNITS}: "
-            "draw a task tree (--goal or --tree) or some of the units (--unit), or write DOT or Mermaid"
+            f"a tree of {drawing.units} functional units is too large for a picture, which shows at most "
+            f"{MOST_UNITS}: look at its page (foon-asp view), or write DOT or Mermaid"
         )
     dot = shutil.which("dot")
     text = dot_text(drawing)

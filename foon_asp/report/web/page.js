@@ -20,8 +20,18 @@ const counted = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
 const figure = (value) => {
   if (value === null || value === undefined) return "–";
   if (typeof value === "number") return String(value);
-  return Number.isInteger(value.approx) ? String(value.approx) : `≈ ${value.approx === null ? value.exact : +value.approx.toPrecision(4)}`;
+  if (value.approx === null) return value.exact;
+  const shown = String(+value.approx.toPrecision(4));
+  return same(value.exact, shown) ? shown : `≈ ${shown}`;
 };
+// Whether a fraction is a decimal number, exactly.
+function same(fraction, decimal) {
+  const [above, below = "1"] = fraction.split("/");
+  const parts = decimal.match(/^(-?\d+)(?:\.(\d+))?$/);
+  if (!parts) return false;
+  const [, whole, rest = ""] = parts;
+  return BigInt(above) * 10n ** BigInt(rest.length) === BigInt(whole + rest) * BigInt(below);
+}
 const shortPlace = ({ file, line }) => `${file.split(/[\\/]/).pop()}:${line}`;
 // A node in few words, which are all of it but for long contents.
 const brief = (node, inputs = []) => {
@@ -108,7 +118,7 @@ class TreePanel {
       tool("◀", "One step back", () => this.go(this.step - 1)), tool("▶", "One step on", () => this.go(this.step + 1)),
       this.slider, this.said, leftovers,
       el("span", { class: "wide" }, tool("−", "Smaller", () => this.picture.zoom(0.8)), tool("+", "Larger", () => this.picture.zoom(1.25)), tool("Fit", "Show it all", () => this.picture.fit(true))),
-      tool("SVG", "Save the picture as SVG", () => save(this.picture.file(), "task-tree.svg", "image/svg+xml")),
+      tool("SVG", "Save the picture as SVG", () => save(new Blob([this.picture.file()], { type: "image/svg+xml" }), "task-tree.svg")),
       el("span", { class: "wide" }, tool("Print", "Print the page", () => window.print())));
   }
 
@@ -221,9 +231,9 @@ class TreePanel {
   }
 }
 
-function save(text, name, type) {
+function save(blob, name) {
   const link = el("a", { download: name });
-  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.href = URL.createObjectURL(blob);
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
@@ -263,7 +273,7 @@ function start() {
   const header = el("header");
   const goals = data.answer?.goals ?? [];
   const name = (goal) => [el("span", { title: goal.node }, goal.label), el("small", {}, ` ${details(goal)}`)];
-  header.append(el("h1", {}, goals.length ? goals.flatMap((goal, place) => (place ? [" + ", ...name(goal)] : name(goal))) : data.title));
+  header.append(el("h1", {}, goals.length ? goals.flatMap((goal, place) => (place ? [" + ", ...name(goal)] : name(goal))) : [`${counted(data.network.units.length, "functional unit")}, ${counted(data.network.objects.length, "object node")}`]));
   if (data.answer) {
     const [claim, rest] = claimOf(data.answer);
     const rules = `${data.answer.containers} containers${data.answer.items === "used-up" ? ", items used up" : ""}`;
@@ -297,5 +307,5 @@ function start() {
     event.preventDefault();
   });
   if (main.length) open(0);
-  else document.body.append(el("p", {}, "Nothing needs to be made: the kitchen has the goal."));
+  else document.body.append(el("main", {}, el("p", {}, "Nothing needs to be made: the kitchen has the goal.")));
 }
