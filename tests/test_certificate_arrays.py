@@ -103,6 +103,7 @@ def test_what_is_stated_has_a_part_for_each_objective() -> None:
         "4",
     ]
     assert arrays.stated(arrays.costs[2]) == ["1", {"1/3": "1"}, "1"]
+    assert Arrays(RATED, (), Coverage()).stated((HALF,)) == ["1/2"]
 
 
 def test_a_vector_has_all_its_parts() -> None:

@@ -119,6 +119,12 @@ def test_what_is_barred_where_a_motion_has_to_come_before_another() -> None:
     assert barred(arrays, {0, 1}, set()) == {5}
     assert barred(arrays, set(), {1}) == {3, 5}  # nothing makes a b of what was cut
     assert barred(arrays, set(), {0}) == {3, 4, 5}
+    items = Arrays(
+        kitchen,
+        (Objective.KITCHEN,),
+        Coverage(({"rule": "before", "earlier_motion": "cut", "later_motion": "fry"},)),
+    )
+    assert barred(items, {2, 8}, set()) == {3, 5}  # 8 is not a unit: it takes the start
     same = arrays_of(kitchen, {"rule": "before", "earlier_motion": "fry", "later_motion": "fry"})
     assert barred(same, set(), {3, 4, 5}) == frozenset()
     # a tree that breaks it is told by as few units as do, what they bar first

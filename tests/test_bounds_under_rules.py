@@ -1,0 +1,176 @@
+"""Proofs where so much of something may be used at most, and under rules: against every derivation."""
+
+import random
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import combinations
+from typing import NamedTuple
+
+import pytest
+
+from foon_asp.bounds.exact_optimum import Limit
+from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.lexicographic import Lexicographic
+from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Proof, Prover
+
+COUNT = Lexicographic([None])
+NOBODY: frozenset[int] = frozenset()
+
+
+class NotAll(NamedTuple):
+    """Rules that no derivation has all actions of a set; every other is only known once all are used."""
+
+    sets: Sequence[frozenset[int]]
+
+    def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        found = {}
+        for rule, each in enumerate(self.sets):
+            if each <= used:
+                found[rule] = each
+            elif rule % 2 and len(each - used) == 1 and each.isdisjoint(without):
+                found[rule] = each - used
+        return found
+
+    def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
+        return next((sorted(each) for each in self.sets if each <= derivation), [])
+
+
+class Case(NamedTuple):
+    graph: Hypergraph
+    targets: list[int]
+    costs: list[tuple[Fraction]]
+    limits: list[Limit]
+    rules: NotAll
+
+    def prover(self, free: bool = False) -> Prover:
+        costs = [(Fraction(0),)] * len(self.costs) if free else self.costs
+        return Prover(self.graph, self.targets, costs, COUNT, NOBODY, limits=self.limits, rules=self.rules)
+
+    def holds(self, actions: frozenset[int]) -> bool:
+        at_hand, left = set(self.graph.start), set(actions)
+        while ready := {a for a in left if at_hand.issuperset(self.graph.needs[a])}:
+            left -= ready
+            at_hand.update(o for a in ready for o in self.graph.gives[a])
+        return (
+            not left
+            and at_hand.issuperset(self.targets)
+            and all(sum(amounts.get(a, 0) for a in actions) <= most for amounts, most in self.limits)
+            and not any(each <= actions for each in self.rules.sets)
+        )
+
+    def cost(self, actions: frozenset[int]) -> Fraction:
+        return sum((self.costs[a][0] for a in actions), Fraction(0))
+
+
+def drawn(seed: int) -> Case:
+    """Draw a case; in every other, each action makes two of the targets, which leaves gaps to be closed."""
+    choose = random.Random(seed)
+    size, count = choose.randint(3, 5), choose.randint(6, 8)
+    gaps = seed % 2
+    limits: list[Limit] = [
+        (
+            {a: Fraction(choose.choice((1, 1, 2, 3)), 2) for a in range(count) if choose.random() < 0.6},
+            Fraction(choose.randint(1, 5), 2),
+        )
+        for _ in range(choose.choice((0, 1, 2)))
+    ]
+    sets = [frozenset(choose.sample(range(count), choose.choice((1, 2, 2)))) for _ in range(4)]
+    return Case(
+        Hypergraph(
+            size,
+            [choose.sample(range(size), 0 if gaps else choose.choice((0, 1, 2))) for _ in range(count)],
+            [choose.sample(range(size), 2 if gaps else choose.choice((1, 2))) for _ in range(count)],
+            choose.sample(range(size), choose.choice((0, 0, 1))),
+        ),
+        choose.sample(range(size), size if gaps else choose.choice((1, 2))),
+        [(Fraction(choose.randint(1, 2 if gaps else 4)),) for _ in range(count)],
+        limits,
+        NotAll(sets[: choose.randint(0, 4)]),
+    )
+
+
+def hold(case: Case, proof: Proof, goal: Fraction | None, met: Counter[str]) -> None:
+    """Hold each leaf of a proof against what it says, with nothing of what found it."""
+
+    def leaf(proof: Proof, used: frozenset[int], without: frozenset[int]) -> None:
+        if isinstance(proof, Branch):
+            assert proof.action not in used | without
+            leaf(proof.without, used, without | {proof.action})
+            leaf(proof.using, used | {proof.action}, without)
+            return
+        met[type(proof).__name__] += 1
+        bars = case.rules.bars(used, without)
+        if isinstance(proof, Broken):
+            assert not used.isdisjoint(bars[proof.rule])
+            return
+        gone = without.union(*bars.values())
+        wanted = {*case.targets, *(o for a in used for o in case.graph.needs[a])}
+        cuts = [proof.cut] if isinstance(proof, Hopeless) else [cut for cut, _ in proof.weights]
+        for cut in cuts:
+            zone = set(cut.objects)
+            assert zone & wanted
+            assert not zone & set(case.graph.start)
+            makers = {
+                a
+                for a in range(len(case.costs))
+                if zone & set(case.graph.gives[a]) and not zone & set(case.graph.needs[a])
+            }
+            assert makers - gone <= set(cut.members)
+        if isinstance(proof, Hopeless):
+            assert set(proof.cut.members) <= gone
+            return
+        met["limits"] += bool(proof.limits)
+        total = sum((case.costs[a][0] if goal is not None else Fraction(0) for a in used), Fraction(0))
+        carried: Counter[int] = Counter()
+        for row, (weight,) in proof.limits:
+            amounts, most = case.limits[row]
+            assert weight > 0
+            total -= weight * (most - sum(amounts.get(a, 0) for a in used))
+            for a, amount in amounts.items():
+                carried[a] += weight * amount  # type: ignore[assignment]
+        for cut, (weight,) in proof.weights:
+            assert weight > 0
+            total += weight
+            for a in cut.members:
+                carried[a] -= weight  # type: ignore[assignment]
+        for a, rest in carried.items():
+            cost = 0 if a in used or goal is None else case.costs[a][0]
+            assert a in gone or (a in used and rest >= 0) or cost + rest >= 0
+        assert total > 0 if goal is None else total >= goal
+
+    leaf(proof, NOBODY, NOBODY)
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_what_is_proved_is_true_of_every_derivation(part: int) -> None:
+    met: Counter[str] = Counter()
+    for seed in range(30 * part, 30 * part + 30):
+        case = drawn(seed)
+        actions = range(len(case.costs))
+        every = [frozenset(c) for size in range(len(actions) + 1) for c in combinations(actions, size)]
+        found = [each for each in every if case.holds(each)]
+        none = case.prover(free=True).prove_none()
+        assert (none is None) == bool(found), seed
+        if none is not None:
+            met["none"] += 1
+            hold(case, none, None, met)
+            continue
+        best = min(found, key=case.cost)
+        proof = case.prover().prove(best)
+        assert proof is not None, seed
+        hold(case, proof, case.cost(best), met)
+        relaxed = case.prover().relax(best)
+        if relaxed is not None:
+            packing, (value,) = relaxed
+            hold(case, packing, value, met)
+            assert value <= case.cost(best)
+        worst = max(found, key=case.cost)
+        if case.cost(worst) > case.cost(best):
+            with pytest.raises(CheaperError) as error:
+                case.prover().prove(worst)
+            cheaper = frozenset(error.value.actions)
+            assert case.holds(cheaper)
+            assert case.cost(cheaper) < case.cost(worst)
+            met["cheaper"] += 1
+    assert met.keys() >= {"Packing", "Hopeless", "Broken", "limits", "none", "cheaper"}
