@@ -22,9 +22,6 @@ if TYPE_CHECKING:  # often there is nothing left to ask clingo
     from foon_asp.rules.rules import Rules
 
 
-_BY_PERSON = ("_by_person", 1)  # what rules look at that are about who does a unit
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Prepared:
     """A question, prepared for the search.
@@ -212,8 +209,6 @@ def _applied(first: Prepared, rules: "Rules") -> tuple[Prepared, bool]:
     """
     from foon_asp.rules.rule_kind import Kind  # noqa: PLC0415 (takes clingo along)
 
-    if first.program.bounded and _BY_PERSON in first.program.looked_at:
-        rules = rules.varying({_BY_PERSON})  # bounds may come with it
     if rules.rest and not rules.local:
         return first, False
     found = rules.applied(first.problem, first.deadline)
