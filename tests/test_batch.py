@@ -108,6 +108,27 @@ def test_results_of_other_data_are_refused(cli: Cli, questions: Path, tmp_path: 
     assert "was started for another question" in ran.err
 
 
+def test_rules_hold_for_all_questions(cli: Cli, questions: Path, tmp_path: Path) -> None:
+    file = tmp_path / "a.jsonl"
+    mine = tmp_path / "mine.lp"
+    mine.write_text("#const most = 10.\n:- #count { U : use(U) } > most.\n")
+    given = ["--constraint", mine, "-c", "most=9", "--rule", ':- use(U), motion(U,"crush").']
+    batch = ["batch", questions, "--results", file, "--jobs", 2]
+    assert cli(*batch, *given).code == 0
+    rows = rows_of(file)
+    assert {row["status"] for row in rows} == {"optimal", "infeasible"}
+    for row in rows[:6]:
+        goals = ["--goal", row["goal"], "--containers", row["containers"], "--objective", row["objective"]]
+        answer = cli("solve", *goals, *given, "--format", "json").json
+        assert (answer["status"], answer["costs"]) == (row["status"], row["costs"])
+    assert "10 of them answered before" in cli(*batch, *given).out
+    for others in (given[:4], [*given[:3], "most=8", *given[4:]], []):
+        assert "was started for another question" in cli(*batch, *others).err
+    ran = cli(*batch[:3], tmp_path / "b.jsonl", "--rule", ":- use(U), motoin(U,1).")
+    assert ran.code == 0
+    assert ran.err.count("did you mean motion/2") == 1
+
+
 def test_a_question_that_fails_is_a_row(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "q.jsonl").write_text(
         '{"goal": ["icecream", "ice"]}\n{"goal": "ice", "kitchen": "no.json"}\n'

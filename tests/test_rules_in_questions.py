@@ -150,6 +150,17 @@ def _by_need(names: list[str]) -> bool:
     return not any(name.startswith("require") for name in names)
 
 
+def test_optima_keep_to_rules() -> None:
+    problem = foon_asp.load().problem("ice", "macaroni")
+    rules: Rules = {"constraints": ["forbid_motion", ":- #count { U : use(U) } > most. #const most = 9."]}
+    rules["constants"] = {"forbidden_motion": "crush", "most": 8}
+    found = foon_asp.optima(problem, ["units", "inputs"], **rules)
+    each = [(goal, objective) for goal in ("ice", "macaroni") for objective in ("units", "inputs")]
+    answers = [foon_asp.solve(problem.vary(goal), objective, **rules) for goal, objective in each]
+    assert [(o.status, o.costs) for o in found.outcomes] == [(a.status, a.costs) for a in answers]
+    assert len({answer.status for answer in answers}) == 2
+
+
 @pytest.mark.parametrize("name", ["motion", "object", "ingredient", "intermediate"])
 def test_what_is_required_and_not_there_is_broken_once(name: str) -> None:
     rule = f"require_{name}:required_{name}=dough"

@@ -10,6 +10,7 @@ from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
 from foon_asp.errors import UserError
 from foon_asp.grounding.stated import Loaded
+from foon_asp.problem import Problem
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
 
@@ -150,6 +151,18 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
     if rules is None or not rules.local:
         return ReachOfRules.ALL
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
+
+
+def asks_of_all(problem: Problem, settings: Settings) -> bool:
+    """Whether rules that are added may be about units beyond what the goals can need.
+
+    Of a store, the part that the goals can need is enough where no rule looks beyond the tree or asks for
+    units that no goal needs.
+    """
+    if not settings.constraints and settings.replaced is None:
+        return False
+    part = problem.network.object_numbers and problem.items is None and settings.replaced is None
+    return not part or reach_of_rules(settings) is not ReachOfRules.NEEDED
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:

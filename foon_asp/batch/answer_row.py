@@ -3,6 +3,7 @@
 import time
 
 from foon_asp.asp import Outcome, Settings, solve
+from foon_asp.asp.assembly import asks_of_all
 from foon_asp.batch.asked import Asked, Asker
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.document.json_document import costs_json, figures_json
@@ -12,18 +13,22 @@ from foon_asp.problem import parse_objectives
 Row = dict[str, object]
 
 
-def answer_row(asker: Asker, asked: Asked, memory_limit: int | None = None) -> Row:
+def answer_row(
+    asker: Asker, asked: Asked, memory_limit: int | None = None, how: Settings | None = None
+) -> Row:
     """Answer a question; an error, of the user's or ours, is a row too.
 
     Trees in rows were simulated, and are given by unit ids in an order that executes. docs/batch.md
-    describes the keys. ``memory_limit`` is in bytes; where a limit leaves no tree, ``error`` says which one.
+    describes the keys. ``how`` has the rules of the user's. ``memory_limit`` is in bytes; where a limit
+    leaves no tree, ``error`` says which one.
     """
     began = time.perf_counter()
     try:
         deadline = Deadline(asked.time_limit, memory_limit)
+        settings = (how or Settings())._replace(deadline=deadline)
         with deadline.watched("reading", late=True):
             problem = asker.problem(asked)
-        settings = Settings(deadline=deadline)
+            problem = problem.whole if asks_of_all(problem, settings) else problem
         objectives = parse_objectives([asked.objective], problem.measures)
         row = _answered(asked, solve(problem, objectives, settings))
     except LimitError as limit:

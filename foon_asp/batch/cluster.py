@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import Row, answer_row, failed_row
 from foon_asp.batch.asked import Asked, Asker, Opener
 from foon_asp.errors import UserError
@@ -17,9 +18,13 @@ _AHEAD = 4  # questions on their way for each thread of the cluster, so that non
 
 
 def answer_on_cluster(
-    opener: Opener, questions: Iterable[Asked], address: str, memory_limit: int | None = None
+    opener: Opener,
+    questions: Iterable[Asked],
+    address: str,
+    memory_limit: int | None = None,
+    how: Settings | None = None,
 ) -> Iterator[tuple[Asked, Row]]:
-    """Answer questions on the workers of a scheduler, and give rows as they come.
+    """Answer questions on the workers of a scheduler, as ``how`` says, and give rows as they come.
 
     A worker opens the data once, and keeps them until others are asked for. The files have to be there under
     the same names as here. A question whose worker dies again and again is a row that says so. Raises
@@ -38,7 +43,7 @@ def answer_on_cluster(
         asked_of: dict[str, Asked] = {}
 
         def submit(asked: Asked) -> Any:
-            future = client.submit(_answer, opener, asked, memory_limit, pure=False)
+            future = client.submit(_answer, opener, asked, memory_limit, how, pure=False)
             asked_of[future.key] = asked
             return future
 
@@ -61,8 +66,8 @@ def _threads(client: "Client") -> int:
     return sum(threads.values())
 
 
-def _answer(opener: Opener, asked: Asked, memory_limit: int | None) -> Row:
-    return answer_row(_open(opener), asked, memory_limit)
+def _answer(opener: Opener, asked: Asked, memory_limit: int | None, how: Settings | None) -> Row:
+    return answer_row(_open(opener), asked, memory_limit, how)
 
 
 @functools.lru_cache(maxsize=1)

@@ -9,6 +9,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import NamedTuple
 
+from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import Row, answer_row, failed_row
 from foon_asp.batch.asked import Asked, Opener
 
@@ -16,7 +17,7 @@ _GRACE = 10.0  # seconds beyond its time limit after which a process that does n
 
 
 class Work(NamedTuple):
-    """What a worker does: open the data once, then answer.
+    """What a worker does: open the data once, then answer as ``how`` says.
 
     ``memory_limit`` is in bytes, for each worker, ``grace`` in seconds beyond time limits.
     """
@@ -24,6 +25,7 @@ class Work(NamedTuple):
     opener: Opener
     memory_limit: int | None = None
     grace: float = _GRACE
+    how: Settings = Settings()
 
 
 def answer_all(work: Work, questions: Iterable[Asked], jobs: int) -> Iterator[tuple[Asked, Row]]:
@@ -146,4 +148,4 @@ def _serve(connection: Connection, work: Work) -> None:
             asked = connection.recv()
         except EOFError:
             return
-        connection.send(answer_row(asker, asked, work.memory_limit))
+        connection.send(answer_row(asker, asked, work.memory_limit, work.how))

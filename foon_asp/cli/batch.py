@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import Row
 from foon_asp.batch.asked import Asked
 from foon_asp.batch.cluster import answer_on_cluster
@@ -14,7 +15,7 @@ from foon_asp.batch.results import open_results
 from foon_asp.batch.tally import Tally
 from foon_asp.batch.workers import Work, answer_all
 from foon_asp.cli import options
-from foon_asp.cli.batch_data import Opening, digest, measured
+from foon_asp.cli.batch_data import Opening, digest, measured, rules_digest
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
@@ -22,7 +23,8 @@ from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress import bar
 from foon_asp.document.json_document import document
 from foon_asp.network import counted
-from foon_asp.questions.options import EACH_LIMITS, JOBS
+from foon_asp.questions.options import EACH_LIMITS, JOBS, RULES
+from foon_asp.rules.constraint import Constraint
 from foon_asp.text.json_value import Json, json_text
 
 
@@ -38,7 +40,7 @@ from foon_asp.text.json_value import Json, json_text
 )
 @click_options(JOBS)
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of a Dask cluster: tcp://HOST:PORT.")
-@click_options(*EACH_LIMITS)
+@click_options(*RULES, *EACH_LIMITS)
 @options.format_option("text", "json")
 @options.data_options
 def command(
@@ -46,6 +48,9 @@ def command(
     results_file: Path,
     jobs: int,
     scheduler: str | None,
+    constraints: tuple[Constraint, ...],
+    constants: tuple[str, ...],
+    encodings: Path | None,
     time_limit: float | None,
     memory_limit: int | None,
     format_: str,
@@ -68,7 +73,7 @@ def command(
     @goals stands for the goals file, @makeable for everything that can be made; a list within the list is one
     tree for several goals; kitchens, stocks and what stays are files in the folder of the questions.
     --time-limit is for each question without a limit of its own, --memory-limit for each process that
-    answers.
+    answers, and rules hold for all questions.
 
     When the same command is run again, it continues: what has an answer is not asked again. A question that
     fails becomes a row with the reason. Exits with 0 when every answer is proved, 1 when some failed, and
@@ -78,14 +83,16 @@ def command(
     lines = read_questions(questions, time_limit, measured(data))
     opening = Opening(tuple(data.items()), digest(data, [file for line in lines for file in line.files]))
     asked = list(each_question(lines, opening(quiet=False)))
+    how = Settings(constraints, encodings, constants)
+    common = {"data": opening.digest, "level": data["level"], **rules_digest(how)}
     interrupted = False
     began = time.monotonic()
-    with open_results(results_file, {"data": opening.digest, "level": data["level"]}) as results:
+    with open_results(results_file, common) as results:
         left = [one for one in asked if one.key not in results.done]
         tally = Tally(results.done[one.key] for one in asked if one.key in results.done)
         with bar("answering", len(asked), len(asked) - len(left)) as advance:
             try:
-                for one, row in _rows(opening, left, jobs, scheduler, memory_limit):
+                for one, row in _rows(Work(opening, memory_limit, how=how), left, jobs, scheduler):
                     results.add(one, row)
                     tally.add(row)
                     advance()
@@ -105,11 +112,11 @@ def command(
 
 
 def _rows(
-    opening: Opening, asked: Sequence[Asked], jobs: int, scheduler: str | None, memory_limit: int | None
+    work: Work, asked: Sequence[Asked], jobs: int, scheduler: str | None
 ) -> Iterator[tuple[Asked, Row]]:
     if scheduler is not None:
-        return answer_on_cluster(opening, asked, scheduler, memory_limit)
-    return answer_all(Work(opening, memory_limit), asked, min(jobs, max(1, len(asked))))
+        return answer_on_cluster(work.opener, asked, scheduler, work.memory_limit, work.how)
+    return answer_all(work, asked, min(jobs, max(1, len(asked))))
 
 
 def _in_words(summary: Json, tally: Tally) -> Iterator[str]:

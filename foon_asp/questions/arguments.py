@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 
 from foon_asp.asp import Settings
-from foon_asp.asp.assembly import GREATEST_WEIGHT, ReachOfRules, reach_of_rules
+from foon_asp.asp.assembly import GREATEST_WEIGHT, asks_of_all
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Deadline, memory_size, seconds
 from foon_asp.errors import UserError
@@ -87,15 +87,8 @@ def begin(time_limit: float | None, memory_limit: int | str | None) -> Deadline:
 
 
 def asked_with(problem: Problem, how: Settings) -> Problem:
-    """Give the whole problem if the settings have rules that may be about any unit.
-
-    Of a store, the part that the goals can need is enough where no rule looks beyond the tree or asks for
-    units that no goal needs.
-    """
-    if not how.constraints and how.replaced is None:
-        return problem
-    part = problem.network.object_numbers and problem.items is None
-    return problem if part and reach_of_rules(how) is ReachOfRules.NEEDED else whole(problem)
+    """Give the whole problem if the settings have rules that may be about any unit."""
+    return whole(problem) if asks_of_all(problem, how) else problem
 
 
 def whole(problem: Problem) -> Problem:

@@ -4,14 +4,22 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from foon_asp.asp import solve as find
+from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Deadline
 from foon_asp.document.json_document import document
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.arguments import chosen_objectives, limits, settings, usual_objectives
+from foon_asp.questions.arguments import (
+    Constants,
+    asked_with,
+    chosen_objectives,
+    limits,
+    settings,
+    usual_objectives,
+)
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES, RULES
 from foon_asp.questions.posing import each_goal
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.optima_table import optima_table
@@ -66,6 +74,7 @@ class Optima(Result):
     ),
     CONTAINERS,
     *ITEMS,
+    *RULES,
     *EACH_LIMITS,
     help_="""
     The limits are for each answer. Exits with 0 when every answer is proved, a goal without a tree
@@ -77,6 +86,9 @@ def optima(
     problem: Problem,
     objectives: str | Iterable[str] = (),
     *,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
 ) -> Optima:
@@ -92,7 +104,7 @@ def optima(
         The ``outcomes``: for each goal in order, one :class:`Answer` for each objective.
 
     Raises:
-        UserError: for a wrong argument, or an objective that needs rates or prices not given.
+        UserError: for a wrong argument or constraint, or an objective that needs rates or prices not given.
 
     Example:
         >>> problem = foon_asp.load().problem("ice", "tea")
@@ -103,7 +115,9 @@ def optima(
     texts = [asked] if isinstance(asked, str) else asked
     lists = [chosen_objectives(problem, text) for text in texts]
     # limits are for each answer, ctrl-C is for all of them
-    how, each_limits, whole = settings(), limits(time_limit, memory_limit), Deadline()
+    how, whole = settings(constraints, constants, encodings), Deadline()
+    each_limits = limits(time_limit, memory_limit)
+    problem = asked_with(problem, how)
     outcomes = []
     for goal in problem.goals:
         for chosen in lists:
