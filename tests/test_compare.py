@@ -253,3 +253,36 @@ def test_a_chart_is_written(cli: Cli, tmp_path: Path) -> None:
     ran = cli("compare", "--all-makeable", "--chart", tmp_path / "all.svg")
     assert ran.code == 2
     assert "would be unreadable; name up to 60" in ran.err
+
+
+def test_trees_of_searches_are_told_which_rules_they_break(cli: Cli, tmp_path: Path) -> None:
+    rules = ["--rule", ':- use(U), motion(U,"crush").', "--constraint", "at_most_units", "-c", "max_units=9"]
+    given = [
+        "compare",
+        "--goal",
+        "ice",
+        "--goal",
+        "macaroni",
+        "--search",
+        "bfs",
+        "--search",
+        "greedy-success",
+    ]
+    shown = cli(*given, *rules, "--results", tmp_path / "a.jsonl", "--format", "json").json
+    crush = 'rule 1:1: :- use(U), motion(U,"crush").'
+    breaks = [[search["breaks"] for search in row["searches"]] for row in shown["comparisons"]]
+    [ice, [[one], [other]]] = breaks
+    assert ice == [[crush], []]
+    assert one == other
+    assert one.endswith("> max_units. -c max_units=9")
+    assert shown["comparisons"][0]["optimum"]["units"]["value"] == 3
+    again = cli(*given, *rules, "--results", tmp_path / "a.jsonl", "--format", "markdown")
+    assert f"(2) breaks {crush}" in again.out
+    assert "as listed (2)" in again.out
+    assert "was started for another question" in cli(*given, "--results", tmp_path / "a.jsonl").err
+    refused = cli(*given, "--items", "used-up", *rules)
+    assert (
+        refused.err
+        == "error: compare with constraints is not built for items that are used up (--items used-up)\n"
+    )
+    assert "searches know nothing of other encodings" in cli(*given, "--encodings", "by_need").err

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import pytest
 
 from foon_asp.asp import Proof, Settings, Status, solve
+from foon_asp.asp.breaking import Breaking
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.solver import _Solver
 from foon_asp.grounding.run import Run
@@ -145,3 +146,21 @@ def test_a_rate_of_a_unit_that_only_serves_what_cannot_be_made() -> None:
     problem = Problem(builder.build(), frozenset({0}), (1,), rates, frozenset())
     rule = given_constraint(":- #count { U : use(U) } > 0.")
     assert solve(problem, (Objective.SUCCESS,), Settings((rule,))).status is Status.INFEASIBLE
+
+
+@pytest.mark.parametrize("seeds", [range(15), pytest.param(range(15, 200), marks=pytest.mark.slow)])
+def test_the_rules_that_a_tree_breaks_are_named(seeds: range) -> None:
+    broken = 0
+    for seed in seeds:
+        problem, _, every = posed(seed)
+        some = list(dict.fromkeys(rules(seed, len(problem.network), sorted(CLASSES))))
+        given = tuple(given_constraint(rule.text) for rule in some if rule.text.count(":-") == 1)
+        if not given:
+            continue
+        breaking = Breaking(Settings(given))
+        for tree in random.Random(seed).sample(every, min(len(every), 4)):
+            expected = {rule.text for rule in some if not rule.keeps(tree.units)} & set(map(str, given))
+            found = breaking.broken(problem, tree.units)
+            assert {each.text for each in found} == expected, (seed, tree)
+            broken += len(found)
+    assert broken > len(seeds) / 2

@@ -595,7 +595,7 @@ def test_a_constant_that_stands_is_replaced_by_a_word_alone(nuts: Cli) -> None:
     assert "replaced" not in ran.err
 
 
-@pytest.mark.parametrize("line", ["optima", "search bfs", "compare", "draw", "check tree.txt"])
+@pytest.mark.parametrize("line", ["search bfs", "draw", "check tree.txt"])
 def test_what_knows_of_no_rules_is_not_asked_while_some_stand(nuts: Cli, line: str) -> None:
     ran = nuts(line)
     verb = line.split(maxsplit=1)[0]

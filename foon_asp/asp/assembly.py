@@ -1,5 +1,6 @@
 """Assembling a program: the built-in encodings or a replacement, and what the user adds."""
 
+import hashlib
 from collections.abc import Callable
 from enum import Enum, auto
 from pathlib import Path
@@ -13,6 +14,7 @@ from foon_asp.grounding.stated import Loaded
 from foon_asp.problem import Problem
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+from foon_asp.text.json_value import json_line
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.rules.rules import Rules
@@ -163,6 +165,18 @@ def asks_of_all(problem: Problem, settings: Settings) -> bool:
         return False
     part = problem.network.object_numbers and problem.items is None and settings.replaced is None
     return not part or reach_of_rules(settings) is not ReachOfRules.NEEDED
+
+
+def rules_digest(settings: Settings, warn: Callable[[str], None] = lambda _: None) -> dict[str, str]:
+    """Give a digest of the rules that are added, if there are any, under ``rules``.
+
+    Rows of results have it in common. Raises as :func:`assemble` does.
+    """
+    if not (settings.constraints or settings.constants or settings.encodings):
+        return {}
+    program = assemble(settings, warn)
+    said = json_line([program.text, program.constants])
+    return {"rules": hashlib.sha256(said.encode()).hexdigest()[:16]}
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:

@@ -36,6 +36,9 @@ class IntegrityConstraint(NamedTuple):
     text: str
     constants: tuple[str, ...]
 
+    def __str__(self) -> str:
+        return f"{self.source}: {self.text}" + "".join(f" -c {setting}" for setting in self.constants)
+
 
 def relax(
     constraints: Iterable[Constraint],

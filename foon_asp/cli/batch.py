@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from foon_asp.asp import Settings
+from foon_asp.asp.assembly import rules_digest
 from foon_asp.batch.answer_row import Row
 from foon_asp.batch.asked import Asked
 from foon_asp.batch.cluster import answer_on_cluster
@@ -15,7 +16,7 @@ from foon_asp.batch.results import open_results
 from foon_asp.batch.tally import Tally
 from foon_asp.batch.workers import Work, answer_all
 from foon_asp.cli import options
-from foon_asp.cli.batch_data import Opening, digest, measured, rules_digest
+from foon_asp.cli.batch_data import Opening, digest, measured
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
@@ -83,8 +84,12 @@ def command(
     lines = read_questions(questions, time_limit, measured(data))
     opening = Opening(tuple(data.items()), digest(data, [file for line in lines for file in line.files]))
     asked = list(each_question(lines, opening(quiet=False)))
+
+    def warn(message: str) -> None:
+        click.echo(message, err=True)
+
     how = Settings(constraints, encodings, constants)
-    common = {"data": opening.digest, "level": data["level"], **rules_digest(how)}
+    common = {"data": opening.digest, "level": data["level"], **rules_digest(how, warn)}
     interrupted = False
     began = time.monotonic()
     with open_results(results_file, common) as results:

@@ -8,10 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import click
-
-from foon_asp.asp import Settings
-from foon_asp.asp.assembly import assemble
 from foon_asp.batch.asked import Asked
 from foon_asp.cli import options
 from foon_asp.compare.many import makeable
@@ -21,7 +17,6 @@ from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Problem
 from foon_asp.text.data_folder import STARTING, find_data
-from foon_asp.text.json_value import json_line
 from foon_asp.text.object_list import read_object_list
 
 
@@ -103,15 +98,3 @@ def digest(named: dict[str, Any], beside: Iterable[Path]) -> str:
         with file.open("rb") as opened:
             found.update(hashlib.file_digest(opened, "sha256").digest())
     return found.hexdigest()[:16]
-
-
-def rules_digest(how: Settings) -> dict[str, object]:
-    """Give a digest of the rules that hold for all questions, if there are any, under ``rules``.
-
-    Warns of what is doubtful in them; raises :class:`UserError` for what is wrong.
-    """
-    if not (how.constraints or how.constants or how.encodings):
-        return {}
-    program = assemble(how, lambda message: click.echo(message, err=True))
-    said = json_line([program.text, program.constants])
-    return {"rules": hashlib.sha256(said.encode()).hexdigest()[:16]}

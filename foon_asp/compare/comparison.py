@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import NamedTuple
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.used_up import order_that_runs
@@ -14,6 +15,9 @@ from foon_asp.problem import ContainerRule, Objective, Problem, conditions, mult
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_for
 from foon_asp.search import Ending, Search, SearchSettings
+
+if TYPE_CHECKING:
+    from foon_asp.asp.breaking import Breaking
 
 # The objectives whose optima a tree is compared with.
 MEASURED = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
@@ -33,7 +37,8 @@ class Judgement(NamedTuple):
     ``executes`` is one of :class:`~foon_asp.proof.Verdict`, or ``None`` without a tree. ``obstacle`` says
     what stops every order: the motion of the first unit that cannot run (empty where it is the goal that is
     missing), what is missing, and whether a cycle is to blame. ``order`` is an order that executes, in
-    positions of ``units`` from 0.
+    positions of ``units`` from 0. ``breaks`` are the rules of the user's that a tree which executes breaks,
+    each with its place.
     """
 
     search: str
@@ -44,6 +49,12 @@ class Judgement(NamedTuple):
     order: tuple[int, ...] = ()
     obstacle: tuple[str, str, bool] | None = None
     stuck_at: str | None = None
+    breaks: tuple[str, ...] = ()
+
+    @property
+    def counts(self) -> bool:
+        """Whether it is a tree: one that executes, and keeps to the rules."""
+        return self.executes in {Verdict.AS_LISTED, Verdict.REORDERED} and not self.breaks
 
 
 class Comparison(NamedTuple):
@@ -76,33 +87,39 @@ class Comparison(NamedTuple):
         return measure / optimum.value
 
     def beats_the_optimum(self, judgement: Judgement, objective: Objective) -> bool:
-        """Whether a tree is better than the proved optimum, as only one that does not execute can be."""
+        """Whether a tree is better than the proved optimum: it does not execute then, or breaks a rule."""
         ratio = self.ratio(judgement, objective)
         return ratio is not None and (ratio > 1 if multiplies(objective) else ratio < 1)
 
 
 def compare(
-    problem: Problem, searches: Sequence[Search], settings: SearchSettings, time_limit: float | None = None
+    problem: Problem,
+    searches: Sequence[Search],
+    settings: SearchSettings,
+    time_limit: float | None = None,
+    rules: Settings | None = None,
 ) -> Comparison:
     """Run searches on a problem, simulate their trees and prove the optima beside them.
 
     ``time_limit`` is in seconds for each optimum. Optima of ``success`` are left out where no rates are
-    known.
+    known. Optima keep to the ``rules``; the searches know nothing of them, and it is said of their trees
+    which they break.
     """
+    how = rules or Settings()
     objects = problem.network.objects
     optima: dict[Objective, Optimum] = {}
     for objective in MEASURED:
         if multiplies(objective) and problem.rates is None:
             continue
-        how = Settings(deadline=Deadline(time_limit, settings.memory_limit))
-        outcome = solve(problem, (objective,), how)
+        deadline = Deadline(time_limit, settings.memory_limit)
+        outcome = solve(problem, (objective,), how._replace(deadline=deadline))
         value = None if outcome.costs is None else Fraction(outcome.costs.measure(objective))
         optima[objective] = Optimum(str(outcome.status), value)
     comparison = Comparison(
         " + ".join(str(objects[goal]) for goal in problem.goals),
         str(problem.containers),
         optima,
-        tuple(judge(problem, search, settings) for search in searches),
+        tuple(_under(how, problem, judge(problem, search, settings)) for search in searches),
         problem.network.level,
         "lasting" if problem.items is None else "used-up",
     )
@@ -113,7 +130,7 @@ def compare(
 def _require_consistent(comparison: Comparison) -> None:
     """Require that no tree that executes is better than a proved optimum: if one were, that is our bug."""
     for judgement in comparison.judgements:
-        if judgement.executes not in {Verdict.AS_LISTED, Verdict.REORDERED}:
+        if not judgement.counts:
             continue
         for objective, optimum in comparison.optima.items():
             better = comparison.beats_the_optimum(judgement, objective)
@@ -122,6 +139,21 @@ def _require_consistent(comparison: Comparison) -> None:
                     f"{judgement.search} has a tree for {comparison.goal} that executes and is better by "
                     f"{objective} than what was proved ({optimum.status})"
                 )
+
+
+def _under(rules: Settings, problem: Problem, judgement: Judgement) -> Judgement:
+    """Note which rules a tree breaks."""
+    if not (rules.constraints and judgement.counts and judgement.units is not None):
+        return judgement
+    broken = _breaking(rules).broken(problem, judgement.units)
+    return judgement._replace(breaks=tuple(map(str, broken)))
+
+
+@lru_cache(maxsize=1)
+def _breaking(rules: Settings) -> "Breaking":
+    from foon_asp.asp.breaking import Breaking  # noqa: PLC0415 (takes clingo along)
+
+    return Breaking(rules)
 
 
 def judge(problem: Problem, search: Search, settings: SearchSettings) -> Judgement:

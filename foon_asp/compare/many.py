@@ -5,11 +5,12 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 
+from foon_asp.asp import Settings
 from foon_asp.compare.comparison import Comparison, compare
 from foon_asp.problem import Problem, reach
 from foon_asp.search import Search, SearchSettings
 
-Work = tuple[Problem, tuple[Search, ...], SearchSettings, float | None]
+Work = tuple[Problem, tuple[Search, ...], SearchSettings, float | None, Settings | None]
 
 _work: Work | None = None  # of this worker process, set once when it starts
 
@@ -26,12 +27,13 @@ def compare_goals(
     settings: SearchSettings,
     time_limit: float | None = None,
     jobs: int = 1,
+    rules: Settings | None = None,
 ) -> Iterator[Comparison]:
-    """Compare the searches on each goal by itself, in order of the goals.
+    """Compare the searches on each goal by itself, in order of the goals, and under rules of the user's.
 
     With more than one job, processes share the goals; the rows are the same.
     """
-    work = problem.plain, tuple(searches), settings, time_limit
+    work = problem.plain, tuple(searches), settings, time_limit, rules
     if jobs == 1:
         for goal in goals:
             yield _compare(work, goal)
@@ -45,8 +47,8 @@ def compare_goals(
 
 
 def _compare(work: Work, goal: int) -> Comparison:
-    problem, searches, settings, time_limit = work
-    return compare(replace(problem, goals=(goal,)), searches, settings, time_limit)
+    problem, searches, settings, time_limit, rules = work
+    return compare(replace(problem, goals=(goal,)), searches, settings, time_limit, rules)
 
 
 def _begin(work: Work) -> None:

@@ -6,7 +6,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
-from foon_asp.asp import Status
+from foon_asp.asp import Settings, Status
+from foon_asp.asp.assembly import rules_digest
 from foon_asp.compare.comparison import Comparison, Judgement, Optimum
 from foon_asp.compare.rows_file import RowsFile
 from foon_asp.document.json_document import figure_json, figures_json, fraction_json
@@ -49,6 +50,7 @@ def _judgement_json(comparison: Comparison, judgement: Judgement) -> Json:
         "verdict": judgement.executes,
         "order": [position + 1 for position in judgement.order],
         "obstacle": obstacle,
+        "breaks": list(judgement.breaks),
     }
 
 
@@ -96,6 +98,7 @@ def _judgement(row: Json) -> Judgement:
             _of(obstacle["cycle"], bool),
         ),
         None if stuck_at is None else _of(stuck_at, str),
+        tuple(_of(rule, str) for rule in row["breaks"]),
     )
 
 
@@ -113,7 +116,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 def results_question(
-    problem: Problem, searches: Sequence[Search], settings: SearchSettings
+    problem: Problem, searches: Sequence[Search], settings: SearchSettings, rules: Settings | None = None
 ) -> dict[str, object]:
     """Describe what is asked, so that results of another question are not taken for this one's."""
     network = problem.network
@@ -146,6 +149,7 @@ def results_question(
         "depth_limit": settings.depth_limit,
         "time_limit": settings.time_limit,
         **({} if settings.memory_limit is None else {"memory_limit": settings.memory_limit}),
+        **(rules_digest(rules) if rules else {}),
     }
 
 

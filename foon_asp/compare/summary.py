@@ -12,7 +12,7 @@ from foon_asp.search import Ending
 
 
 class Distance(NamedTuple):
-    """How many times worse than the optimum the trees that execute are; 1 is optimal.
+    """How many times worse than the optimum the trees are that execute and keep to rules; 1 is optimal.
 
     For ``success`` it is the optimum over the tree's product, so that more is worse here too. ``share`` is
     the share of trees that are optimal, ``worst_goal`` the goal of the worst. The 90th percentile is the
@@ -31,7 +31,8 @@ class Summary(NamedTuple):
     """One search over many goals that can all be made.
 
     ``endings`` counts trees that execute as listed, when reordered and never, and searches that ended
-    without a tree; ``smaller`` counts trees with fewer units than the optimum, none of which execute.
+    without a tree; ``smaller`` counts trees with fewer units than the optimum, none of which execute and
+    keep to the rules, and ``breaking`` those that execute and break a rule.
     """
 
     search: str
@@ -42,6 +43,7 @@ class Summary(NamedTuple):
     cycles: int
     without: int
     smaller: int
+    breaking: int
     distances: dict[Objective, Distance]
 
 
@@ -60,7 +62,7 @@ def _summary(name: str, rows: list[Comparison]) -> Summary:
         ratios: list[tuple[Fraction, str]] = []
         for row, judgement in found:
             ratio = row.ratio(judgement, objective)
-            if ratio and judgement.executes in {Verdict.AS_LISTED, Verdict.REORDERED}:
+            if ratio and judgement.counts:
                 ratios.append((1 / ratio if multiplies(objective) else ratio, row.goal))
         if ratios:
             distances[objective] = _distance(sorted(ratios))
@@ -73,6 +75,7 @@ def _summary(name: str, rows: list[Comparison]) -> Summary:
         sum(judgement.obstacle is not None and judgement.obstacle[2] for _, judgement in found),
         sum(judgement.ending != Ending.TREE for _, judgement in found),
         sum(row.beats_the_optimum(judgement, Objective.UNITS) for row, judgement in found),
+        sum(bool(judgement.breaks) for _, judgement in found),
         distances,
     )
 

@@ -10,14 +10,14 @@ from foon_asp.compare.many import compare_goals, makeable
 from foon_asp.compare.results_file import ResultsFile, comparison_json, results_question
 from foon_asp.compare.summary import all_proved, summarize_comparisons
 from foon_asp.dataset.items import items_of
-from foon_asp.dataset.paths import File
+from foon_asp.dataset.paths import File, Files
 from foon_asp.document.json_document import document, goals_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.questions.arguments import at_least, limits
+from foon_asp.questions.arguments import Constants, asked_with, at_least, limits, settings
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
+from foon_asp.questions.contract import Kind, Option, Part, not_built, question
+from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS, RULES
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import SEARCHING, search_settings, searched
@@ -206,6 +206,7 @@ def _hold_readable(problem: Problem) -> None:
     ),
     CONTAINERS,
     *ITEMS,
+    *RULES,
     *EACH_LIMITS,
     JOBS,
     Option(
@@ -228,7 +229,8 @@ def _hold_readable(problem: Problem) -> None:
     foon-asp compare --all-makeable --jobs 2 --results makeable.jsonl
 
     The searches are run, every tree they return is simulated, and the optima are proved beside them. Each
-    goal is answered by itself, and the limits are for each answer. Exits with 0 when every
+    goal is answered by itself, and the limits are for each answer. Under rules, the optima keep to them, and
+    of each tree it is said which ones it breaks. Exits with 0 when every
     optimum is proved, and with 3 when one was stopped at a limit.
     """,
     formats=("text", "json", "csv", "markdown"),
@@ -243,6 +245,9 @@ def compare_searches(
     count: str = "ingredients",
     depth_limit: int | None = None,
     published: bool = False,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
     jobs: int = 1,
@@ -250,7 +255,8 @@ def compare_searches(
 ) -> Compared:
     """Run searches for each goal of a problem by itself, and prove the optimum beside them.
 
-    The limits are for each search and each optimum.
+    The limits are for each search and each optimum. Optima keep to constraints; of each tree of a search
+    that executes, it is said which of their rules it breaks.
 
     Parameters:
         searches: Names of searches, as for :func:`foon_asp.retrieve`; without any, all that are known.
@@ -277,6 +283,12 @@ def compare_searches(
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
     how = search_settings(ties, count, depth_limit, published, *limits(time_limit, memory_limit))
     at_least(jobs, 1, "jobs")
+    rules = settings(constraints, constants, encodings)._replace(session=None, deadline=None)
+    if rules.replaced is not None:
+        raise UserError(f"{rules.replaced}: searches know nothing of other encodings: leave them out")
+    if rules.constraints and problem.items is not None:
+        raise not_built("compare with constraints")
+    problem = asked_with(problem, rules)
     if all_makeable or results is not None:  # results are kept with a digest of all the data
         problem = problem.whole
     if all_makeable:
@@ -286,13 +298,14 @@ def compare_searches(
         done: dict[str, Comparison] = {}
         file = None
         if results is not None:
-            begun_for = results_question(problem, chosen, how)
+            begun_for = results_question(problem, chosen, how, rules)
             file = stack.enter_context(ResultsFile(Path(results), begun_for))
             done = file.done
         left = [goal for name, goal in goals.items() if name not in done]
         before = len(goals) - len(left)
         caller().reporter.step("comparing", before, len(goals))
-        for number, row in enumerate(compare_goals(problem, left, chosen, how, how.time_limit, jobs), 1):
+        rows = compare_goals(problem, left, chosen, how, how.time_limit, jobs, rules)
+        for number, row in enumerate(rows, 1):
             if file is None:
                 done[row.goal] = row
             else:

@@ -3,7 +3,7 @@
 import csv
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from rich.box import SIMPLE_HEAD
@@ -39,7 +39,9 @@ def comparisons_table(comparisons: Sequence[Comparison]) -> RenderableType:
         Text(f"Searches and the optimum ({comparisons[0].conditions})", style="bold")
     ]
     names = (judgement.search for comparison in comparisons for judgement in comparison.judgements)
+    broken = _broken(comparisons)
     widths = {**_WIDTHS, "search": max((_WIDTHS["search"], *(len(name) + 1 for name in names)))}
+    widths["executes"] += len(_numbers(range(len(broken)))) if broken else 0
     for place, comparison in enumerate(comparisons):
         table = Table(
             box=SIMPLE_HEAD if place == 0 else None,
@@ -51,9 +53,9 @@ def comparisons_table(comparisons: Sequence[Comparison]) -> RenderableType:
         for heading, width in widths.items():
             right = heading in {"units", "inputs", "success"}
             table.add_column(heading, justify="right" if right else "left", no_wrap=True, width=width)
-        goal, *rows = _rows(comparison)
+        goal, *rows = _rows(comparison, broken)
         for row in (goal, *rows):
-            verdict = Text("  " + escaped(row[5]), style=_STYLES.get(row[5].removesuffix(" (cycle)"), ""))
+            verdict = Text("  " + escaped(row[5]), style=_STYLES.get(row[5].partition(" (")[0], ""))
             table.add_row(*row[1:5], verdict, style="bold" if row is goal else "")
         parts += [Text(), Text(escaped(comparison.goal), style="bold cyan"), table]
     return Group(*parts, Text(), *(Text(note, style="dim") for note in _notes(comparisons)))
@@ -61,7 +63,8 @@ def comparisons_table(comparisons: Sequence[Comparison]) -> RenderableType:
 
 def comparisons_markdown(comparisons: Sequence[Comparison]) -> str:
     """Give the same table as Markdown."""
-    rows = [row for comparison in comparisons for row in _rows(comparison)]
+    broken = _broken(comparisons)
+    rows = [row for comparison in comparisons for row in _rows(comparison, broken)]
     lines = [_markdown_row(_HEADINGS), "|---|---|--:|--:|--:|---|", *map(_markdown_row, rows)]
     return "\n".join([*lines, "", *(f"{note}  " for note in _notes(comparisons))]) + "\n"
 
@@ -71,7 +74,7 @@ def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
-        ["goal", "containers", "items", "level", "search", "ending", "executes", "cycle", "missing"]
+        ["goal", "containers", "items", "level", "search", "ending", "executes", "cycle", "missing", "breaks"]
         + [f"{objective}{what}" for objective in MEASURED for what in ("", "_optimum", "_status", "_ratio")]
     )
     for comparison in comparisons:
@@ -80,6 +83,7 @@ def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
             row = [comparison.goal, comparison.containers, comparison.items, str(comparison.level)]
             row += [judgement.search, judgement.ending]
             row += [judgement.executes or "", "yes" if cycle else "no", missing or judgement.stuck_at or ""]
+            row += [" ".join(judgement.breaks)]
             for objective in MEASURED:
                 optimum = comparison.optima.get(objective, Optimum("", None))
                 ratio = comparison.ratio(judgement, objective)
@@ -114,10 +118,13 @@ def summary_lines(summaries: Sequence[Summary], proved: bool) -> Iterator[str]:
             f"{_share(summary.reordered, trees)}, never {_share(summary.never, trees)}"
             + (f" (a cycle is to blame for {summary.cycles})" if summary.cycles else "")
         )
+        if summary.breaking:
+            yield f"  {summary.breaking} of those that execute break a rule"
         if summary.smaller:
             these = "is smaller than the optimum; it does not execute"
             if summary.smaller > 1:
                 these = "are smaller than the optimum; none of these executes"
+            these += " and keeps to the rules" if summary.breaking else ""
             yield f"  {summary.smaller} {these}"
         for objective, distance in summary.distances.items():
             yield (
@@ -137,7 +144,7 @@ def _times(value: Fraction) -> str:
     return f"{float(value):.3g}" if value < 1000 else f"{float(value):.1e}"
 
 
-def _rows(comparison: Comparison) -> Iterator[list[str]]:
+def _rows(comparison: Comparison, broken: Sequence[str]) -> Iterator[list[str]]:
     optima = [comparison.optima.get(objective) for objective in MEASURED]
     status = " ".join(dict.fromkeys(o.status for o in optima if o))
     values = [
@@ -147,7 +154,20 @@ def _rows(comparison: Comparison) -> Iterator[list[str]]:
     yield [comparison.goal, "optimum", *values, status]
     for judgement in comparison.judgements:
         cells = [_cell(comparison, judgement, objective) for objective in MEASURED]
-        yield ["", judgement.search, *cells, _executes(judgement)]
+        rules = _numbers(map(broken.index, judgement.breaks)) if judgement.breaks else ""
+        yield ["", judgement.search, *cells, _executes(judgement) + rules]
+
+
+def _numbers(places: Iterable[int]) -> str:
+    """Give the numbers of rules that a tree breaks."""
+    return " (" + ",".join(str(place + 1) for place in places) + ")"
+
+
+def _broken(comparisons: Sequence[Comparison]) -> list[str]:
+    """Give the rules that trees break, numbered by their places."""
+    return sorted(
+        {rule for each in comparisons for judgement in each.judgements for rule in judgement.breaks}
+    )
 
 
 def _cell(comparison: Comparison, judgement: Judgement, objective: Objective) -> str:
@@ -179,8 +199,10 @@ def _executes(judgement: Judgement) -> str:
 def _notes(comparisons: Sequence[Comparison]) -> list[str]:
     judged = [(comparison, judgement) for comparison in comparisons for judgement in comparison.judgements]
     notes = [RATIOS]
+    broken = _broken(comparisons)
     if any(c.beats_the_optimum(judgement, objective) for c, judgement in judged for objective in MEASURED):
-        notes.append(BETTER)
+        notes.append(BETTER + (", or one that breaks a rule" if broken else ""))
+    notes += [f"({number}) breaks {rule}" for number, rule in enumerate(broken, 1)]
     if any(judgement.obstacle and judgement.obstacle[2] for _, judgement in judged):
         notes.append(CYCLE)
     if any(o.status == Status.FEASIBLE for comparison in comparisons for o in comparison.optima.values()):
