@@ -28,7 +28,7 @@ demo: $(VENV)/installed
 	@$(BIN)/foon-asp optima > demo/optima.txt
 	@$(BIN)/foon-asp draw --goal macaroni -o demo/macaroni.svg
 	@$(BIN)/foon-asp view --goal macaroni -o demo/macaroni.html
-	@$(BIN)/python benchmarks/demo.py
+	@$(BIN)/python benchmarks/one_screen.py
 
 docs: $(VENV)/installed-docs
 	$(BIN)/python docs/build.py

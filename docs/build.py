@@ -13,8 +13,6 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from sphinx.cmd.build import main as sphinx
-
 import foon_asp
 from foon_asp.cli.main import main as foon_asp_command
 from foon_asp.cli.verbs import GROUPS, VERBS
@@ -69,6 +67,7 @@ project = "foon-asp"
 author = copyright = "The foon-asp developers"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 myst_heading_anchors = 4
+myst_enable_extensions = ["html_image"]
 html_theme = "furo"
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
@@ -125,18 +124,17 @@ def schemas() -> Iterator[str]:
             yield f"## {file.stem}\n\n```json\n{json_text(schema(file.stem)).rstrip()}\n```\n"
 
 
+MADE = {"index": index, "reference/verbs": verbs, "reference/python": python, "reference/schemas": schemas}
+
+
 def main(arguments: Sequence[str]) -> int:
     """Build the site, and give the exit code of Sphinx."""
+    from sphinx.cmd.build import main as sphinx  # noqa: PLC0415 (the pages are made without it, too)
+
     source = SITE / "source"
     shutil.rmtree(SITE, ignore_errors=True)
     mirror(source)
-    made = {
-        "index": index,
-        "reference/verbs": verbs,
-        "reference/python": python,
-        "reference/schemas": schemas,
-    }
-    for page, lines in made.items():
+    for page, lines in MADE.items():
         (source / page).parent.mkdir(parents=True, exist_ok=True)
         (source / f"{page}.md").write_text("\n".join(lines()), encoding="utf-8")
     (source / "conf.py").write_text(SETTINGS, encoding="utf-8")
