@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from foon_asp.asp import Outcome as Outcome
     from foon_asp.asp import Reporter as Reporter
     from foon_asp.asp import Status as Status
+    from foon_asp.deadline import Cancel as Cancel
+    from foon_asp.deadline import StoppedError as StoppedError
     from foon_asp.errors import BugError as BugError
     from foon_asp.errors import FoonWarning as FoonWarning
     from foon_asp.errors import UserError as UserError
@@ -66,6 +68,7 @@ if TYPE_CHECKING:
     from foon_asp.questions.export import Exported as Exported
     from foon_asp.questions.export import export as export
     from foon_asp.questions.export import to_unified_planning as to_unified_planning
+    from foon_asp.questions.in_hand import Progress as Progress
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.optima import Optima as Optima
@@ -116,6 +119,8 @@ _ROOMS = {
     "questions.export": ("to_unified_planning",),
     "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),
+    "deadline": ("Cancel", "StoppedError"),
+    "questions.in_hand": ("Progress",),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
     "planning.unified": ("register_engine",),

@@ -1,11 +1,14 @@
-"""When to stop: at a time limit, at a memory limit, or at ctrl-C."""
+"""When to stop: at a time limit, at a memory limit, at ctrl-C, or where a token says so."""
 
+import contextlib
 import math
 import os
 import re
 import signal
 import threading
 import time
+from collections.abc import Iterator
+from contextvars import ContextVar
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -19,11 +22,94 @@ _ADVICE = {
     "grounding": "rules that were added may be endless, as in p(f(X)) :- p(X), or have too many instances: "
     "check them, or raise the limit",
 }
-_LATE = 0.5  # seconds
+_LATE = 0.5  # seconds, and half of it after a cancel
+_CANCELLED = "a cancel"
 _STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
 _WAITS = 50  # looks until an interrupt is taken for lost
 _LOOKS = 0.02  # seconds between two looks at the memory
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+
+
+class StoppedError(Exception):
+    """A question was stopped, by its token or at a limit, before there was anything to give.
+
+    Example:
+        >>> token = foon_asp.Cancel()
+        >>> token.cancel()
+        >>> foon_asp.why_not(foon_asp.load().problem("ice"), cancel=token)
+        Traceback (most recent call last):
+        foon_asp.deadline.StoppedError: cancelled
+    """
+
+
+class Cancel:
+    """A token that ends every question it was given to, within a second, from any thread.
+
+    A question that knows something by then gives that, as at a time limit; any other raises
+    :class:`StoppedError`.
+
+    Example:
+        >>> token = foon_asp.Cancel()
+        >>> foon_asp.solve(foon_asp.load().problem("ice"), cancel=token).costs.units
+        2
+        >>> token.cancelled
+        False
+    """
+
+    def __init__(self) -> None:
+        self._at: float | None = None
+
+    def cancel(self) -> None:
+        """End the questions; those asked with this token later end at once."""
+        if self._at is None:
+            self._at = time.monotonic()
+
+    @property
+    def cancelled(self) -> bool:
+        """Whether it ends questions."""
+        return self._at is not None
+
+    def since(self, late: float) -> bool:
+        """Whether it has ended questions for so long that they should have ended by themselves.
+
+        Parameters:
+            late: How long that is, in seconds.
+        """
+        return self._at is not None and time.monotonic() >= self._at + late
+
+
+_CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
+
+
+@contextlib.contextmanager
+def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
+    """Stop what is in a ``with`` block in time, or where a token says so, which deadlines made in it obey.
+
+    Who looks at deadlines has time to end with what is known; then the block is interrupted, and
+    :class:`StoppedError` is raised.
+    """
+    if token is not None and token.cancelled:
+        raise StoppedError("cancelled")
+    before = _CANCEL.set(_CANCEL.get() if token is None else token)
+    try:
+        deadline = Deadline(seconds)
+        deadline._late *= 3  # for what all ends that are looked at, and all watches, left running
+        try:
+            with deadline.watched(doing, late=seconds is None):
+                yield deadline
+        except KeyboardInterrupt as stop:
+            if isinstance(stop, LimitError) or (deadline.passed and not deadline.interrupted):
+                raise StoppedError(_said(stop, deadline)) from None
+            raise
+    finally:
+        _CANCEL.reset(before)
+
+
+def _said(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
+    token = _CANCEL.get()
+    if token is not None and token.cancelled:
+        return "cancelled"
+    return f"stopped at {stop.stopped if isinstance(stop, LimitError) else deadline.stopped}"
 
 
 class LimitError(KeyboardInterrupt):
@@ -72,6 +158,8 @@ class Deadline:
         self._workers: set[int] = set()
         self._looked = 0.0
         self._by: str | None = None
+        self._token = _CANCEL.get()
+        self._late = _LATE
 
     @property
     def doing(self) -> str:
@@ -91,6 +179,9 @@ class Deadline:
             return True
         if self._within is not None and self._within.interrupted:
             self._by = self._within._by
+            return True
+        if self._token is not None and self._token.cancelled:
+            self._by = _CANCELLED
             return True
         if self._end is None and self.memory is None:
             return False
@@ -116,14 +207,16 @@ class Deadline:
     @property
     def limited(self) -> bool:
         """Whether anything but ctrl-C can end it."""
-        return self.seconds is not None or self.memory is not None
+        return self.seconds is not None or self.memory is not None or self._token is not None
 
     @property
     def overdue(self) -> bool:
         """Whether to stop even where nothing is known yet, which may still come half a second late."""
         if not self.passed:
             return False
-        return self._end is None or time.monotonic() >= self._end + _LATE or self._by != self._time_words
+        if self._by == _CANCELLED:
+            return self._token is None or self._token.since(self._late / 2)
+        return self._end is None or time.monotonic() >= self._end + self._late or self._by != self._time_words
 
     def interrupt(self) -> None:
         """Note that ctrl-C was pressed, unless a limit came before."""

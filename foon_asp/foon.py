@@ -1,24 +1,39 @@
 """Data that was loaded: a FOON, a kitchen and what stands beside them."""
 
-from collections.abc import Iterable, Mapping
+import contextlib
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.items import Stays, Stock, items_of
-from foon_asp.dataset.names import in_python
+from foon_asp.dataset.names import in_python, node_ids
 from foon_asp.dataset.paths import File, Files, files
+from foon_asp.deadline import Cancel, seconds, stoppable
 from foon_asp.errors import UserError
-from foon_asp.network import Network, ObjectNode, UnitPrices
+from foon_asp.network import (
+    FunctionalUnit,
+    Network,
+    NetworkBuilder,
+    ObjectNode,
+    Source,
+    UnitPrices,
+    starting_nodes,
+)
 from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
 from foon_asp.rules.measure import read_measures
-from foon_asp.text.data_folder import Data, find_data
+from foon_asp.text.assumed_goals import LAST, as_entry, last_goals
+from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
+from foon_asp.text.line import LineError
+from foon_asp.text.line_parser import parse_node
+from foon_asp.typed import typed
 from foon_asp.warning import warn
 
 
+@typed
 def load(
     source: Files | None = None,
     *,
@@ -30,6 +45,8 @@ def load(
     measures: Files = (),
     level: int = 3,
     lenient: bool = False,
+    time_limit: float | None = None,
+    cancel: Cancel | None = None,
 ) -> "Foon":
     """Load a FOON, a kitchen and the files that belong to them.
 
@@ -50,12 +67,15 @@ def load(
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
+        time_limit: Stop reading after this many seconds.
+        cancel: A token that ends reading from another thread.
 
     Returns:
         The data, from which problems are made.
 
     Raises:
         UserError: for a file that is missing or cannot be read, or another level.
+        StoppedError: if it was stopped.
 
     Example:
         >>> foon = foon_asp.load()
@@ -70,32 +90,44 @@ def load(
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
-    known = read_measures(measures)
-    dataset = read_dataset(find_data(folder, () if folder else paths, *beside), lenient, level).measured(
-        known
-    )
+    limited = time_limit is not None or cancel is not None
+    within = None if time_limit is None else seconds(time_limit)
+    with stoppable(within, cancel, "reading") if limited else contextlib.nullcontext():
+        known = read_measures(measures)
+        read = read_dataset(find_data(folder, () if folder else paths, *beside), lenient, level)
+        dataset = read.measured(known)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
-    foon = Foon(dataset.measured(known), name)
+    foon = Foon(dataset, name)
     for remark in foon.warnings:
         warn(remark)
     return foon
 
 
+PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
+"""A unit as callers write it: motion, inputs and outputs."""
+
+
 def build(
-    network: Network,
+    units: Network | Iterable[PlainUnit],
     *,
-    kitchen: Names = (),
+    kitchen: Names | None = None,
+    goals: Names | None = None,
     rates: Mapping[str, Number] | None = None,
     utensils: Iterable[str] = (),
     unit_prices: UnitPricesNamed | None = None,
     measures: Files = (),
 ) -> "Foon":
-    """Combine a network that was built in Python with a kitchen, rates and the rest.
+    """Make data of units written in Python, with a kitchen, goals, rates and the rest.
 
     Parameters:
-        network: The network, made by a :class:`NetworkBuilder`.
-        kitchen: The object nodes at hand, by label, in one-line notation, or as :class:`ObjectNode`.
-        rates: The success rates of all motions, above 0 and at most 1.
+        units: Units, each as motion, inputs and outputs, where object nodes are in one-line notation:
+            ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``; or as a dictionary with the
+            keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. Or a network, made by a
+            :class:`NetworkBuilder`.
+        kitchen: The object nodes at hand, by label, in one-line notation, or as :class:`ObjectNode`. Without
+            it, or as ``"@starting"``, what no unit makes is at hand; ``()`` is nothing.
+        goals: What is to be made, in the same way. Without it, what the last unit makes and no unit needs.
+        rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
@@ -104,18 +136,83 @@ def build(
         The data, from which problems are made.
 
     Raises:
-        UserError: for a name that means no object node or several, or a rate or price out of range.
+        UserError: for what is no unit, a name that means no object node or several, or a rate or price out
+            of range.
 
     Example:
-        >>> builder = foon_asp.NetworkBuilder()
-        >>> water, tea = foon_asp.parse_node("water"), foon_asp.parse_node("tea; hot")
-        >>> unit = builder.add("brew", [water], [tea], foon_asp.Source("by hand", 1))
-        >>> foon_asp.solve(foon_asp.build(builder.build(), kitchen="water").problem("tea"))
-        <Answer: optimal by units (strict containers): 1 unit, 1 input>
+        >>> brew = ("brew", ["water; hot", "tea bag"], ["tea; hot"])
+        >>> foon = foon_asp.build([("boil", "water; cold", "water; hot"), brew], kitchen=["water", "tea bag"])
+        Traceback (most recent call last):
+        foon_asp.errors.UserError: the kitchen item 'water' means 2 object nodes; paste the one you mean
+          'water; cold'
+          'water; hot'
+        >>> units = [("boil", "water; cold", "water; hot"), brew]
+        >>> foon = foon_asp.build(units, kitchen=["water; cold", "tea bag"], goals="tea", rates={"boil": 0.9})
+        >>> foon_asp.solve(foon.problem())
+        <Answer: optimal by units (strict containers): 2 units, 3 inputs>
     """
-    data = Data(network, frozenset(), (), (), None, frozenset(utensils), (), 0)
-    dataset = Dataset(data, 0.0).measured(read_measures(measures))
-    return Foon(dataset.vary(Changes(kitchen, rates=rates, unit_prices=unit_prices)), "a network")
+    network = units if isinstance(units, Network) else _network(units)
+    last = {len(network) - 1: Source("the units", len(network))} if len(network) else {}
+    entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
+    starting = kitchen is None or kitchen == str(STARTING)
+    at_hand = starting_nodes(network) if starting else frozenset[int]()
+    data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
+    data = data._replace(goals_from=LAST if goals is None else "")
+    dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(read_measures(measures))
+    if goals is not None:
+        nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
+        listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))
+        dataset = dataset.with_goals(tuple(listed))
+    kept = None if starting else kitchen
+    foon = Foon(dataset.vary(Changes(kept, rates=rates, unit_prices=unit_prices)), "a network")
+    for remark in foon.warnings:
+        warn(remark)
+    return foon
+
+
+def _network(units: Iterable[PlainUnit]) -> Network:
+    """Build a network of units as callers write them; their places are their numbers, from 1."""
+    builder = NetworkBuilder()
+    if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
+        raise UserError(f"found units={units!r}, expected several units; {_UNIT}")
+    for number, unit in enumerate(units, 1):
+        motion: object
+        inputs: object
+        outputs: object
+        if isinstance(unit, FunctionalUnit):
+            motion, inputs, outputs = unit.motion, unit.inputs, unit.outputs
+        elif isinstance(unit, Mapping) and unit.keys() == {"motion", "inputs", "outputs"}:
+            motion, inputs, outputs = unit["motion"], unit["inputs"], unit["outputs"]
+        elif isinstance(unit, tuple | list) and len(unit) == 3:
+            motion, inputs, outputs = unit
+        else:
+            raise UserError(f"found the unit {unit!r}, expected {_UNIT}")
+        if not isinstance(motion, str) or not motion.strip():
+            raise UserError(f"found the motion {motion!r} of unit {number}, expected {_UNIT}")
+        place = Source("the units", number)
+        builder.add(motion, [*_nodes(inputs, number)], [*_nodes(outputs, number)], place)
+    return builder.build()
+
+
+def _nodes(side: object, number: int) -> Iterator[ObjectNode]:
+    """Give one side of a unit as nodes."""
+    several = [side] if isinstance(side, str | ObjectNode) else side
+    if not isinstance(several, Iterable):
+        raise UserError(f"found {side!r} in unit {number}, expected object nodes; {_UNIT}")
+    for name in several:
+        if isinstance(name, ObjectNode):
+            yield name
+        elif isinstance(name, str):
+            try:
+                yield parse_node(name)
+            except LineError as error:
+                said = f"{name!r} of unit {number} cannot be read: at column {error.column}, {error}"
+                raise UserError(f"the object node {said}") from None
+        else:
+            raise UserError(f"found {name!r} in unit {number}, expected an object node; {_UNIT}")
+
+
+_UNIT = "a unit is its motion, its inputs and its outputs: ('pour', ['water; hot', 'tea bag'], ['tea; hot'])"
 
 
 class Foon:
@@ -167,6 +264,7 @@ class Foon:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    @typed
     def problem(
         self,
         *goals: str | ObjectNode,
@@ -192,6 +290,7 @@ class Foon:
         how = items_of(self._dataset, items, stock, stays)
         return self._dataset.problem(self._dataset.named_goals(goals), containers, items=how)
 
+    @typed
     def vary(
         self,
         *,

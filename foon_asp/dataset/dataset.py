@@ -157,6 +157,12 @@ class Dataset:
         data = self.data._replace(kitchen=kitchen, kitchen_items=tuple(items), starting=False)
         return self._varied(data)
 
+    def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
+        """Give the same data with other entries of a goals file."""
+        other = self._varied(self.data._replace(goals=tuple(goals), goals_from=""))
+        other.has_kitchen = self.has_kitchen
+        return other
+
     def with_starting_kitchen(self) -> "Dataset":
         """Give the same data with what no unit makes out of others at hand."""
         kitchen = starting_nodes(self.data.network)
@@ -193,7 +199,7 @@ class Dataset:
         if rates is None and unit_prices is None:
             return self
         network = self._data.network
-        changed = changed_rates(self._data.rates, rates)
+        changed = changed_rates(self._data.rates, rates, self.motions)
         prices = changed_prices(self._data.unit_prices, unit_prices, self.motions, network)
         data = self._data._replace(rates=None if changed is None else dict(changed), unit_prices=prices)
         return self._varied(data)

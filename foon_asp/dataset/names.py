@@ -83,15 +83,15 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
 
 
 def changed_rates(
-    known: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None
+    known: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
-    """Give success rates by motion with some of them changed."""
+    """Give success rates by motion with some of them changed; ``motions`` are those of the network."""
     if changed is None:
         return known
     rates = dict(known or {})
     for motion, given in changed.items():
         rate = success_rate(given, f"the success rate of {motion!r}")
-        if known is not None and motion not in known:
+        if known is not None and motion not in known and motion not in motions:
             import difflib  # noqa: PLC0415 (for a fault alone)
 
             near = difflib.get_close_matches(motion, known, n=3, cutoff=0.6)

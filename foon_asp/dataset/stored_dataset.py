@@ -188,7 +188,7 @@ class StoredDataset(Dataset):
         if rates is None and unit_prices is None:
             return self
         other = self._copied()
-        other.rates = changed_rates(self.rates, rates)
+        other.rates = changed_rates(self.rates, rates, self.motions)
         known = UnitPrices(self._prices.motions or {}, self._prices.units)
         prices = changed_prices(known, unit_prices, self.motions, self._store)
         if unit_prices is not None and prices is not None:

@@ -2,10 +2,10 @@
 
 from bisect import bisect_left
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from foon_asp.network.counted import counted
 from foon_asp.network.functional_unit import FunctionalUnit
@@ -64,6 +64,52 @@ class Network:
     def __repr__(self) -> str:
         size = f"{counted(len(self), 'unit')}, {counted(len(self.objects), 'object node')}"
         return f"<Network: {size}, level {self.level}>"
+
+    def __iter__(self) -> Iterator[FunctionalUnit]:
+        """Give the units as values, in order of id."""
+        return map(self.unit, range(len(self)))
+
+    def is_like(self, other: "Network") -> bool:
+        """Whether another network has the same nodes and units under the same ids, read at the same places.
+
+        Parameters:
+            other: The other network.
+        """
+        return self is other or (
+            (self.objects, self.motions, self.inputs, self.outputs, self.sources, self.level)
+            == (other.objects, other.motions, other.inputs, other.outputs, other.sources, other.level)
+            and (self.unit_numbers, self.object_numbers) == (other.unit_numbers, other.object_numbers)
+        )
+
+    def to_networkx(self) -> Any:
+        """Give the network as a directed graph of the package networkx.
+
+        Object nodes are nodes with their parts as attributes; units are nodes ``("unit", id)``, with edges
+        from their inputs and to their outputs. ``kind`` is ``object`` or ``unit``.
+
+        Raises:
+            ImportError: if networkx is not installed.
+
+        Example:
+            >>> foon_asp.load().network.to_networkx()  # doctest: +SKIP
+            <networkx.classes.digraph.DiGraph object at ...>
+        """
+        try:
+            import networkx  # noqa: PLC0415 (an extra)
+        except ImportError:
+            raise ImportError("a graph needs networkx: pip install 'foon-asp[notebook]'") from None
+        graph = networkx.DiGraph()
+        for o, node in enumerate(self.objects):
+            contents = [str(held) for held in node.contents]
+            parts = sorted(node.states), [str(relation) for relation in sorted(node.relations)], contents
+            said = dict(zip(("states", "relations", "contents"), parts, strict=True))
+            graph.add_node(node, kind="object", id=self.object_number(o), label=node.label, **said)
+        for unit, motion in enumerate(self.motions):
+            name = ("unit", self.unit_number(unit))
+            graph.add_node(name, kind="unit", motion=motion)
+            graph.add_edges_from((self.objects[o], name) for o in self.inputs[unit])
+            graph.add_edges_from((name, self.objects[o]) for o in self.outputs[unit])
+        return graph
 
     def unit(self, unit_id: int) -> FunctionalUnit:
         """Give a unit as a value.

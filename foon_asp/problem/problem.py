@@ -22,6 +22,7 @@ from foon_asp.problem.items import Flow, UsedUp
 from foon_asp.problem.number import Number
 from foon_asp.problem.objective import Known, Measured, Objective
 from foon_asp.problem.restriction import Restriction
+from foon_asp.typed import typed
 
 _NAMED = 4  # motions that a remark names
 
@@ -168,6 +169,7 @@ class Problem:
         part = self.origin is not None and self.network.object_numbers
         return self.origin.posed_about(self, units) if self.origin is not None and part else self
 
+    @typed
     def vary(
         self,
         goals: Names | None = None,
@@ -287,6 +289,27 @@ class Problem:
         """What a tree has to make: the goals, and one node more for each set that a restriction requires."""
         size, restriction = len(self.network.objects), self.restriction
         return (*self.goals, *range(size, size + (len(restriction.required) if restriction else 0)))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the same is asked: of an equal network, whichever file was read or built first."""
+        if not isinstance(other, Problem):
+            return NotImplemented
+        return self is other or (
+            self._asked == other._asked
+            and self.network.is_like(other.network)
+            and self.restriction is other.restriction
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.kitchen, self.goals, self.containers, len(self.network)))
+
+    @property
+    def _asked(self) -> tuple[object, ...]:
+        """All that is asked, but for the network."""
+        measures = {name: measure.text for name, measure in self.measures.items()}
+        rules = self.containers, self.utensils, self.items, self.starting
+        values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen
+        return self.kitchen, self.goals, *rules, *values
 
     def __repr__(self) -> str:
         return f"<Problem: {' + '.join(map(str, self.goal_nodes))} ({self.conditions})>"

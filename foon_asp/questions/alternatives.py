@@ -9,6 +9,7 @@ from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, mention_json, nodes_json, steps_json
 from foon_asp.encoding.facts import write_distances
 from foon_asp.encoding.own_encodings import question_encoding
@@ -26,6 +27,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -239,6 +241,8 @@ def alternatives(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Alternatives:
     """Find all optimal trees, the best few, or those that differ most from each other.
 

@@ -43,6 +43,10 @@ class Answer(Result, Outcome):
 
     __slots__ = ()
 
+    def __bool__(self) -> bool:
+        """Whether there is a tree."""
+        return self.units is not None
+
     @property
     def tree(self) -> "Tree | None":
         """The tree, in an order that executes; ``None`` where there is none."""
@@ -105,6 +109,10 @@ class WithOutcome(Result):
     """What comes with an ``outcome``: the best tree, which its picture shows, or ``None`` without one."""
 
     outcome: Answer | None
+
+    def __bool__(self) -> bool:
+        """Whether there is a tree."""
+        return bool(self.outcome)
 
     def drawing(self) -> "Drawing | None":
         """Give what the picture of the tree shows."""

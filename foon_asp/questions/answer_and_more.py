@@ -17,6 +17,10 @@ class AnswerAndMore(Result, Generic[A]):
 
     answer: A
 
+    def __bool__(self) -> bool:
+        """Whether there is a tree."""
+        return bool(self.answer)
+
     def lines(self) -> Sequence[str]:
         """Give the additional lines."""
         raise NotImplementedError

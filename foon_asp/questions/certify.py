@@ -11,6 +11,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.certificate import Certificate, Coverage, NotBestError, certify_outcome, coverage
 from foon_asp.certificate import certify as prove_best
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels
@@ -27,6 +28,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import read_listed
@@ -241,6 +243,8 @@ def certify(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Certified:
     """Solve a problem, and find a certificate: a proof of the answer, which :func:`foon_asp.verify` checks.
 

@@ -4,12 +4,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
 
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import Problem
 from foon_asp.proof.replay import Replay, replay_for
 from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -122,7 +124,14 @@ class Checked(Result):
     order executes or a unit is not in the network.
     """,
 )
-def check(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Checked:
+def check(
+    problem: Problem,
+    tree: str | PathLike[str] | Iterable[FunctionalUnit],
+    *,
+    time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
+) -> Checked:
     """Simulate a task tree for the goals of a problem: does it execute, and in which order?
 
     Parameters:

@@ -9,6 +9,7 @@ from foon_asp.asp.integrity import IntegrityConstraint, relax
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.solver import solve_prepared
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document
 from foon_asp.encoding.facts import write_constraints, write_corrections
 from foon_asp.encoding.own_encodings import question_encoding
@@ -27,6 +28,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import goal_lines, headline
@@ -181,6 +183,8 @@ def clash(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Clash:
     """Find a smallest set of constraints that cannot hold together, and the cheapest ones to drop.
 

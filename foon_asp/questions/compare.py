@@ -11,12 +11,14 @@ from foon_asp.compare.results_file import ResultsFile, comparison_json, results_
 from foon_asp.compare.summary import all_proved, summarize_comparisons
 from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document, goals_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import Constants, asked_with, at_least, limits, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, not_built, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS, RULES
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result
@@ -252,6 +254,8 @@ def compare_searches(
     memory_limit: int | str | None = None,
     jobs: int = 1,
     results: File | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Compared:
     """Run searches for each goal of a problem by itself, and prove the optimum beside them.
 

@@ -9,6 +9,7 @@ from typing import NamedTuple, ParamSpec, TypeVar
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.docstring import complete_docstring
+from foon_asp.questions.in_hand import HELP, in_hand
 from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
 
@@ -109,7 +110,7 @@ def described(*options: Option) -> Callable[[Callable[P, T]], Callable[P, T]]:
     """Make a decorator that completes the docstring of a function by the help of options."""
 
     def decorate(ask: Callable[P, T]) -> Callable[P, T]:
-        texts = {option.name: f"{option.help} {option.python}".rstrip() for option in options}
+        texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in options}
         ask.__doc__ = complete_docstring(ask, texts)
         return ask
 
@@ -127,8 +128,10 @@ def question(
     """Make a decorator that describes a function for a command line, see :func:`question_of`."""
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
-        if not any(option.name == "items" for option in options):
+        names = {option.name for option in options}
+        if "items" not in names:
             ask = _for_lasting_items(ask)
+        ask = in_hand("time_limit" in names)(ask)
         ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, command or ask)
         return described(*options)(ask)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from foon_asp.asp import Settings, Status
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.engines import Asked, Check, DisagreementError, Engine, find_engines
 from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
@@ -22,6 +23,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.certify import Certified
 from foon_asp.questions.contract import described
+from foon_asp.questions.in_hand import OnProgress, in_hand
 from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.solve_soft import SoftAnswer, softly_answered
 from foon_asp.report.disagreement import write_disagreement
@@ -85,6 +87,7 @@ class CrossChecked(AnswerAndMore[Answer | SoftAnswer | Certified]):
 
 
 @described(OBJECTIVES, SOFT, *RULES, *LIMITS)
+@in_hand(takes_time=True)
 def cross_check(
     problem: Problem,
     objectives: Objectives = "units",
@@ -95,6 +98,8 @@ def cross_check(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> CrossChecked:
     """Solve a problem, and ask other engines the same question.
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.dataset import Dataset
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, head_json, listed_unit_json, named_json
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitPrices, counted, unit_at_level
 from foon_asp.problem import (
@@ -21,6 +22,7 @@ from foon_asp.problem import (
 )
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.contract import Option, Part, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NoTreeError, Result
@@ -220,7 +222,14 @@ def _file_side(file: Path, dataset: Dataset, goals_named: Sequence[str], contain
     """,
     pose=_posed,
 )
-def diff(left: Answer | Tree | Side, right: Answer | Tree | Side) -> Difference:
+def diff(
+    left: Answer | Tree | Side,
+    right: Answer | Tree | Side,
+    *,
+    time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
+) -> Difference:
     """Compare two trees: what both have, what only one has, what each costs, and where they part.
 
     They part at an object node that both need on the way to the goals but get in different ways: from

@@ -8,6 +8,7 @@ from typing import Any
 
 from foon_asp.asp import solve as find
 from foon_asp.dataset.paths import File
+from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
@@ -16,6 +17,7 @@ from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question, question_of
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
@@ -179,6 +181,8 @@ def draw(
     containers: str = "strict",
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Drawn:
     """Draw the optimal task tree of a problem, a given tree, some units, or a whole network.
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.dataset.paths import File
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.network import counted
@@ -17,6 +18,7 @@ from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, OBJECTIVES
 from foon_asp.questions.result import Result
 from foon_asp.report.whole_file import write_whole
@@ -162,7 +164,14 @@ def _export_and_write(
     """,
 )
 def export(
-    problem: Problem, objectives: Objectives = "units", *, target: str = "pddl", every_unit: bool = False
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    target: str = "pddl",
+    every_unit: bool = False,
+    time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Exported:
     """Write the goals of a problem as a planning task for other planners.
 

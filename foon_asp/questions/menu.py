@@ -7,6 +7,7 @@ from fractions import Fraction
 from foon_asp.asp import Reporter, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document, figure_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.network import counted
@@ -15,6 +16,7 @@ from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import headline, steps, success_text
@@ -112,6 +114,8 @@ def menu(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Menu:
     """Solve several goals with one tree and each by itself, and find the units they share.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from foon_asp.asp import solve as find
 from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Deadline
+from foon_asp.deadline import Cancel, Deadline
 from foon_asp.document.json_document import document
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer
@@ -19,6 +19,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES, RULES
 from foon_asp.questions.posing import each_goal
 from foon_asp.questions.result import Ending, Result
@@ -91,6 +92,8 @@ def optima(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Optima:
     """Find the best tree for each goal of a problem by itself, under several objectives.
 
@@ -115,7 +118,7 @@ def optima(
     texts = [asked] if isinstance(asked, str) else asked
     lists = [chosen_objectives(problem, text) for text in texts]
     # limits are for each answer, ctrl-C is for all of them
-    how, whole = settings(constraints, constants, encodings), Deadline()
+    how, whole = settings(constraints, constants, encodings), Deadline(within=caller().deadline)
     each_limits = limits(time_limit, memory_limit)
     problem = asked_with(problem, how)
     outcomes = []

@@ -12,6 +12,7 @@ from foon_asp.asp import Reporter, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, figures_json, steps_json
 from foon_asp.errors import UserError
 from foon_asp.network import counted
@@ -26,6 +27,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
@@ -200,6 +202,8 @@ def pareto(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Front:
     """Find all trade-offs between two or three objectives (the Pareto front), with a tree for each.
 

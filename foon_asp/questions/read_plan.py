@@ -5,6 +5,7 @@ from os import PathLike
 from pathlib import Path
 
 from foon_asp.dataset.paths import File
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.planning.name_map import map_of, read_name_map
@@ -15,6 +16,7 @@ from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import reading, whole
 from foon_asp.questions.check import Checked
 from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
@@ -103,7 +105,15 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
     the line and the reason; with 2 for a line that is no step, or an action that the map does not have.
     """,
 )
-def read_plan(problem: Problem, plan: str | PathLike[str] | object, *, names: File | None = None) -> PlanRead:
+def read_plan(
+    problem: Problem,
+    plan: str | PathLike[str] | object,
+    *,
+    names: File | None = None,
+    time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
+) -> PlanRead:
     r"""Read the plan of another planner back into a task tree, and execute it.
 
     A unit that a plan executes twice is in the tree once.

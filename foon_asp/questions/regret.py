@@ -14,6 +14,7 @@ from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.asp import solve as find
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, figures_json, mention_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.network.spelling import near_labels
@@ -22,6 +23,7 @@ from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import costs_text, goal_lines, headline, success_text
@@ -151,6 +153,8 @@ def regret(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Regrets:
     """Find the optimum without each unit of the best tree, and without each kitchen item that it uses.
 

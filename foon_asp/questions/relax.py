@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.dataset.paths import File, Files, files
-from foon_asp.deadline import Deadline
+from foon_asp.deadline import Cancel, Deadline
 from foon_asp.document.json_document import document, fraction_json, fraction_text
 from foon_asp.network import counted
 from foon_asp.planning.strips_task import REACHED, StripsTask
@@ -19,6 +19,7 @@ from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import LIMITS
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, Result
@@ -202,6 +203,8 @@ def relax(
     certificate_file: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Relaxed:
     """Find the cheapest plan of a planning task without its deletes, and prove that none is cheaper.
 

@@ -62,6 +62,18 @@ class Result:
         """Give the result as plain values: lists, dictionaries, strings and numbers (docs/json.md)."""
         return read_json(self.json_text())
 
+    def to_frame(self) -> Any:
+        """Give a data frame of pandas: a row for each thing that is listed, or one where nothing is.
+
+        Columns are the keys of the JSON; those of what is inside have a dot (``costs.units``).
+
+        Raises:
+            UserError: if pandas is not installed.
+        """
+        from foon_asp.report.frame import frame  # noqa: PLC0415 (seldom asked for)
+
+        return frame(self.json())
+
     def foon(self) -> str:
         """Give the tree as FOON text.
 

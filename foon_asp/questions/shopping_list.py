@@ -14,6 +14,7 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, fraction_json, nodes_json
 from foon_asp.encoding.facts import write_for_sale, write_list
 from foon_asp.encoding.own_encodings import question_encoding
@@ -26,6 +27,7 @@ from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, at_least, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import answer_json, costs_text, goal_lines, headline, steps
@@ -201,6 +203,8 @@ def shopping_list(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Shopping:
     """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree exists.
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from foon_asp.asp import Reporter
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, answered_under
@@ -17,6 +18,7 @@ from foon_asp.questions.arguments import (
     whole,
 )
 from foon_asp.questions.contract import Kind, Option, not_built, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions
@@ -145,6 +147,8 @@ def solve(
     reductions: str = "all",
     clingo_options: Sequence[str] = (),
     reporter: Reporter | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Answer:
     """Find the best task tree for the goals of a problem, and prove that no other is better.
 

@@ -7,6 +7,7 @@ from foon_asp.asp import Settings, Status
 from foon_asp.asp.soft import Broken
 from foon_asp.asp.soft import solve_soft as find
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, WithOutcome
@@ -20,6 +21,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import described
+from foon_asp.questions.in_hand import OnProgress, in_hand
 from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import headline, outcome_text
@@ -104,6 +106,7 @@ def softly_answered(
 
 
 @described(OBJECTIVES, SOFT, *RULES, *LIMITS)
+@in_hand(takes_time=True)
 def solve_soft(
     problem: Problem,
     objectives: Objectives = "units",
@@ -114,6 +117,8 @@ def solve_soft(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> SoftAnswer:
     """Find the best tree of those that pay least for the constraints they break.
 

@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from foon_asp.dataset.paths import File
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document, listed_unit_json, named_json
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
@@ -15,6 +16,7 @@ from foon_asp.proof.replay import Copy, Replay, replay_for
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -238,6 +240,8 @@ def trace(
     failed: int | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Traced:
     """Say what is in the kitchen after each step of a plan, and plan anew if a step fails.
 

@@ -4,11 +4,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from foon_asp.dataset.items import Stays, items_of
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document, unit_json
 from foon_asp.foon import Foon
 from foon_asp.network import Network, ObjectNode
 from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
 from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.result import Result
@@ -103,6 +105,9 @@ def units(
     explain_items: bool = False,
     containers: str = "strict",
     stays: Stays | None = None,
+    time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Units:
     """List the functional units of a network, and say which of their inputs are used up.
 

@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from foon_asp.deadline import Deadline, LimitError
+from foon_asp.deadline import Cancel, Deadline, LimitError
 from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
@@ -15,6 +15,7 @@ from foon_asp.problem import Problem, kitchen_needed
 from foon_asp.proof import verify as proof
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.certified import verified_json, verified_text
@@ -132,7 +133,13 @@ def verify_or_refuse(
     """,
 )
 def verify(
-    data: Foon | Problem, certificate: "Certificate | str | PathLike[str]", *, with_clingo: bool = False
+    data: Foon | Problem,
+    certificate: "Certificate | str | PathLike[str]",
+    *,
+    with_clingo: bool = False,
+    time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> VerifiedCertificate:
     """Check a certificate against the data it is about, without any solver.
 

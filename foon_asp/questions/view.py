@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import counted
@@ -16,6 +17,7 @@ from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.certify import Certified, certified
 from foon_asp.questions.contract import Option, Part, not_built, question, question_of
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.posing import Command, one_problem, the_data
@@ -210,6 +212,8 @@ def view(
     containers: str = "strict",
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> View:
     """Solve a problem, and show what was found on a page that any browser opens; or show a whole network.
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document, mention_json, nodes_json, unit_json
 from foon_asp.foon import Foon
 from foon_asp.network import Network, ObjectNode, counted, pattern_at_level
@@ -13,6 +14,7 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Blocked, Cause, NearName, Root, dead_ends
 from foon_asp.questions.arguments import Constants, settings, whole
 from foon_asp.questions.contract import question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import goal_lines
@@ -150,6 +152,8 @@ def why_not(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Explanation:
     """Explain why there is no task tree: what is missing, and which cycles feed only themselves.
 

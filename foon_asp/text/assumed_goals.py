@@ -1,8 +1,8 @@
 """The goals of networks that come without a list of goals: marked with ``!``, or what the last unit makes."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
-from foon_asp.network import NodePattern, ObjectNode, Source
+from foon_asp.network import Network, NodePattern, ObjectNode, Source
 from foon_asp.text.object_list import ListedObject
 
 MARKED, LAST = "marked", "last"
@@ -22,3 +22,14 @@ def as_entry(node: ObjectNode, source: Source) -> ListedObject:
     """Give a node as an entry of a goals file would name it; ``source`` is where it was read."""
     pattern = NodePattern(node.label, node.states, node.ingredients, None, node.relations)
     return ListedObject(pattern, source._replace(videos=()))
+
+
+def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[ListedObject]:
+    """Give what the last units, by id with their places, are for: as entries of a goals file."""
+    outputs = {o for unit in last_units for o in network.outputs[unit]}
+    needed = {o for inputs in network.inputs for o in inputs if o in outputs}
+    found: dict[int, Source] = {}
+    for unit, place in last_units.items():
+        for o in wanted_outputs(network.inputs[unit], network.outputs[unit], needed):
+            found.setdefault(o, place)
+    return [as_entry(network.objects[o], source) for o, source in found.items()]

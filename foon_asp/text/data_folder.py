@@ -17,7 +17,7 @@ from foon_asp.network import (
     starting_nodes,
 )
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, wanted_outputs
+from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -194,13 +194,7 @@ def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObj
     """Give the goals of a network without a list of them: those marked, or what its last units are for."""
     if reader.marked:
         return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
-    outputs = {o for unit in reader.last_units for o in network.outputs[unit]}
-    needed = {o for inputs in network.inputs for o in inputs if o in outputs}
-    found: dict[int, Source] = {}
-    for unit, place in reader.last_units.items():
-        for o in wanted_outputs(network.inputs[unit], network.outputs[unit], needed):
-            found.setdefault(o, place)
-    return [as_entry(network.objects[o], source) for o, source in found.items()], LAST
+    return last_goals(network, reader.last_units), LAST
 
 
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:

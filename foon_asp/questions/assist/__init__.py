@@ -8,6 +8,7 @@ from pathlib import Path
 
 from foon_asp.asp import Status
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.network import counted
 from foon_asp.problem import Number, Objective, Problem, success_rate
@@ -15,6 +16,7 @@ from foon_asp.questions.arguments import Constants, asked_with, at_least, settin
 from foon_asp.questions.assist.assistant import Assistant, Assisted
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -147,6 +149,8 @@ def assist(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Assistance:
     """Find the best success if a person does at most 0, 1, 2, ... units, and which ones these are.
 

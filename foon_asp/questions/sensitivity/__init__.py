@@ -9,6 +9,7 @@ from fractions import Fraction
 from foon_asp.asp import Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.dataset.paths import File, Files
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.errors import UserError
 from foon_asp.network import counted
@@ -18,6 +19,7 @@ from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, asked_with, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending
 from foon_asp.questions.sensitivity.envelope import Envelope
@@ -103,6 +105,8 @@ def sensitivity(
     encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Sensitivity:
     """Find how wrong each success rate may be before another tree is the best by ``success``.
 

@@ -1,0 +1,230 @@
+"""What somebody in a notebook tries first."""
+
+import importlib.util
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+import foon_asp
+from foon_asp import Cancel, Foon, StoppedError, UserError
+from foon_asp.errors import FoonWarning
+from tests.hard_problem import hard_problem
+
+ENDLESS = "p(0). p(f(X)) :- p(X). :- use(U), p(f(U))."
+LATE = 2.5  # seconds, on a busy machine; alone it is less than one
+UNITS: list[Any] = [
+    ("boil", "water; cold", ["water; hot"]),
+    {"motion": "pour", "inputs": ["water; hot", "tea bag"], "outputs": ["tea; hot", "tea bag; wet"]},
+]
+
+
+def installed(package: str) -> pytest.MarkDecorator:
+    missing = importlib.util.find_spec(package) is None
+    return pytest.mark.skipif(missing, reason=f"{package} is not installed")
+
+
+@pytest.fixture(scope="module")
+def foon() -> Foon:
+    return foon_asp.load()
+
+
+def test_a_network_of_plain_values() -> None:
+    tea = foon_asp.build(UNITS, kitchen=["water; cold", "tea bag;"], goals="tea", rates={"boil": 0.9})
+    answer = foon_asp.solve(tea.problem())
+    assert answer
+    assert answer.costs is not None
+    assert answer.costs.units == 2
+    assert answer.costs.success is None
+    with pytest.raises(UserError, match="the motion 'pour' has no success rate"):
+        foon_asp.solve(tea.problem(), "success")
+    assert foon_asp.solve(tea.vary(rates={"pour": "0.5", "boil": 1}).problem(), "success")
+    with pytest.warns(FoonWarning, match="no kitchen is given, so what no unit makes"):
+        alone = foon_asp.build(UNITS)
+    assert [str(node) for node in alone.kitchen] == ["water; cold", "tea bag"]
+    assert [str(node) for node in alone.goals] == ["tea; hot", "tea bag; wet"]
+    nothing = foon_asp.build(UNITS, kitchen=(), goals="tea")
+    assert not foon_asp.solve(nothing.problem())
+    assert len(foon_asp.build(tea.network, kitchen="@starting").network) == 2
+    assert [unit.motion for unit in tea.network] == ["boil", "pour"]
+    assert list(tea.network) == list(foon_asp.build(tea.network, kitchen=()).network)
+
+
+@pytest.mark.parametrize(
+    ("units", "message"),
+    [
+        (["pour"], "found the unit 'pour', expected a unit is its motion|found the unit 'pour'"),
+        ("pour", "found units='pour', expected several units"),
+        (3, "found units=3"),
+        ([("pour", "water")], "found the unit"),
+        ([(3, "water", "tea")], "found the motion 3 of unit 1"),
+        ([("pour", 3, "tea")], "found 3 in unit 1, expected object nodes"),
+        ([("pour", [3], "tea")], "found 3 in unit 1, expected an object node"),
+        ([("pour", "water; in [", "tea")], "of unit 1 cannot be read: at column"),
+    ],
+)
+def test_what_is_no_unit_is_refused(units: Any, message: str) -> None:
+    with pytest.raises(UserError, match=message):
+        foon_asp.build(units)
+
+
+face: Any = foon_asp  # for what type checkers refuse
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda f, p: face.solve("macaroni"), r"found problem='macaroni', expected a problem: foon_asp"),
+        (lambda f, p: face.alternatives(p, best=2.5), r"found best=2.5, expected a whole number"),
+        (lambda f, p: face.alternatives(p, best=True), r"found best=True, expected a whole number"),
+        (lambda f, p: face.units(f, units=["pour"]), r"found units=\['pour'\], expected several such as"),
+        (lambda f, p: face.regret(p, units="pour"), "found units='pour'"),
+        (lambda f, p: face.solve(p, 3), "found objectives=3, expected text or several"),
+        (lambda f, p: face.solve(p, time_limit="soon"), "found time_limit='soon', expected a number"),
+        (lambda f, p: face.solve(p, cancel=3), r"expected a token: foon_asp.Cancel\(\)"),
+        (lambda f, p: face.solve(p, on_progress=3), "found on_progress=3, expected a function"),
+        (lambda f, p: face.solve_soft(p, soft=3), "found soft=3, expected a dictionary"),
+        (lambda f, p: face.diff(p, p), "expected Answer or a tree"),
+        (lambda f, p: f.problem(3), "found goals=3, expected text or an object node"),
+        (lambda f, p: f.vary(rates=3), "found rates=3, expected a dictionary"),
+        (lambda f, p: p.vary(without=3), "found without=3, expected text or an object node"),
+        (lambda f, p: face.load(3), "found source=3, expected text or a path"),
+        (lambda f, p: face.load(level="2"), "found level='2', expected a whole number"),
+    ],
+)
+def test_a_value_of_the_wrong_type_is_refused_in_words(
+    foon: Foon, ask: Callable[[Any, Any], object], message: str
+) -> None:
+    with pytest.raises(UserError, match=message):
+        ask(foon, foon.problem("ice"))
+
+
+def test_equal_questions_are_equal(foon: Foon) -> None:
+    problem = foon.problem("ice")
+    assert problem == foon_asp.load().problem("ice")
+    assert hash(problem) == hash(foon_asp.load().problem("ice"))
+    assert len({problem, foon.problem("ice"), foon.problem("tea")}) == 2
+    others = [
+        foon.problem("tea"),
+        foon.problem("ice", containers="implied"),
+        problem.vary(without="knife"),
+        problem.vary(rates={"crush": "0.5"}),
+        problem.vary(unit_prices={"crush": 1}),
+        problem.vary(kitchen="@starting"),
+        problem.vary(measures="cost(effort,U,5) :- unit(U)."),
+        replace(problem, own_rates={0: problem.rate(0)}),
+        replace(problem, network=problem.network.without([0])),
+        foon.problem("ice", items="used-up"),
+    ]
+    assert all(problem != other for other in others)
+    assert problem != "ice"
+    assert problem.vary(without="knife") == foon.vary(without="knife").problem("ice")
+
+
+def test_an_answer_is_true_where_there_is_a_tree(foon: Foon) -> None:
+    there, not_there = foon.problem("ice"), foon.problem("apple pie")
+    assert foon_asp.solve(there)
+    assert not foon_asp.solve(not_there)
+    assert foon_asp.certify(there)
+    assert not foon_asp.certify(not_there)
+    assert foon_asp.solve_soft(there, soft={})
+
+
+def test_progress_is_told(foon: Foon) -> None:
+    heard: list[foon_asp.Progress] = []
+    foon_asp.solve(foon.problem("macaroni"), "success", on_progress=heard.append)
+    assert heard[-1].costs is not None
+    assert heard[-1].costs.units == 11
+    heard.clear()
+    foon_asp.compare_searches(foon.problem("ice", "tea"), ["bfs"], on_progress=heard.append)
+    assert (heard[0].done, heard[-1].done, heard[-1].total) == (0, 2, 2)
+
+
+def ended_by(token: Cancel, ask: Callable[[], object], after: float = 0.7) -> tuple[object, float]:
+    """Ask in another thread, cancel, and give what came of it and how many seconds that took."""
+    found: list[object] = []
+
+    def run() -> None:
+        try:
+            found.append(ask())
+        except StoppedError as error:
+            found.append(error)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    time.sleep(after)
+    assert thread.is_alive()
+    began = time.monotonic()
+    token.cancel()
+    thread.join(10)
+    assert not thread.is_alive()
+    return found[0], time.monotonic() - began
+
+
+def test_a_token_ends_grounding_that_has_no_end(foon: Foon) -> None:
+    token, problem = Cancel(), foon.problem("ice")
+    answer, seconds = ended_by(token, lambda: foon_asp.solve(problem, constraints=ENDLESS, cancel=token))
+    assert seconds < LATE
+    assert isinstance(answer, foon_asp.Answer)
+    assert str(answer.stopped) == "a cancel while grounding"
+    with pytest.raises(StoppedError, match="cancelled"):
+        foon_asp.why_not(problem, cancel=token)
+    assert foon_asp.solve(problem)  # others go on
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "ask",
+    [
+        *("solve", "alternatives", "pareto", "regret", "sensitivity", "assist", "certify", "optima"),
+        *("cross_check", "compare_searches", "shopping_list"),
+    ],
+)
+def test_a_token_ends_every_search(ask: str) -> None:
+    problem, token = hard_problem(40, 14, 6, 4), Cancel()
+    function = getattr(foon_asp, ask)
+    _, seconds = ended_by(token, lambda: function(problem, cancel=token), 2)
+    assert seconds < LATE
+
+
+def test_a_token_ends_reading(foon: Foon) -> None:
+    token = Cancel()
+    token.cancel()
+    with pytest.raises(StoppedError, match="cancelled"):
+        foon_asp.load(cancel=token)
+    with pytest.raises(StoppedError, match="the time limit of 0 s"):
+        foon_asp.check(foon.problem("ice"), (), time_limit=0)
+
+
+@installed("pandas")
+def test_results_as_data_frames(foon: Foon) -> None:
+    problem = foon.problem("macaroni")
+    units = foon_asp.solve(problem).to_frame()
+    assert units["motion"][0] == "open"
+    assert units["inputs"][0] == ["macaroni box; sealed"]
+    assert list(foon_asp.pareto(problem).to_frame()["costs.units"]) == [9, 10, 11]
+    assert list(foon_asp.compare_searches(problem, ["bfs", "ids"]).to_frame()["search"]) == ["bfs", "ids"]
+    assert len(foon_asp.check(problem, ()).to_frame()) == 1
+
+
+def test_without_pandas_or_networkx_that_is_said(foon: Foon, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "pandas", None)
+    monkeypatch.setitem(__import__("sys").modules, "networkx", None)
+    with pytest.raises(UserError, match="a data frame needs pandas: pip install"):
+        foon_asp.solve(foon.problem("ice")).to_frame()
+    with pytest.raises(ImportError, match="a graph needs networkx: pip install"):
+        foon.network.to_networkx()
+
+
+@installed("networkx")
+def test_a_network_as_a_graph(foon: Foon) -> None:
+    network = foon.network
+    graph = network.to_networkx()
+    assert len(graph) == len(network) + len(network.objects)
+    assert set(graph.predecessors(("unit", 3))) == {network.objects[o] for o in network.inputs[3]}
+    assert set(graph.successors(("unit", 3))) == {network.objects[o] for o in network.outputs[3]}
+    assert graph.nodes["unit", 3]["motion"] == network.motions[3]
+    assert graph.nodes[network.objects[0]]["label"] == network.objects[0].label
