@@ -9,6 +9,7 @@ from pathlib import Path
 from foon_asp.asp import Status
 from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File
+from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document, fraction_json, listed_unit_json
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, counted
@@ -22,6 +23,7 @@ from foon_asp.questions.answer import of_status
 from foon_asp.questions.arguments import at_least, begin
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
@@ -314,6 +316,8 @@ def schedule(
     from_video: bool = False,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Schedule:
     """Find the shortest schedule of a plan: when each step starts, who does it, and with which tools.
 
