@@ -105,7 +105,19 @@ ASKED: dict[str, list[tuple[str, ...]]] = {
     "lint": [("LINTED",)],
 }
 # Verbs without documents: certificates, pictures, schemas and files have forms of their own.
-OTHERS = {"certify", "draw", "encodings", "init", "schema", "shell", "fmt", "convert", "merge", "import"}
+OTHERS = {
+    "certify",
+    "completion",
+    "draw",
+    "encodings",
+    "init",
+    "schema",
+    "shell",
+    "fmt",
+    "convert",
+    "merge",
+    "import",
+}
 CASES = [
     pytest.param(verb, words, marks=() if not number else pytest.mark.slow, id=f"{verb}-{number}")
     for verb, asked in ASKED.items()

@@ -10,7 +10,7 @@ import click
 
 from foon_asp import __version__
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.cli.output import drop_output, safe_streams
+from foon_asp.cli.output import drop_output, safe_streams, say_remarks
 from foon_asp.cli.verbs import GROUPS, VERBS, verb_command
 from foon_asp.deadline import LimitError
 from foon_asp.errors import UserError
@@ -25,6 +25,18 @@ class _Verbs(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         return verb_command(cmd_name) if cmd_name in VERBS else None
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        word = args[0]
+        if word not in VERBS and not word.startswith("-"):
+            from difflib import get_close_matches
+
+            near = get_close_matches(word.lower().replace("_", "-"), VERBS, n=1)
+            hint = f"did you mean {near[0]!r}?" if near else "foon-asp -h lists the verbs"
+            ctx.fail(f"there is no verb {word!r}; {hint}")
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         for group in GROUPS:
@@ -48,6 +60,7 @@ def main(arguments: list[str] | None = None) -> None:
         for word in words:
             note_line_end(word)
             note_line_end(word.partition("=")[2])
+        say_remarks("--quiet" not in words[: words.index("--") if "--" in words else None])
         code = _run(words)
         try:
             sys.stdout.flush()
@@ -73,6 +86,7 @@ def _run(words: list[str]) -> ExitCode:
 
 def _ended(error: BaseException, debug: bool) -> ExitCode:
     """Report on stderr how a command ended, and give its exit code."""
+    say_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
         traceback.print_exception(error)
     if isinstance(error, BrokenPipeError):  # the reader of our output went away, as `head` does

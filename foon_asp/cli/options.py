@@ -66,9 +66,20 @@ _LEVEL_OPTION = click.option(
     help="Compare object nodes by label (1), by label, states and relations (2), or by everything (3).",
 )
 
-debug_option = click.option(
+_QUIET_OPTION = click.option(
+    "--quiet",
+    is_flag=True,
+    expose_value=False,
+    help="Print no warnings, no advice and no progress; errors are printed.",
+)
+_DEBUG_OPTION = click.option(
     "--debug", is_flag=True, expose_value=False, help="Show where in the code an error was raised."
 )
+
+
+def debug_option(command: Command) -> Command:
+    """Add the options that every verb has: ``main`` looks at them itself."""
+    return _QUIET_OPTION(_DEBUG_OPTION(command))
 
 
 def format_option(*formats: str) -> Callable[[Command], Command]:
@@ -181,6 +192,6 @@ def read_dataset(
     context = click.get_current_context(silent=True)  # a worker of a batch has none, and reads until it ends
     if context:
         context.call_on_close(dataset.close)
-    for text in dataset.remarks:
+    for text in dataset.brief:
         click.echo(text, err=True)
     return dataset

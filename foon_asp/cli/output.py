@@ -18,13 +18,14 @@ class SafeStream:
 
     Letters that its encoding lacks are escaped, too. ``stream`` is ``None`` if it was closed from the start.
     What cannot be written is an error, except ``remarks``, without which an answer is still complete. A
-    ``styled`` stream lets colours pass; names must be escaped before.
+    ``styled`` stream lets colours pass; names must be escaped before. A ``quiet`` one drops what is written.
     """
 
     errors = "strict"
 
     def __init__(self, stream: TextIO | None, remarks: bool = False, styled: bool = False) -> None:
         self.stream = stream
+        self.quiet = False
         self._remarks = remarks
         self._styled = styled
 
@@ -37,6 +38,8 @@ class SafeStream:
         """Write a text; raises :class:`UserError` if the disk is full or the output closed."""
         if not isinstance(text, str):
             raise TypeError(f"expected text, found {type(text).__name__}")
+        if self.quiet:
+            return len(text)
         with self._faults():
             stream = self._open()
             stream.write(encodable(escaped_lines(text, self._styled), stream.encoding or "utf-8"))
@@ -57,8 +60,8 @@ class SafeStream:
                 self.stream.flush()
 
     def isatty(self) -> bool:
-        """Whether it is a terminal."""
-        return self.stream is not None and self.stream.isatty()
+        """Whether it is a terminal, and shows what is written."""
+        return not self.quiet and self.stream is not None and self.stream.isatty()
 
     def writable(self) -> bool:
         """Whether it can be written: yes."""
@@ -94,6 +97,11 @@ def safe_streams() -> Iterator[None]:
         yield
     finally:
         sys.stdout, sys.stderr = out, err
+
+
+def say_remarks(said: bool) -> None:
+    """Print what goes to standard error from now on, or drop it."""
+    cast(SafeStream, sys.stderr).quiet = not said
 
 
 def write_data(content: str | bytes) -> None:

@@ -10,22 +10,23 @@ from foon_asp.questions.index import INDEX, Entry
 
 # Verbs that ask nothing, and those whose question is not in the catalog.
 _OTHERS: Final[Mapping[str, Entry]] = {
-    "batch": Entry("Find", "Answer every question of a file, thousands in one run."),
-    "shell": Entry("Find", "Read the data once, then ask and change the question line by line."),
-    "stats": Entry("Show", "Count what is in a network."),
-    "facts": Entry("Show", "Print the facts that clingo is given for a goal."),
-    "encodings": Entry("Show", "Print where the answer-set programs are, or copy them to edit."),
-    "constraints": Entry("Show", "List the ready-made constraints."),
-    "schema": Entry("Show", "Print the JSON Schema of what a verb prints with --format json."),
-    "init": Entry("Files", "Write a data folder to start from, of a recipe of yours or a small one of ours."),
-    "lint": Entry("Files", "Find what is wrong with networks, kitchens and lists of objects."),
-    "fmt": Entry("Files", "Bring FOON files into canonical form."),
-    "convert": Entry("Files", "Write FOON files in another dialect."),
-    "merge": Entry("Files", "Merge FOONs into a universal FOON."),
-    "import": Entry("Files", "Merge networks into a store, for networks too large to read."),
+    "batch": Entry("Solve", "Answer every question of a file, thousands in one run."),
+    "shell": Entry("Tools", "Read the data once, then ask and change the question line by line."),
+    "stats": Entry("Data", "Count what is in a network."),
+    "facts": Entry("Tools", "Print the facts that clingo is given for a goal."),
+    "encodings": Entry("Tools", "Print where the answer-set programs are, or copy them to edit."),
+    "constraints": Entry("Tools", "List the ready-made constraints."),
+    "completion": Entry("Tools", "Print a script by which a shell completes verbs, options and names."),
+    "schema": Entry("Tools", "Print the JSON Schema of what a verb prints with --format json."),
+    "init": Entry("Data", "Write a data folder to start from, of a recipe of yours or a small one of ours."),
+    "lint": Entry("Data", "Find what is wrong with networks, kitchens and lists of objects."),
+    "fmt": Entry("Data", "Bring FOON files into canonical form."),
+    "convert": Entry("Data", "Write FOON files in another dialect."),
+    "merge": Entry("Data", "Merge FOONs into a universal FOON."),
+    "import": Entry("Data", "Merge networks into a store, for networks too large to read."),
 }
 VERBS: Final[Mapping[str, Entry]] = {**INDEX, **_OTHERS}
-GROUPS = ("Find", "Check", "Explain", "Plan", "Show", "Files")
+GROUPS = ("Solve", "Explain", "Compare", "Data", "Prove", "Tools")
 _MODULES = {"import": "import_files"}  # of verbs that cannot be the name of a module
 
 

@@ -64,8 +64,9 @@ class Dataset:
     Whoever asks it for goals and problems leaves the rest to it; ``data`` is everything, for those that need
     it. ``listed`` are the entries of the goals file, ``names`` what goals are looked up in, ``rates`` the
     success rates of motions, ``None`` where none are known, and ``utensils`` the labels that the container
-    rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words; ``has_kitchen`` says
-    that a kitchen was given, even an empty one; without one, the starting kitchen is at hand.
+    rule ``implied`` looks at. ``remarks`` are what was assumed while reading, in words, and ``brief``
+    the same in few lines; ``has_kitchen`` says that a kitchen was given, even an empty one; without one, the
+    starting kitchen is at hand.
     ``goals_from`` says what the entries were assumed from if no file lists goals. ``measures`` are the
     user's own, by name.
     """
@@ -81,7 +82,7 @@ class Dataset:
         self.rates: Mapping[str, Fraction] | None = data.rates
         self.utensils = data.utensils
         self.read_seconds = read_seconds
-        self.remarks = remarks
+        self.remarks = self.brief = remarks
         self.has_kitchen = has_kitchen
         self.goals_from = data.goals_from
 

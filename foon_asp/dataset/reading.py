@@ -5,7 +5,7 @@ import time
 from foon_asp.dataset.dataset import Dataset, left_out
 from foon_asp.problem import first_places, unrated_remarks
 from foon_asp.text.data_folder import DataFiles, read_data
-from foon_asp.text.diagnostics import summarize
+from foon_asp.text.diagnostics import in_brief, summarize
 from foon_asp.text.plain_file import is_store
 
 
@@ -21,9 +21,10 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
 
         return read_stored(files, level)
     data = read_data(files, lenient, level)
-    remarks = summarize(data.warnings)
-    if data.left_out:
-        remarks.append(left_out(data.left_out))
+    remarks = [left_out(data.left_out)] if data.left_out else []
     if data.rates is not None:
         remarks += unrated_remarks(first_places(data.network), data.rates)
-    return Dataset(data, time.perf_counter() - began, tuple(remarks), files.kitchen is not None)
+    told = (*summarize(data.warnings), *remarks)
+    dataset = Dataset(data, time.perf_counter() - began, told, files.kitchen is not None)
+    dataset.brief = (*in_brief(data.warnings), *remarks)
+    return dataset

@@ -37,7 +37,7 @@ from foon_asp.text.data_folder import (
     kitchen_nodes,
     unit_price_warning,
 )
-from foon_asp.text.diagnostics import Diagnostic, summarize
+from foon_asp.text.diagnostics import Diagnostic, in_brief, summarize
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.rate_table import read_rates
@@ -75,12 +75,12 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
             unit_price_warning(unit, read.sources[unit]) for unit in read.units.keys() - units.keys()
         ]
         prices = _StoredPrices(read.motions, units, listed=False)
-    remarks = summarize(warnings)
-    if rates is not None:
-        remarks += unrated_remarks(store.motion_sources(), rates)
+    remarks = [] if rates is None else [*unrated_remarks(store.motion_sources(), rates)]
     if store.left_out:
         remarks.append(f"{left_out(store.left_out)} when the store was made")
-    dataset = StoredDataset(store, kitchen, goals, rates, utensils, prices, began, tuple(remarks))
+    told, brief = (*summarize(warnings), *remarks), (*in_brief(warnings), *remarks)
+    dataset = StoredDataset(store, kitchen, goals, rates, utensils, prices, began, told)
+    dataset.brief = brief
     dataset.goals_from = "" if files.goals else store.goals_from
     if starting:
         dataset = dataset.with_starting_kitchen()
@@ -89,7 +89,9 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         return dataset
     data = _at_level(dataset.data, level)
     dataset.close()
-    return Dataset(data, time.perf_counter() - began, tuple(remarks), dataset.has_kitchen)
+    whole = Dataset(data, time.perf_counter() - began, told, dataset.has_kitchen)
+    whole.brief = brief
+    return whole
 
 
 class _StoredPrices(NamedTuple):

@@ -16,34 +16,34 @@ class Entry(NamedTuple):
 
 
 INDEX: Final[Mapping[str, Entry]] = {
-    "solve": Entry("Find", "Find the best task tree for a goal, and prove that none is better.", ("solve",)),
+    "solve": Entry("Solve", "Find the best task tree for a goal, and prove that none is better.", ("solve",)),
     "optima": Entry(
-        "Find",
+        "Solve",
         "Solve every goal of the goals file under several objectives and compare the optimal trees.",
         ("optima", "Optima"),
     ),
     "search": Entry(
-        "Find",
+        "Compare",
         "Retrieve a task tree with a search of the literature, and say whether it executes.",
         ("retrieve", "Retrieved"),
     ),
     "compare": Entry(
-        "Find",
+        "Compare",
         "Compare the searches of the literature with the optimum.",
         ("compare_searches", "Compared"),
     ),
     "check": Entry(
-        "Check",
+        "Prove",
         "Simulate a task tree: does it execute, and in which order?",
         ("check", "Checked"),
     ),
     "certify": Entry(
-        "Check",
+        "Prove",
         "Write a certificate: a proof that `foon-asp verify` checks without a solver.",
         ("certify", "Certified"),
     ),
     "verify": Entry(
-        "Check",
+        "Prove",
         "Check a certificate against the data it speaks about, and say what it proves.",
         ("verify", "VerifiedCertificate"),
     ),
@@ -83,7 +83,7 @@ INDEX: Final[Mapping[str, Entry]] = {
         ("sensitivity", "Sensitivity"),
     ),
     "menu": Entry(
-        "Explain",
+        "Solve",
         "Solve several goals by one tree, and goal by goal, and say what is shared.",
         ("menu", "Menu"),
     ),
@@ -93,47 +93,47 @@ INDEX: Final[Mapping[str, Entry]] = {
         ("assist", "Assistance"),
     ),
     "export": Entry(
-        "Plan",
+        "Tools",
         "Write goals as a planning task in PDDL.",
         ("export", "Exported"),
     ),
     "read-plan": Entry(
-        "Plan",
+        "Tools",
         "Read the plan of another planner back into a task tree, and execute it.",
         ("read_plan", "PlanRead"),
     ),
     "relax": Entry(
-        "Plan",
+        "Tools",
         "Find the cheapest plan of a planning task without its deletes (h+), and prove it.",
         ("relax", "Relaxed"),
     ),
     "schedule": Entry(
-        "Plan",
+        "Solve",
         "Find the shortest schedule of a plan for one or more agents, and prove it.",
         ("schedule", "Schedule"),
     ),
     "draw": Entry(
-        "Show",
+        "Tools",
         "Draw an optimal task tree, a given one, some functional units, or a whole network.",
         ("draw", "Drawn"),
     ),
     "view": Entry(
-        "Show",
+        "Explain",
         "Show a tree, other trees and the proof on a page for any browser, in one file.",
         ("view", "View"),
     ),
     "trace": Entry(
-        "Check",
+        "Solve",
         "Show what is in the kitchen after each step of a plan, and plan anew where a step failed.",
         ("trace", "Traced"),
     ),
     "units": Entry(
-        "Show",
+        "Data",
         "List the functional units of a network, and say which of their inputs are used up.",
         ("units", "Units"),
     ),
     "diff": Entry(
-        "Show",
+        "Compare",
         "Show what two task trees have in common, what only one has, what each costs, and where they part.",
         ("diff", "Difference"),
     ),

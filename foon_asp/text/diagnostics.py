@@ -1,7 +1,9 @@
 """What the readers have to say about their input, each remark with its place."""
 
+from collections import Counter
 from collections.abc import Sequence
 from enum import StrEnum
+from shlex import quote
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
@@ -9,6 +11,7 @@ from foon_asp.escapes import escaped
 from foon_asp.network import Source, counted
 
 _SHOWN = 40
+_BRIEF = 6  # lines that warnings may take before they are counted
 
 
 class Severity(StrEnum):
@@ -68,6 +71,19 @@ class InputError(UserError):
             )
         super().__init__("\n".join(lines))
         self.diagnostics = tuple(diagnostics)
+
+
+def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
+    """Give warnings as :func:`summarize` does if that takes a few lines, and else count them in one line."""
+    told = summarize(diagnostics)
+    if sum(1 + text.count("\n") for text in told) <= _BRIEF:
+        return told
+    kinds = Counter(diagnostic.code for diagnostic in diagnostics)
+    counts = ", ".join(f"{count} {code}" for code, count in kinds.most_common())
+    files = " ".join(dict.fromkeys(quote(escaped(each.source.file)) for each in diagnostics))
+    return [
+        f"warning: {counted(len(diagnostics), 'remark')} on the data ({counts}); see foon-asp lint {files}"
+    ]
 
 
 def summarize(diagnostics: Sequence[Diagnostic], places: int = 5) -> list[str]:

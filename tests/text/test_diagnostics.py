@@ -6,7 +6,14 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.text.diagnostics import Diagnostic, InputError, Severity, excerpt_with_caret, summarize
+from foon_asp.text.diagnostics import (
+    Diagnostic,
+    InputError,
+    Severity,
+    excerpt_with_caret,
+    in_brief,
+    summarize,
+)
 from tests.text.foon_strategies import steady
 
 
@@ -113,6 +120,17 @@ def test_very_many_of_a_kind_are_counted() -> None:
     assert text.endswith("100 warnings of this kind (time); others on line 2, 3, ...")
     (text,) = summarize([warning(line) for line in range(1, 4)], places=2)
     assert text.endswith("3 warnings of this kind (time); others on line 2, 3")
+
+
+def test_in_brief_few_are_told_and_many_are_counted() -> None:
+    few = [warning(line, code) for line in (3, 8) for code in ("time", "motion-flag", "outer-space")]
+    assert in_brief(few) == summarize(few)
+    many = [*few, warning(9, "time"), warning(4, "syntax", "my kitchen.txt")]
+    assert in_brief(many) == [
+        "warning: 8 remarks on the data (3 time, 2 motion-flag, 2 outer-space, 1 syntax); "
+        "see foon-asp lint f.txt 'my kitchen.txt'"
+    ]
+    assert in_brief([]) == []
 
 
 def test_kinds_and_files_are_told_apart_in_order_of_appearance() -> None:
