@@ -11,8 +11,10 @@ from xml.etree import ElementTree
 import pytest
 
 import foon_asp
+from foon_asp.problem import ContainerRule
 from tests.browser import CHROMIUM, Browser, browser
 from tests.conftest import CORPUS
+from tests.random_problems import random_problem
 from tests.test_view import strange
 
 pytestmark = [
@@ -209,6 +211,49 @@ def test_the_picture_is_saved_whole_and_alone(page: Browser) -> None:
     drawn = page.run("document.querySelectorAll('.picture .box').length")
     assert sum("box" in each.split() for each in classes) == drawn
     assert "var(" not in svg
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_pages_of_random_problems_have_what_their_data_have(
+    chromium: Browser, tmp_path: Path, seed: int
+) -> None:
+    problem = random_problem(seed, list(ContainerRule)[seed % 2])
+    file = tmp_path / "random.html"
+    foon_asp.view(problem, beside=["searches", "proof", "alternatives", "network"]).write(file)
+    chromium.size(1000, 700)
+    chromium.open(file)
+    answer = chromium.run(f"{DATA}.answer")
+    units = [f"{unit['step']}. {unit['motion']}" for unit in answer["units"] or ()]
+    if units:
+        assert list(texts(chromium, ".picture .unit > title")) == units
+    for number in range(chromium.run("document.querySelectorAll('[role=tab]').length")):
+        chromium.run(f"document.querySelectorAll('[role=tab]')[{number}].click()")
+        chromium.run("document.querySelectorAll('main:not([hidden]) tbody button').forEach(b => b.click())")
+    assert chromium.complaints == []
+    assert chromium.requests == [file.resolve().as_uri()]
+
+
+def test_a_page_in_a_notebook_is_seen_and_cut_off(chromium: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "notebook.html"
+    frame = foon_asp.solve(foon_asp.load().problem("ice")).view().frame()
+    file.write_text(f"<!DOCTYPE html><meta charset='utf-8'><p>a cell</p>{frame}", encoding="utf-8")
+    chromium.size(1000, 800)
+    chromium.open(file)
+    assert chromium.run("document.querySelector('iframe').contentDocument") is None
+    names = [node["name"] for node in chromium.tree_for_readers()]
+    assert "a cell" in names
+    assert chromium.complaints == []
+
+
+def test_a_page_without_a_tree_says_so(chromium: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "none.html"
+    foon_asp.solve(foon_asp.load().problem("apple pie")).view().write(file)
+    chromium.open(file)
+    assert texts(chromium, ".claim strong") == ["No tree exists"]
+    assert texts(chromium, "main p") == ["There is no tree to show."]
+    foon_asp.solve(foon_asp.load().problem("faucet; off")).view().write(file)
+    chromium.open(file)
+    assert texts(chromium, "main p") == ["Nothing needs to be made: the kitchen has the goal."]
 
 
 @pytest.fixture(scope="module")

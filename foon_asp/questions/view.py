@@ -84,7 +84,9 @@ class View(Result):
 
     def json_dict(self) -> Json:
         """Give what is in the page: the documents of the answers as they are."""
-        proof = None if self.certified is None else self.certified.certificate
+        proof = None
+        if self.certified is not None and self.certified.certificate is not None:
+            proof = proof_json(self.certified.answer.problem, self.certified.certificate.content)
         others: dict[str, Result | None] = {
             "without_rules": self.without_rules,
             "alternatives": self.alternatives,
@@ -96,9 +98,9 @@ class View(Result):
             None if self.answer is None else self.answer.json_dict(),
             self._trees(),
             searches=[found.json_dict() for found in self.searches],
-            proof=proof and self.certified and proof_json(self.certified.answer.problem, proof.content),
+            proof=proof,
             network=None if self.network is None else network_json(self.network),
-            **{name: found and found.json_dict() for name, found in others.items()},
+            **{name: None if found is None else found.json_dict() for name, found in others.items()},
         )
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:

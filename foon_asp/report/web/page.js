@@ -83,7 +83,7 @@ class TreePanel {
       this.list.append(el("li", {}, button));
       return button;
     });
-    this.side.append(this.now, this.chosen, this.kitchen, el("details", { open: true }, el("summary", {}, `All ${counted(steps.length, "step")}`), this.list));
+    this.side.append(this.now, this.chosen, this.kitchen, el("details", { open: true, class: "steps" }, el("summary", {}, `All ${counted(steps.length, "step")}`), this.list));
     const marks = [["motion", "unit"], ["kitchen", "from the kitchen"], ["made", "made on the way"], ["goal", "goal"]];
     this.side.append(el("div", { class: "legend" }, marks.map(([look, word]) => el("span", {}, el("i", { class: look }), word))));
     this.bar = this.controls();
@@ -307,5 +307,5 @@ function start() {
     event.preventDefault();
   });
   if (main.length) open(0);
-  else document.body.append(el("main", {}, el("p", {}, "Nothing needs to be made: the kitchen has the goal.")));
+  else document.body.append(el("main", { class: "empty" }, el("p", {}, data.answer.units ? "Nothing needs to be made: the kitchen has the goal." : "There is no tree to show.")));
 }

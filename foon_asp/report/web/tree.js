@@ -274,7 +274,7 @@ class Picture {
     const { width, height } = this.room ?? this.svg.getBoundingClientRect();
     const across = (width - 24) / this.size.width;
     let k = Math.min(across, (height - 24) / this.size.height, 1.15);
-    const small = k < 0.5 && !all;
+    const small = k < 0.42 && !all;
     if (small) k = Math.max(0.55, Math.min(across, 0.75));
     const wide = this.size.width * k > width;
     const end = [...this.boxes.values()].reduce((last, box) => (box.y > last.y ? box : last));
