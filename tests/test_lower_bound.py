@@ -13,7 +13,16 @@ from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.exact_optimum import ExactOptimum, exact_optimum
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic
-from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import (
+    Branch,
+    Broken,
+    CheaperError,
+    Hopeless,
+    Packing,
+    Proof,
+    Prover,
+    _Node,
+)
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.errors import BugError
 
@@ -303,6 +312,21 @@ def test_known_cuts_that_fall_short_are_no_proof() -> None:
     with pytest.raises(CheaperError) as found:
         prover.prove([0, 2, 3])
     assert found.value.actions == (1, 3)
+
+
+def test_known_cuts_before_no_target_are_not_weighed() -> None:
+    proof = Prover(THREE, [2], costs(5, 9, 1, 1), COUNT, known=[[1], [2]]).prove([2])
+    assert proof == Packing(((Cut((2,), (1, 2)), (Fraction(1),)),))
+
+
+def test_what_makes_up_for_a_limit_is_no_action() -> None:
+    limits = [({0: Fraction(1)}, Fraction(1)), ({1: Fraction(2), 2: Fraction(1)}, Fraction(2))]
+    prover = Prover(THREE, [1, 2], ones(THREE), COUNT, limits=limits)
+    node = _Node(prover, Cutter(THREE, [1, 2]), frozenset({1}), frozenset(), (Fraction(1),))
+    node.shares = [0.0, 1.0, 0.0, 0.5, 1.0]  # of actions 0 to 2, and beyond each limit
+    assert node.undecided() is None
+    assert node.taken() == [1]
+    assert [node.exceeds(actions) for actions in ([], [0, 1], [1, 2], [0, 2])] == [False, False, True, False]
 
 
 def test_cuts_are_looked_for_until_the_bound_is_enough(
