@@ -8,12 +8,13 @@ from typing import Any
 
 import pytest
 
-from foon_asp.certificate import Coverage
+from foon_asp.certificate import Coverage, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.arrays import Arrays
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, looked_at
 from foon_asp.proof.ruled import Limit, Ruled
+from foon_asp.proof.verify import read_certificate, verify
 from foon_asp.text.line_parser import parse_node
 from tests import oracle
 from tests.constraint_oracle import keeps, random_rule
@@ -258,3 +259,50 @@ def test_arrays_have_what_constraints_add_after_the_items() -> None:
     assert arrays.actions([0, 1, 2]) == [0, 1, 2, 4, 5, 6]
     assert arrays.actions([3]) == [3, 4]
     assert arrays.bars(frozenset(range(7)), frozenset()) == {}
+
+
+# --- Certificates.
+
+
+def in_order(problem: Problem, units: frozenset[int]) -> list[int]:
+    """Put the units of a tree into an order in which they run."""
+    at_hand, left, order = set(problem.kitchen), set(units), list[int]()
+    while left:
+        unit = min(u for u in left if at_hand.issuperset(problem.needs[u]))
+        left.remove(unit)
+        order.append(unit)
+        at_hand.update(problem.gives[unit])
+    return order
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_is_best_under_each_constraint_is_certified_without_a_search(seed: int) -> None:
+    problem, rules, _ = drawn(seed)
+    found = [*trees(problem)]
+    objective = (Objective.UNITS, Objective.KITCHEN, Objective.INPUTS, Objective.PRICE)[seed % 4]
+    given = problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
+    for rule in rules:
+        covered = Coverage((rule,))
+        costs = {
+            units: problem.costs(in_order(problem, units)).measure(objective)
+            for units, tree in found
+            if keeps(problem, tree, rule)
+        }
+        if not costs:
+            certificate = certify_infeasible(problem, covered)
+            assert certificate is not None, rule
+            assert certificate.claim == "infeasible"
+            continue
+        assert certify_infeasible(problem, covered) is None
+        best = min(costs, key=lambda units: (costs[units], sorted(units)))
+        certificate = certify(problem, (objective,), in_order(problem, best), covered)
+        assert certificate is not None, rule
+        assert certificate.claim == "optimal"
+        verified = verify(read_certificate(certificate.text()), *given)
+        assert (verified.tree, verified.costs) == (tuple(in_order(problem, best)), (costs[best],))
+        assert verified.rules == (rule,)
+        worst = max(costs, key=lambda units: (costs[units], sorted(units)))
+        if costs[worst] > costs[best]:
+            with pytest.raises(NotBestError) as better:
+                certify(problem, (objective,), in_order(problem, worst), covered)
+            assert costs[frozenset(better.value.units)] < costs[worst]

@@ -22,6 +22,7 @@ from foon_asp.network import (
 )
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import verify
+from foon_asp.proof.constraint import OWN
 from foon_asp.proof.verify import LimitError, RefusedError, digests, load_certificate, read_certificate
 from tests.handmade_certificate import Content, check, forbid, handmade, older
 
@@ -909,3 +910,85 @@ def test_a_number_is_quoted_as_far_as_it_can_be_read() -> None:
         read_certificate("[1." + "0" * 60 + "]")
     said = "expected whole numbers, and fractions in quotes"
     assert str(refused.value) == f"found the number 1.{'0' * 48}, {said}"
+
+
+# --- what rules of the user's own are said to leave
+
+
+def claiming(*claims: list[list[int]], **more: Any) -> Content:
+    """Give a rule with claims of units, sets that no tree has and lacks."""
+    return {"rule": OWN, "claims": [*claims], "constants": [], "files": [], "library": [], **more}
+
+
+def test_what_is_taken_on_trust_has_a_form_of_its_own() -> None:
+    own = claiming()
+    assert verify.trusted({"rules": [*forbid(["pour"]), own]}) == own
+    assert verify.trusted({"rules": forbid(["pour"])}) is None
+    assert verify.trusted({}) is None
+    keys = "expected the keys rule, claims, constants, files, library"
+    assert refusal(PLAIN, **BOUND, rules=[claiming(more=1)]) == keys
+    file = {"name": "mine.lp", "sha256": hashlib.sha256(b":- use(1).").hexdigest(), "text": ":- use(1)."}
+    assert accepted(PLAIN, **BOUND, rules=[claiming(files=[file])]).claim == "bound"
+    more = claiming(files=[{**file, "more": 1}])
+    assert refusal(PLAIN, **BOUND, rules=[more]) == "expected the keys name, sha256, text"
+    assert refusal(PLAIN, **BOUND, rules=[own, {"rule": "unknown"}]) == "a rule is unknown"
+
+
+def test_a_claim_is_about_all_units_of_one_set_and_none_of_another() -> None:
+    baked: Content = {"tree": [MIX, BAKE], "costs": [2], **BOUND}
+    assert accepted(PLAIN, **baked, rules=[claiming([[MIX], [BAKE]])]).tree == (MIX, BAKE)
+    assert refusal(PLAIN, **baked, rules=[claiming([[MIX], [POUR]])]) == "the tree breaks a rule"
+    assert refusal(PLAIN, **baked, rules=[claiming([[BAKE], []])]) == (
+        f"the tree has unit {BAKE}, which a rule removes"
+    )
+    assert refusal(PLAIN, **baked, rules=[claiming([[], [POUR]])]) == "the tree lacks what a rule asks for"
+
+
+def test_after_a_broken_rule_the_other_branches_are_looked_at() -> None:
+    using = {"branch": {"unit": BAKE}, "without": {"weights": []}, "using": {"broken": 0}}
+    proof = {"branch": {"unit": MIX}, "without": {"weights": []}, "using": using}
+    forged: Content = {"claim": "bound", "bound": ["5"], "rules": [claiming([[MIX, BAKE], []])]}
+    assert refusal(PLAIN, **forged, proof=proof) == "the weights do not add up to enough"
+
+
+def test_limits_and_what_stands_for_a_thing_that_is_used_once() -> None:
+    """Of a cup that is filled and poured and a bowl that is washed and dried one may be used."""
+    problem = Problem(
+        network(
+            ("fill", [START], [ObjectNode.of("cup", ["full"])]),
+            ("pour", [ObjectNode.of("cup", ["full"])], [END]),
+            ("wash", [END], [ObjectNode.of("bowl", ["wet"])]),
+            ("dry", [ObjectNode.of("bowl", ["wet"])], [OTHER]),
+        ),
+        frozenset({0}),
+        (4,),
+        None,
+        frozenset({"cup", "bowl"}),
+    )
+    cup, end, bowl, other, of_bowl, of_cup = 1, 2, 3, 4, 5, 6  # what units ask for that touch one
+    rules = [{"rule": "at_most_utensils", "max_utensils": 1}]
+    tree: Content = {"tree": [0, 1, 2, 3], "costs": [4]}
+    assert refusal(problem, **tree, **BOUND, rules=rules) == "the tree exceeds what a rule limits"
+    # each of the two things is needed, one is there, and neither costs anything
+    cuts = [[cup, end, bowl, other, of_cup], [bowl, other, of_bowl]]
+    proof = {"weights": [[0, ["1"]], [1, ["1"]]], "limits": [[0, ["1"]]]}
+    none = accepted(problem, **NO_TREE, rules=rules, cuts=cuts, proof=proof)
+    assert none.claim == "infeasible"
+    two = [{"rule": "at_most_utensils", "max_utensils": 2}]
+    assert refusal(problem, **NO_TREE, rules=two, cuts=cuts, proof=proof) == (
+        "the weights do not add up to enough"
+    )
+    assert "carries more than it costs" in refusal(
+        problem, **NO_TREE, rules=rules, cuts=cuts, proof={"weights": proof["weights"]}
+    )
+    # the same by branches: the step of each thing is used, as the units need it, and then there are two
+    both = {"weights": [], "limits": [[0, ["1"]]]}
+    steps = {
+        "branch": {"step": 0},
+        "without": {"hopeless": 1},
+        "using": {"branch": {"step": 1}, "without": {"hopeless": 0}, "using": both},
+    }
+    assert accepted(problem, **NO_TREE, rules=rules, cuts=cuts, proof=steps).claim == "infeasible"
+    assert refusal(problem, **NO_TREE, rules=two, cuts=cuts, proof=steps) == (
+        "the weights do not add up to enough"
+    )
