@@ -19,6 +19,7 @@ from foon_asp.bounds.counts import (
     Level,
     Measure,
     Stopped,
+    SumLimit,
     _around,
     _Model,
 )
@@ -381,6 +382,46 @@ def test_the_rows_where_copies_and_items_cost_something() -> None:
     assert rows(reading)[-1] == ({3: 1, 4: 1, 2: -1}, 0)  # read, if it was taken or made
 
 
+def test_the_rows_of_limits() -> None:
+    limits = [({0: 2, 1: 3}, 7, False, False), ({1: 1, 2: 1}, 1, True, False), ({0: 1, 3: 1}, 1, False, True)]
+    model = _Model(CountBound(KITCHEN, (), limits), [])
+    assert rows(model)[13:] == [({0: -2, 1: -3}, -7), ({1: 1, 2: 1}, 1), ({4: -1, 7: -1}, -1)]
+    assert model.program.upper[:4] == [3, 2, None, None]
+    none = _Model(CountBound(KITCHEN, (), [({3: 1}, -1, False, False)]), [])
+    assert none.program.upper[:4] == [None, None, None, 0]
+
+
+def test_how_many_executions_there_can_be_in_all() -> None:
+    limited = flows("3>0", "3>1", start={3: 4})
+    assert CountBound(limited).most_executions() == 4
+    assert CountBound(limited, (), [({0: 2, 1: 2}, 5, False, False)]).most_executions() == 2
+    assert CountBound(flows(">0")).most_executions() is None
+    assert CountBound(limited, (), [({0: 1}, 5, True, False)]).most_executions() is None  # no plan at all
+
+
+def test_landmarks_of_targets_are_cut_where_they_are_hit_in_part() -> None:
+    # two of three actions make each two of three targets: half of each would do
+    half = flows(">0 1", ">0 2", ">1 2", targets=(0, 1, 2))
+    bound = CountBound(half, derivation=[0, 1])
+    x = [0.5, 0.5, 0.5, 0.25, 0.25, 0.25]
+    model = _Model(bound, [UNITS])
+    before = rows(model)
+    assert bound._separate(x, model, at_root=True)
+    assert sorted(landmark.members for landmark in bound._landmarks) == [(0, 1), (0, 2), (1, 2)]
+    assert rows(model)[len(before) :] == [({3: 1, 4: 1}, 1), ({3: 1, 5: 1}, 1), ({4: 1, 5: 1}, 1)]
+    assert not bound._separate([1.0] * 6, model, at_root=True)
+    assert not CountBound(half)._separate(x, model, at_root=True)  # without a derivation
+    assert not CountBound(flows(">0", start={0: 1}), derivation=[0])._separate(x, model, at_root=True)
+    assert not CountBound(flows("1>0"), derivation=[0])._separate(x, model, at_root=True)
+
+
+def test_more_than_a_few_executions_are_found_as_well() -> None:
+    eggs = flows(">3", *(f"3>{n}" for n in range(10, 22)), targets=tuple(range(10, 22)))
+    for actions in ((), range(13)):
+        bound = CountBound(eggs, derivation=actions)
+        assert bound.counts([Measure([1] * 13)]) == {0: 12, **dict.fromkeys(range(1, 13), 1)}
+
+
 def test_a_landmark_over_copies_is_left_out_where_these_are_not_counted() -> None:
     model = _Model(CountBound(KITCHEN), [])
     before = rows(model)
@@ -484,11 +525,19 @@ def test_actions_that_cannot_be_executed_twice_are_found_at_the_root(
     assert tightened(cutting, [1, 1, 1], 3) == [3, 1, 3]
 
 
-def hold(made: Flows, first: Level, second: Level | None = None) -> None:
+def hold(made: Flows, first: Level, second: Level | None = None, limits: Sequence[SumLimit] = ()) -> None:
     """Hold what is asked for in the course of a proof against all that there is."""
-    known = possible(made)
+
+    def within(counts: Counts) -> bool:
+        sums = [
+            (sum(w * (a in counts if used else counts.get(a, 0)) for a, w in weights.items()), bound, least)
+            for weights, bound, least, used in limits
+        ]
+        return all(total >= bound if least else total <= bound for total, bound, least in sums)
+
+    known = [(c, taken) for c, taken in possible(made) if within(c)]
     as_good = [c for c, taken in known if cost_of(first.measure, c, taken) <= first.cost]
-    caps = CountBound(made).caps(first) if as_good else []
+    caps = CountBound(made, (), limits).caps(first) if as_good else []
     for action, most in enumerate(caps):
         assert most is None or most >= max(counts.get(action, 0) for counts in as_good)
     better = [c for c, taken in known if cost_of(first.measure, c, taken) < first.cost]
@@ -501,8 +550,28 @@ def hold(made: Flows, first: Level, second: Level | None = None) -> None:
             if cost_of(first.measure, c, taken) <= first.cost
             and cost_of(second.measure, c, taken) < second.cost
         ]
-    asked = proves(CountBound(made), *levels)
-    assert sorted(sorted(c.items()) for c in asked) == sorted(sorted(c.items()) for c in better)
+    for derivation in ((), runnable(made)):
+        bound = CountBound(made, (), limits, derivation)
+        if as_good:
+            found = bound.counts([first.measure])
+            assert found is not None
+            assert sum(first.measure.costs[a] * n for a, n in found.items()) <= first.most
+        asked = proves(bound, *levels)
+        assert sorted(sorted(c.items()) for c in asked) == sorted(sorted(c.items()) for c in better)
+
+
+def runnable(made: Flows) -> list[int]:
+    """Give all actions that can be executed if nothing is used up."""
+    reached, found = {o for o, n in made.start.items() if n}, list[int]()
+    while ready := [a for a, asked in enumerate(made.asks) if a not in found and reached.issuperset(asked)]:
+        found += ready
+        reached.update(o for a in ready for o in made.adds[a])
+    return sorted(found)
+
+
+def random_limit(choose: Random, actions: int) -> SumLimit:
+    weights = {a: choose.randint(1, 2) for a in range(actions) if choose.random() < 0.6}
+    return weights, choose.randint(0, 3), choose.random() < 0.4, choose.random() < 0.4
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -512,12 +581,13 @@ def test_all_counts_that_may_be_better_are_asked_for_and_no_others(seed: int) ->
         made = random_flows(choose)
         first, second = (random_measure(choose, len(made.asks)) for _ in range(2))
         some, other = Fraction(choose.randint(1, _LONGEST + 1)), Fraction(choose.randint(1, 9))
+        limits = [random_limit(choose, len(made.asks)) for _ in range(choose.choice((0, 0, 1, 2)))]
         if CountBound(made).none():
             assert not possible(made)
         elif some > _LONGEST:
-            hold(made, level_of(first, some))
+            hold(made, level_of(first, some), None, limits)
         else:
-            hold(made, level_of(first, some), level_of(second, other))
+            hold(made, level_of(first, some), level_of(second, other), limits)
 
 
 def test_a_circle_that_is_met_later_is_left_out_as_well() -> None:
