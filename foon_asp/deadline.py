@@ -52,8 +52,9 @@ class Cancel:
         >>> token = foon_asp.Cancel()
         >>> foon_asp.solve(foon_asp.load().problem("ice"), cancel=token).costs.units
         2
-        >>> token.cancelled
-        False
+        >>> token.cancel()
+        >>> token.cancelled, token.since(60)
+        (True, False)
     """
 
     def __init__(self) -> None:

@@ -230,6 +230,11 @@ class Foon:
         <Problem: ice; crushed; in [drinking glass] (strict containers)>
         >>> str(foon.rates["crush"])
         '7/10'
+        >>> foon.vary(adding="tea").problem("ice").at_hand(foon.nodes("tea")[0])
+        True
+        >>> foon_asp.Foon.of(foon.problem("ice"))
+        <Foon of a problem>
+        >>> foon.close()
     """
 
     def __init__(self, dataset: Dataset, name: str) -> None:

@@ -143,6 +143,31 @@ def test_a_method_is_described(name: str) -> None:
     assert not [member for member in lacks.items() if member[1]]
 
 
+# Methods that no example shows: what we call in a class of the caller's, what is asked between our own rooms,
+# and what needs an extra.
+NOT_SHOWN = {
+    *("Reporter.warning", "Reporter.bound", "Reporter.step"),
+    *("Problem.copies_taken", "Problem.require_known_for", "Problem.measure", "Problem.apply_measures"),
+    *("UsedUp.flow", "FoonReader.parse_new", "Network.find"),
+    *("Result.svg", "Tree.svg", "Drawn.png", "Result.write_chart", "Result.to_frame"),
+}
+
+
+def test_every_method_is_shown_in_an_example() -> None:
+    """In that of its class, or of another with the same method, or in its own."""
+    shown: dict[str, bool] = {}
+    for kind in CLASSES.values():
+        for name, found, docstrings in members(kind):
+            if isinstance(found, property | functools.cached_property):
+                continue
+            first = [base for base in kind.__mro__ if name in vars(base)][-1].__name__
+            lines = "".join((inspect.getdoc(kind) or "", *docstrings)).split("\n")
+            code = "\n".join(line for line in lines if line.lstrip().startswith((">>> ", "... ")))
+            called = re.search(rf"[.]{name}\(|def {name}\(", code) is not None
+            shown[f"{first}.{name}"] = shown.get(f"{first}.{name}", False) or called
+    assert {name for name, is_shown in shown.items() if not is_shown} == NOT_SHOWN
+
+
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", PUBLIC)
 def test_an_example_runs(name: str) -> None:

@@ -41,6 +41,16 @@ class Network:
         >>> network = foon_asp.load().network
         >>> len(network), network.motions[0], len(network.objects)
         (220, 'turn on', 418)
+        >>> ice = foon_asp.parse_node("ice; crushed; in [drinking glass]")
+        >>> network.object_id(ice), str(network.node(50)), network.object_number(50)
+        (50, 'ice; crushed; in [drinking glass]', 50)
+        >>> crush = network.unit(27)
+        >>> crush.motion, network.unit_id(crush), network.unit_number(27), network.unit_of_number(27)
+        ('crush', 27, 27, 27)
+        >>> len(network.without([27])), len(network.with_copies([27])), network.is_like(network.without([27]))
+        (219, 221, False)
+        >>> network.labelled("ice"), network.beginning("ic", 2), network.near("icee", 1)
+        ((5, (43, 46, 50, 52, 55)), ['ice', 'ice cube tray'], ['ice'])
     """
 
     objects: tuple[ObjectNode, ...]

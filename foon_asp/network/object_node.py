@@ -44,6 +44,8 @@ class ObjectNode(NamedTuple):
         >>> node = foon_asp.parse_node("onion; chopped; in [bowl]")
         >>> node.label, sorted(node.states), sorted(node.relations)
         ('onion', ['chopped'], [Relation(word='in', object='bowl')])
+        >>> node.is_in("bowl"), node == foon_asp.ObjectNode.of("onion", ["chopped"], [("in", "bowl")])
+        (True, True)
     """
 
     label: str

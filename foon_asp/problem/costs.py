@@ -21,6 +21,9 @@ class Costs:
         >>> costs = foon_asp.solve(foon_asp.load().problem("ice")).costs
         >>> costs.units, costs.inputs, str(costs.success)
         (2, 6, '161/250')
+        >>> objectives = [foon_asp.Objective.INPUTS, foon_asp.Objective.UNITS]
+        >>> costs.measure(objectives[0]), costs.key(objectives)
+        (6, (6, 2))
     """
 
     measures: Mapping[Objective, int | Fraction]

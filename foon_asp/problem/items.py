@@ -92,6 +92,10 @@ class UsedUp:
     Example:
         >>> foon_asp.UsedUp(stock={foon_asp.parse_node("egg"): 2}).told
         {}
+        >>> egg = foon_asp.parse_node("egg")
+        >>> crack = foon_asp.FunctionalUnit.of("crack", [egg], [foon_asp.parse_node("egg; cracked")])
+        >>> str(foon_asp.UsedUp().fate(crack, egg, frozenset()))
+        'used up'
     """
 
     told: Mapping[Named, bool] = field(default_factory=dict)

@@ -86,6 +86,10 @@ class Objective(str, metaclass=_Listed):
     Example:
         >>> [str(objective) for objective in foon_asp.Objective][:3]
         ['units', 'inputs', 'inputs+ingredients']
+        >>> foon_asp.Objective.of_measure("washing_up")
+        <Objective: 'washing_up'>
+        >>> foon_asp.Objective.of_row("steps", foon_asp.Objective.UNITS.row) == "steps"
+        True
     """
 
     row: Row

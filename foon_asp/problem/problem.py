@@ -106,6 +106,20 @@ class Problem:
         >>> problem = foon_asp.load().problem("ice")
         >>> problem.vary(without="knife", containers="implied")
         <Problem: ice; crushed; in [drinking glass] (implied containers)>
+        >>> tree = problem.tree([26, 27])
+        >>> [unit.motion for unit in tree], problem.costs([26, 27]).units
+        (['twist', 'crush'], 2)
+        >>> str(problem.rate(27)), problem.vary(unit_prices={"twist": 1, "crush": "0.5"}).price(27)
+        ('7/10', Fraction(1, 2))
+        >>> inputs = foon_asp.Objective.INPUTS
+        >>> problem.figure(inputs, 27), list(problem.figures(inputs, [26, 27]))
+        (3, [3, 3])
+        >>> str(problem.measured(27).rate)
+        '7/10'
+        >>> problem.at_hand(problem.goal_nodes[0]), problem.place(tree.units[0]).line, problem.stock_of(0)
+        (False, 302, None)
+        >>> sorted(map(str, problem.different_rates([26, 27]))), len(problem.about(tree).network)
+        (['23/25', '7/10'], 220)
     """
 
     network: Network

@@ -39,6 +39,16 @@ class Answer(Result, Outcome):
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
         >>> str(answer.status), answer.costs.units, answer.tree
         ('optimal', 2, <Tree for ice; crushed; in [drinking glass]: 2 units>)
+        >>> answer.text().splitlines()[1]
+        'optimal by units (strict containers): 2 units, 6 inputs, success 0.644'
+        >>> answer.json()["status"], answer.json_dict()["level"]
+        ('optimal', 3)
+        >>> answer.foon().count("//"), answer.steps()[0], answer.json_text()[0], answer.remark("foon")
+        (3, '{', '{', '')
+        >>> answer.drawing().caption[0], answer.renderable()
+        ('Task tree for ice; crushed; in [drinking glass]', None)
+        >>> answer.view().title
+        'ice; crushed; in [drinking glass] - foon-asp'
     """
 
     __slots__ = ()

@@ -49,6 +49,9 @@ class Certified(AnswerAndMore[Answer]):
         >>> certified = foon_asp.certify(foon_asp.load().problem("ice"))
         >>> certified.certificate.claim, certified.place
         ('optimal', 'in memory')
+        >>> import pathlib, tempfile
+        >>> certified.written(pathlib.Path(tempfile.mkdtemp()) / "ice.json").place == "in memory"
+        False
     """
 
     certificate: Certificate | None

@@ -54,6 +54,8 @@ class Clash(WithOutcome):
         >>> found = foon_asp.clash(ice, constraints=["forbid_motion", "require_motion"], constants=rules)
         >>> found.proved, [constraint.source.line for constraint in found.smallest]
         (True, [11, 12])
+        >>> next(found.lines()).partition(":")[0]
+        '2 of the 2 constraints cannot hold together, and no smaller set'
     """
 
     problem: Problem

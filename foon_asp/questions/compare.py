@@ -54,6 +54,10 @@ class Compared(Result):
         >>> comparison = compared.comparisons[0]
         >>> str(comparison.ratio(comparison.judgements[0], foon_asp.Objective.UNITS))
         '10/9'
+        >>> compared.markdown().splitlines()[0]
+        '| goal | search | units | inputs | success | executes |'
+        >>> compared.csv()[:10]
+        'goal,conta'
     """
 
     problem: Problem

@@ -43,6 +43,8 @@ class CrossChecked(AnswerAndMore[Answer | SoftAnswer | Certified]):
         >>> checked = foon_asp.cross_check(foon_asp.load().problem("apple pie"))
         >>> checked.checks[0].engine, checked.checks[0].reason
         ('clingo', None)
+        >>> checked.lines()[0].partition(" (")[0]
+        'cross-check: clingo agrees that no tree exists'
     """
 
     checks: tuple[Check, ...]

@@ -46,6 +46,8 @@ class Drawn(Result):
         >>> drawn = foon_asp.draw(foon_asp.load().problem("ice"))
         >>> drawn.mermaid().splitlines()[0]
         '---'
+        >>> drawn.dot().splitlines()[0]
+        'digraph foon {'
     """
 
     picture: Drawing | None

@@ -34,6 +34,8 @@ class Menu(Result):
         >>> menu = foon_asp.menu(foon_asp.load().problem("ice", "tea"))
         >>> menu.together.costs.units, len(menu.shared)
         (9, 0)
+        >>> menu.sum_of_separate(foon_asp.Objective.UNITS)
+        9
     """
 
     together: Answer

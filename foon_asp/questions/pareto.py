@@ -64,6 +64,8 @@ class Front(Result):
         >>> front = foon_asp.pareto(foon_asp.load().problem("ice"))
         >>> [point.costs.units for point in front.points], front.complete
         ([2, 3], True)
+        >>> front.measures(front.points[0])
+        (2, Fraction(161, 250))
     """
 
     problem: Problem

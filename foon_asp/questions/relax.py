@@ -52,6 +52,8 @@ class Relaxed(Result):
         >>> foon_asp.export(foon_asp.load().problem("ice")).write(folder)
         >>> foon_asp.relax([folder / "domain.pddl", folder / "problem.pddl"]).plan
         ('(u26-twist)', '(u27-crush)')
+        >>> foon_asp.relax([folder / "domain.pddl", folder / "problem.pddl"]).pddl().splitlines()[0]
+        '(u26-twist)'
     """
 
     task: StripsTask

@@ -40,6 +40,8 @@ class Traced(Result):
         >>> traced = foon_asp.trace(problem, foon_asp.solve(problem).tree)
         >>> [str(node) for node in traced.copies(2)][:2]
         ['drinking glass; contains {ice}', 'ice cube tray; empty']
+        >>> traced.kitchen_text(2).split()[:2], traced.stock_text(2).split()[:3]
+        (['O', 'faucet'], ['O', 'drinking', 'glass'])
     """
 
     plan: Tree

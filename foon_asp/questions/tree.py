@@ -30,6 +30,15 @@ class Tree(TaskTree):
     Example:
         >>> foon_asp.solve(foon_asp.load().problem("ice")).tree
         <Tree for ice; crushed; in [drinking glass]: 2 units>
+        >>> problem = foon_asp.load().problem("ice")
+        >>> tree = foon_asp.Tree.of(problem, [26, 27])
+        >>> foon_asp.Tree.given(problem, tree) == tree, tree.drawing().caption[0]
+        (True, 'Task tree for ice; crushed; in [drinking glass]')
+        >>> import pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "ice.txt"
+        >>> _ = file.write_text(str(tree))
+        >>> foon_asp.Tree.read(problem, file)
+        <Tree for ice; crushed; in [drinking glass]: 2 units>
     """
 
     problem: Problem = field(compare=False)

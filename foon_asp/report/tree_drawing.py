@@ -59,7 +59,7 @@ def given_tree(
     units = tree.units
     if simulation.verdict is Verdict.REORDERED:
         units = tuple(units[position] for position in simulation.order)
-    title = f"Task tree {name}" + (f" for {_joined(goals)}" if goals else "")
+    title = f"Task tree {name}".rstrip() + (f" for {_joined(goals)}" if goals else "")
     verdict = {
         Verdict.AS_LISTED: "executes as listed",
         Verdict.REORDERED: "executes in the order of the numbers, not as listed",

@@ -37,7 +37,7 @@ class ReadUnit(NamedTuple):
 
 
 class FoonReader:
-    """Reads any number of FOON files; each distinct line and object block is parsed once.
+    r"""Reads any number of FOON files; each distinct line and object block is parsed once.
 
     With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
     ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
@@ -50,6 +50,15 @@ class FoonReader:
         >>> reader = foon_asp.FoonReader()
         >>> reader.read_network([Path("data/kitchen/FOON.txt")])
         <Network: 220 units, 418 object nodes, level 3>
+        >>> text = reader.text(Path("data/kitchen/FOON.txt"))
+        >>> next(reader.units(text, "FOON.txt")).motion, next(reader.listed_units(text, "FOON.txt")).motion.id
+        ('turn on', '')
+        >>> len(reader.tree_units(text, "FOON.txt")), reader.raise_errors()
+        (220, None)
+        >>> [str(block.node) for block in reader.object_blocks("O\ttea\nS\thot", "kitchen.txt")]
+        ['tea; hot']
+        >>> reader.parse("S\thot").attribute
+        'hot'
     """
 
     def __init__(self, lenient: bool = False) -> None:
