@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -17,9 +17,9 @@ import foon_asp
 from foon_asp import Foon, FunctionalUnit, Problem, Source, UserError
 from foon_asp.engines import fast_downward
 from foon_asp.planning.pddl_name import pddl_name
-from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import Number
 from tests.conftest import Cli
+from tests.used_up_oracle import random_problem
 
 ADDING = ("units", "inputs", "inputs+ingredients", "attempts", "kitchen", "price")
 
@@ -155,8 +155,13 @@ def test_what_cannot_be_added_up_is_refused(foon: Foon) -> None:
     hopeless = replace(problem, rates={**(problem.rates or {}), "crush": Fraction(0)})
     with pytest.raises(UserError, match="never succeeds"):
         foon_asp.export(hopeless, "success")
-    with pytest.raises(UserError, match="items are used up in this problem"):
-        planning_task(replace(problem, items=foon_asp.UsedUp()))
+    used_up = replace(problem, items=foon_asp.UsedUp())
+    with pytest.raises(UserError, match="by one objective"):
+        foon_asp.export(used_up, "inputs,units")
+    with pytest.raises(UserError, match="found items='lasting', but the problem is posed with strict"):
+        foon_asp.export(used_up, items="lasting")
+    with pytest.raises(UserError, match="found items='set', but the problem is posed with strict containers"):
+        foon_asp.export(problem, items="set")
     with pytest.raises(UserError, match="expected pddl"):
         foon_asp.export(foon.problem("ice"), target="anml")
 
@@ -320,6 +325,140 @@ def test_a_map_that_is_no_json_is_refused_with_its_place(folder: Path, cli: Cli)
     assert f"{file}:2:12: error: not JSON: found a comma before }}, expected none" in ran.err
 
 
+# --- Items that are used up.
+
+
+class Step(NamedTuple):
+    """An action: what has to be there (and how often), what it sets, what it adds up, and its cost."""
+
+    needs: list[Fact]
+    least: list[tuple[Fact, int]]
+    sets: dict[Fact, bool]
+    adds: dict[Fact, int]
+    cost: int
+
+
+State = tuple[frozenset[Fact], frozenset[tuple[Fact, int]]]
+
+
+def conditions(form: Any) -> tuple[list[Fact], list[tuple[Fact, int]]]:
+    parts = [each for each in form[1:] if each]
+    counts = [(tuple(each[1]), int(each[2])) for each in parts if each[0] == ">="]
+    return [tuple(each) for each in parts if each[0] != ">="], counts
+
+
+def steps_of(domain: Any) -> dict[str, Step]:
+    found = {}
+    for each in domain:
+        if isinstance(each, list) and each[0] == ":action":
+            name, _, _, _, needs, _, effects = each[1:]
+            step = Step(*conditions(needs), {}, {}, 1)
+            for effect in effects[1:]:
+                if effect[0] in {"increase", "decrease"}:
+                    sign = 1 if effect[0] == "increase" else -1
+                    if effect[1] == ["total-cost"]:
+                        step = step._replace(cost=int(effect[2]))
+                    else:
+                        step.adds[tuple(effect[1])] = sign * int(effect[2])
+                else:
+                    step.sets[tuple(effect[-1]) if effect[0] == "not" else tuple(effect)] = effect[0] != "not"
+            found[name] = step
+    return found
+
+
+def cheapest(exported: foon_asp.Exported, longest: int) -> tuple[int, list[str]] | None:
+    """Find the cheapest plan of a task up to a length, state by state."""
+    task, steps = parsed(exported.problem_file), steps_of(parsed(exported.domain))
+    facts = [each for each in part(task, ":init") if each[0] != "="]
+    numbers = {tuple(each[1]): int(each[2]) for each in part(task, ":init") if each[0] == "="}
+    (goal,) = part(task, ":goal")
+
+    def holds(state: State, condition: tuple[list[Fact], list[tuple[Fact, int]]]) -> bool:
+        counts = dict(state[1])
+        return state[0].issuperset(condition[0]) and all(counts[o] >= n for o, n in condition[1])
+
+    first = frozenset(map(tuple, facts)), frozenset(numbers.items())
+    layer: dict[State, tuple[int, list[str]]] = {first: (0, [])}
+    best: tuple[int, list[str]] | None = None
+    for _ in range(longest + 1):
+        following: dict[State, tuple[int, list[str]]] = {}
+        for state, (cost, plan) in layer.items():
+            if holds(state, conditions(goal)):
+                best = min(best or (cost, plan), (cost, plan))
+                continue
+            for name, step in steps.items():
+                if holds(state, (step.needs, step.least)):
+                    there = {fact for fact in state[0] if step.sets.get(fact, True)}
+                    there.update(fact for fact, holds_now in step.sets.items() if holds_now)
+                    counts = {o: n + step.adds.get(o, 0) for o, n in state[1]}
+                    new = frozenset(there), frozenset(counts.items())
+                    reached = cost + step.cost, [*plan, name]
+                    following[new] = min(following.get(new, reached), reached)
+        layer = following
+    return best
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_plans_of_tasks_in_which_items_are_used_up(tmp_path: Path, seed: int) -> None:
+    problem = random_problem(seed)
+    ours = foon_asp.solve(problem, "inputs").costs
+    costs = {}
+    for items in ("used-up", "set"):
+        exported = foon_asp.export(problem, "inputs", items=items)
+        found = cheapest(exported, 6)
+        costs[items] = found and found[0]
+        if found is not None:
+            (tmp_path / "plan").write_text("".join(f"({name})\n" for name in found[1]))
+            read = foon_asp.read_plan(problem, tmp_path / "plan")
+            assert read.sound
+            assert read.replay is not None
+            assert foon_asp.check(problem, read.tree).executes
+            assert sum(len(set(unit.inputs)) for unit in read.tree) == costs[items]
+    if ours is None:
+        assert costs == {"used-up": None, "set": None}
+    else:
+        assert ours.units > 6 or costs["used-up"] == ours.inputs
+        assert costs["set"] is None or costs["set"] >= ours.inputs
+
+
+def test_copies_that_are_merged_may_cost_more_or_leave_no_plan() -> None:
+    builder = foon_asp.NetworkBuilder()
+    egg, cup, cake, dough = map(foon_asp.parse_node, ("egg", "cup", "cake", "dough"))
+    builder.add("lay", [cup], [egg], Source("f", 1))
+    builder.add("beat", [egg], [dough], Source("f", 2))
+    builder.add("bake", [dough, egg], [cake], Source("f", 3))
+    data = foon_asp.build(builder.build(), kitchen=[cup])
+    problem = data.problem(cake, items="used-up", stock={cup: 2})
+    assert foon_asp.solve(problem).costs.units == 4  # type: ignore[union-attr]
+    assert (cheapest(foon_asp.export(problem), 6) or [0])[0] == 4
+    merged = foon_asp.export(problem, items="set")
+    assert "the copies of a node are merged" in merged.domain
+    assert cheapest(merged, 6) is None
+
+
+def test_a_plan_for_items_that_are_used_up_goes_there_and_back(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "stays.txt").write_text("knife\tstays\n", encoding="utf-8")
+    words = ("--goal", "greek salad", "--items", "used-up", "--stays", tmp_path / "stays.txt")
+    for items in ("used-up", "set"):
+        ran = cli("export", *words[:3], items, *words[4:], "-o", tmp_path / items)
+        assert ran.code == 0
+        assert ("copies are counted" if items == "used-up" else "merged") in ran.out
+    answer = json.loads(cli("solve", *words, "--format", "json").out)
+    names = {
+        each["unit"]["id"]: each["name"]
+        for each in json.loads((tmp_path / "used-up" / "map.json").read_text())["actions"]
+    }
+    plan = [names[step["id"]] for step in answer["units"]]
+    (tmp_path / "plan").write_text("".join(f"({name})\n" for name in plan))
+    asked = ("read-plan", tmp_path / "plan", "--map", tmp_path / "used-up" / "map.json")
+    assert cli(*asked).out.startswith(f"runs as listed (strict containers, items used up)\n{len(plan)} units")
+    assert json.loads(cli(*asked, "--format", "json").out)["sound"]
+    (tmp_path / "plan").write_text("".join(f"({name})\n" for name in plan[1:]))
+    ran = cli(*asked)
+    assert ran.code == 1
+    assert ran.out.startswith("refused: does not run")
+
+
 def goals_of(data: Foon) -> list[str]:
     return [str(goal) for goal in data.goals]
 
@@ -398,6 +537,19 @@ def test_pyperplan_finds_our_costs(foon: Foon, tmp_path: Path, goal: str) -> Non
     ours = foon_asp.solve(problem).costs
     assert ours is not None
     assert planned(problem, "units", tmp_path, with_pyperplan) == ours.units
+
+
+@needs_fast_downward
+@pytest.mark.parametrize("goal", ["ice", pytest.param("greek salad", marks=pytest.mark.slow)])
+def test_fast_downward_finds_plans_that_run(tmp_path: Path, goal: str) -> None:
+    problem = foon_asp.load().problem(goal, items="used-up")
+    ours = foon_asp.solve(problem).costs
+    assert ours is not None
+    foon_asp.export(problem, items="set").write(tmp_path)
+    (tmp_path / "plan").write_text(with_fast_downward(tmp_path))
+    read = foon_asp.read_plan(problem, tmp_path / "plan", names=tmp_path / "map.json")
+    assert read.sound
+    assert len(read.tree) >= ours.units
 
 
 @pytest.mark.slow

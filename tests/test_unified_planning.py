@@ -13,6 +13,7 @@ if importlib.util.find_spec("unified_planning") is None:
 import unified_planning.shortcuts as up
 from unified_planning.engines import PlanGenerationResultStatus as Ended
 from unified_planning.engines import ValidationResultStatus
+from unified_planning.plans import ActionInstance, SequentialPlan
 
 up.get_environment().credits_stream = None
 
@@ -83,3 +84,29 @@ def test_fast_downward_there_finds_our_costs() -> None:
         read = foon_asp.read_plan(problem, planner.solve(unified).plan)
     assert read.sound
     assert len(read.tree) == 2
+
+
+@pytest.mark.parametrize(("goal", "steps"), [("ice", 2), ("greek salad", 33)])
+def test_a_validator_runs_our_plans_where_items_are_used_up(goal: str, steps: int) -> None:
+    problem = foon_asp.load().problem(goal, items="used-up")
+    unified = foon_asp.to_unified_planning(problem)
+    names = {action.unit: action.name for action in foon_asp.export(problem).task.actions}
+    units = foon_asp.solve(problem).units
+    assert units is not None
+    assert len(units) == steps
+    plan = SequentialPlan([ActionInstance(unified.action(names[unit])) for unit in units])
+    broken = SequentialPlan([ActionInstance(unified.action(names[unit])) for unit in units[1:]])
+    with up.PlanValidator(problem_kind=unified.kind) as validator:
+        assert validator.validate(unified, plan).status is ValidationResultStatus.VALID
+        assert validator.validate(unified, broken).status is ValidationResultStatus.INVALID
+    read = foon_asp.read_plan(problem, plan)
+    assert read.sound
+    assert len(read.tree) == steps
+    assert not foon_asp.read_plan(problem, broken).sound
+
+
+def test_merged_copies_are_deleted_there_too() -> None:
+    problem = foon_asp.load().problem("ice", items="used-up")
+    unified = foon_asp.to_unified_planning(problem, items="set")
+    assert "copies" not in {fluent.name for fluent in unified.fluents}
+    assert any(effect.value.is_false() for action in unified.actions for effect in action.effects)

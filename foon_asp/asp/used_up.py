@@ -27,6 +27,7 @@ from foon_asp.problem import (
     levels,
     multiplies,
     reach,
+    relevant_to_plans,
 )
 from foon_asp.proof.replay import replay_for
 from foon_asp.rules.limit import TIMES, Limit
@@ -198,21 +199,7 @@ class _Solver:
         self.tree = frozenset(first_tree(lasting, reached) or ())
         if self._keeps_spare:
             return sorted(reached.units)
-        allowed = set(reached.units)
-        makers: dict[int, list[int]] = {}
-        for unit in reached.units:
-            for o in problem.flows[unit].adds:
-                makers.setdefault(o, []).append(unit)
-        wanted = [goal for goal in problem.goals if goal not in problem.endless]
-        seen, chosen = set(wanted), set[int]()
-        while wanted:
-            for unit in makers.get(wanted.pop(), ()):
-                if unit in allowed and unit not in chosen:
-                    chosen.add(unit)
-                    new = [o for o in problem.flows[unit].asks if o not in seen and o not in problem.endless]
-                    seen.update(new)
-                    wanted += new
-        return sorted(chosen)
+        return sorted(relevant_to_plans(problem, reached))
 
     def _search(self, units: list[int]) -> Outcome:
         counting = _Counting(self, units)

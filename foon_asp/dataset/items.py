@@ -12,7 +12,7 @@ from foon_asp.problem import ITEMS, UsedUp
 from foon_asp.text.item_list import read_stays, read_stock, stated_name
 from foon_asp.text.line import LineError
 
-Stock = str | PathLike[str] | Mapping[str | ObjectNode, int]
+Stock = str | PathLike[str] | Mapping[str | ObjectNode, int] | Mapping[ObjectNode, int]
 """The path of a stock file, or the number of copies by object node."""
 
 Stays = str | PathLike[str] | Mapping[str | ObjectNode, bool]

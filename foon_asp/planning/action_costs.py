@@ -39,13 +39,19 @@ class ActionCosts(NamedTuple):
 
 
 def action_costs(
-    problem: Problem, objectives: Sequence[Objective], units: Sequence[int], items: int, tree: Collection[int]
+    problem: Problem,
+    objectives: Sequence[Objective],
+    units: Sequence[int],
+    items: int,
+    tree: Collection[int],
+    repeats: int = 1,
 ) -> ActionCosts:
     """Turn objectives into one cost an action, of which the least sum is the best tree.
 
     A tree has each of the ``units`` once at most, and takes each of the ``items`` once at most: so the
     objectives of a list can be added up, the more important ones multiplied by more than all others together
-    can make. ``tree`` is one of the trees: no plan that a planner looks at for long costs more. Fractions
+    can make. ``tree`` is one of the trees: no plan that a planner looks at for long costs more than some
+    ``repeats`` of it. Fractions
     that planners cannot add up exactly are rounded. Raises :class:`UserError` where that does not help, and
     for a success rate of 0.
     """
@@ -53,13 +59,14 @@ def action_costs(
     item, weight = 0, 1
     scales: list[Scale] = []
     for objective in reversed(objectives):
-        room = LARGEST // (2 * weight)
+        room = LARGEST // (2 * weight * repeats)
         costs, factor, rounded = _whole(problem, objective, units, tree, room)
         scales.insert(0, Scale(objective, factor * weight, rounded))
         for unit, cost in costs.items():
             total[unit] += cost * weight
         item += objective.row.item * weight
-        if sum(total[unit] for unit in tree) + max(total.values(), default=0) + items * item > LARGEST:
+        dear = sum(total[unit] for unit in tree) + max(total.values(), default=0)
+        if dear * repeats + items * item > LARGEST:
             raise UserError(
                 f"by {', '.join(objectives)} plans cost more than the {LARGEST:,} that planners add up to: "
                 "name fewer objectives, or costs with fewer digits"

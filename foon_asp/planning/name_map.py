@@ -4,10 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from foon_asp.document.json_document import document, fraction_text, mention_json, nodes_json
+from foon_asp.document.json_document import document, fraction_text, mention_json, named_json, nodes_json
 from foon_asp.errors import UserError
-from foon_asp.network import FunctionalUnit, ObjectNode
+from foon_asp.network import FunctionalUnit, Network, ObjectNode
 from foon_asp.planning.planning_task import PlanningTask, taking
+from foon_asp.problem import ITEMS, UsedUp
 from foon_asp.text.json_layout import check_json
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_value import Json, read_json, schema_name
@@ -20,7 +21,7 @@ class NameMap(NamedTuple):
     """What the actions of a planning task stand for, and what the task is about.
 
     ``units`` has the unit of every action that executes one. ``taking`` are the names of the actions that
-    take a kitchen item. ``goals``, ``containers`` and ``level`` are those of the question.
+    take a kitchen item. ``goals``, ``containers``, ``level`` and ``items`` are those of the question.
     """
 
     units: Mapping[str, FunctionalUnit]
@@ -28,6 +29,7 @@ class NameMap(NamedTuple):
     goals: tuple[ObjectNode, ...]
     containers: str
     level: int
+    items: UsedUp | None
 
 
 def map_of(task: PlanningTask) -> NameMap:
@@ -39,6 +41,7 @@ def map_of(task: PlanningTask) -> NameMap:
         problem.goal_nodes,
         str(problem.containers),
         network.level,
+        problem.items,
     )
 
 
@@ -75,7 +78,22 @@ def map_json(task: PlanningTask) -> Json:
         ],
         objects=[{"name": name, "object": node} for name, node in named],
         actions=actions,
+        **({} if problem.items is None else _items_json(network, problem.items)),
     )
+
+
+def _items_json(network: Network, items: UsedUp) -> Json:
+    """Give what is in stock, and what somebody said of labels and nodes."""
+    said = [
+        {"label": name, "object": None}
+        if isinstance(name, str)
+        else {"label": None, "object": named_json(network, name)}
+        for name in items.told
+    ]
+    return {
+        "stock": [{"object": named_json(network, o), "copies": n} for o, n in items.stock.items()],
+        "stays": [{**name, "stays": stays} for name, stays in zip(said, items.told.values(), strict=True)],
+    }
 
 
 def read_name_map(file: Path) -> NameMap:
@@ -111,4 +129,10 @@ def _read(found: Mapping[str, Any]) -> NameMap:
     }
     taking = frozenset(action["name"] for action in found["actions"] if action["unit"] is None)
     goals = tuple(map(read_node_json, found["goals"]))
-    return NameMap(units, taking, goals, str(found["containers"]), int(found["level"]))
+    items = None
+    if found["items"] == ITEMS[1]:
+        items = UsedUp(
+            {each["label"] or read_node_json(each["object"]): bool(each["stays"]) for each in found["stays"]},
+            {read_node_json(each["object"]): int(each["copies"]) for each in found["stock"]},
+        )
+    return NameMap(units, taking, goals, str(found["containers"]), int(found["level"]), items)

@@ -1,13 +1,14 @@
-"""A planning task as PDDL: STRIPS with action costs, and no deletes, since items last."""
+"""A planning task as PDDL: STRIPS with action costs, and numbers of copies where these are counted."""
 
 from collections.abc import Iterable, Iterator
 
 from foon_asp.planning.action_costs import Scale
-from foon_asp.planning.planning_task import PlanningTask
+from foon_asp.planning.planning_task import Action, PlanningTask
 from foon_asp.problem import multiplies
 
 DOMAIN = "foon"
 AT_HAND = "at-hand"
+COPIES = "copies"
 
 
 def domain_text(task: PlanningTask) -> str:
@@ -28,25 +29,36 @@ def scale_words(scale: Scale) -> str:
     return f"{scale.objective}: " + ("" if scale.factor == 1 else f"times {scale.factor}, ") + exact
 
 
+def items_words(task: PlanningTask) -> str:
+    """Say what becomes of copies."""
+    if task.problem.items is None:
+        return "items last, so that no action deletes anything"
+    if not task.merged:
+        return "copies are counted, but for what never runs out"
+    return "the copies of a node are merged into one, so each plan runs, and may be longer than it has to be"
+
+
 def _domain(task: PlanningTask) -> Iterator[str]:
     network, costed = task.problem.network, not task.costs.unit_cost
-    yield f"; A FOON, {task.problem.conditions}: items last, so that no action deletes anything."
+    yield f"; A FOON, {task.problem.conditions}: {items_words(task)}."
     yield "; Costs of actions, the most important first:"
     yield from (f";   {scale_words(scale)}" for scale in task.costs.scales)
     yield f"(define (domain {DOMAIN})"
-    yield f"  (:requirements :strips :typing{' :action-costs' * costed})"
+    numbers = " :numeric-fluents" * bool(task.counted)
+    yield f"  (:requirements :strips :typing{numbers}{' :action-costs' * costed})"
     yield "  (:types item)"
     yield "  (:constants"
     yield from (f"    {name} - item ; {_comment(str(network.objects[o]))}" for o, name in task.names.items())
     yield "  )"
     yield f"  (:predicates ({AT_HAND} ?o - item))"
-    if costed:
-        yield "  (:functions (total-cost) - number)"
+    functions = [f"({COPIES} ?o - item)"] * bool(task.counted) + ["(total-cost)"] * costed
+    if functions:
+        yield f"  (:functions {' '.join(functions)} - number)"
     for action in task.actions:
         yield f"  (:action {action.name}"
         yield "    :parameters ()"
         yield f"    :precondition {_at_hand(task, action.needs)}"
-        yield f"    :effect {_at_hand(task, action.gives, action.cost if costed else None)})"
+        yield f"    :effect {_effect(task, action, costed)})"
     yield ")"
 
 
@@ -54,7 +66,8 @@ def _problem(task: PlanningTask) -> Iterator[str]:
     yield f"(define (problem {DOMAIN}-goal)"
     yield f"  (:domain {DOMAIN})"
     yield "  (:init"
-    yield from (f"    ({AT_HAND} {task.names[o]})" for o in task.start)
+    yield from (f"    ({AT_HAND} {task.names[o]})" for o in task.start if o not in task.counted)
+    yield from (f"    (= ({COPIES} {task.names[o]}) {count})" for o, count in task.counted.items())
     if not task.costs.unit_cost:
         yield "    (= (total-cost) 0)"
     yield "  )"
@@ -64,10 +77,26 @@ def _problem(task: PlanningTask) -> Iterator[str]:
     yield ")"
 
 
-def _at_hand(task: PlanningTask, nodes: Iterable[int], cost: int | None = None) -> str:
-    parts = [f"({AT_HAND} {task.names[o]})" for o in nodes]
-    if cost is not None:
-        parts.append(f"(increase (total-cost) {cost})")
+def _at_hand(task: PlanningTask, nodes: Iterable[int]) -> str:
+    parts = [
+        f"(>= ({COPIES} {task.names[o]}) 1)" if o in task.counted else f"({AT_HAND} {task.names[o]})"
+        for o in nodes
+    ]
+    return " ".join(["(and", *parts]) + ")"
+
+
+def _effect(task: PlanningTask, action: Action, costed: bool) -> str:
+    counted = task.counted
+    parts = [
+        f"(increase ({COPIES} {task.names[o]}) 1)" if o in counted else f"({AT_HAND} {task.names[o]})"
+        for o in action.gives
+    ]
+    parts += [
+        f"(decrease ({COPIES} {task.names[o]}) 1)" if o in counted else f"(not ({AT_HAND} {task.names[o]}))"
+        for o in action.uses
+    ]
+    if costed:
+        parts.append(f"(increase (total-cost) {action.cost})")
     return " ".join(["(and", *parts]) + ")"
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from foon_asp.errors import UserError
-from foon_asp.planning.pddl_writer import AT_HAND, DOMAIN
+from foon_asp.planning.pddl_writer import AT_HAND, COPIES, DOMAIN
 from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import Objective, Problem
 
@@ -22,33 +22,50 @@ def require_unified_planning() -> Any:
     return up
 
 
-def unified_problem(problem: Problem, objectives: Sequence[Objective], whole: bool = False) -> Any:
+def unified_problem(
+    problem: Problem, objectives: Sequence[Objective], whole: bool = False, merged: bool = False
+) -> Any:
     """Give a problem of unified-planning: the same task as in PDDL, with the same names.
 
     Raises :class:`UserError` as :func:`foon_asp.planning.planning_task.planning_task`, and where
     unified-planning is not installed.
     """
     up = require_unified_planning()
-    task = planning_task(problem, objectives, whole)
+    task = planning_task(problem, objectives, whole, merged)
+    counted = task.counted
     item = up.UserType("item")
     at_hand = up.Fluent(AT_HAND, up.BoolType(), o=item)
     unified = up.Problem(DOMAIN)
     unified.add_fluent(at_hand, default_initial_value=False)
+    copies = up.Fluent(COPIES, up.IntType(), o=item)
+    if counted:
+        unified.add_fluent(copies, default_initial_value=0)
     objects = {o: up.Object(name, item) for o, name in task.names.items()}
     unified.add_objects(objects.values())
     costs: dict[Any, Any] = {}
+
+    def there(o: int) -> Any:
+        return up.GE(copies(objects[o]), 1) if o in counted else at_hand(objects[o])
+
     for action in task.actions:
         made = up.InstantaneousAction(action.name)
         for o in action.needs:
-            made.add_precondition(at_hand(objects[o]))
-        for o in action.gives:
-            made.add_effect(at_hand(objects[o]), True)
+            made.add_precondition(there(o))
+        for o, given in (*((o, True) for o in action.gives), *((o, False) for o in action.uses)):
+            if o not in counted:
+                made.add_effect(at_hand(objects[o]), given)
+            elif given:
+                made.add_increase_effect(copies(objects[o]), 1)
+            else:
+                made.add_decrease_effect(copies(objects[o]), 1)
         unified.add_action(made)
         costs[made] = up.Int(action.cost)
-    for o in task.start:
+    for o in {*task.start}.difference(counted):
         unified.set_initial_value(at_hand(objects[o]), True)
+    for o, count in counted.items():
+        unified.set_initial_value(copies(objects[o]), count)
     for o in task.goals:
-        unified.add_goal(at_hand(objects[o]))
+        unified.add_goal(there(o))
     unified.add_quality_metric(up.MinimizeActionCosts(costs))
     return unified
 

@@ -100,6 +100,19 @@ def backwards(
     return chosen, wanted
 
 
+def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
+    """Give the reached units that some plan without spare units can contain, where items are used up.
+
+    They make what a goal or another of them asks for and what may run out.
+    """
+    makers: list[list[int]] = [[] for _ in problem.network.objects]
+    for unit in reached.units:
+        for o in problem.flows[unit].adds:
+            makers[o].append(unit)
+    units, _ = backwards(problem.goals, makers, [flow.asks for flow in problem.flows], problem.endless)
+    return units
+
+
 def kitchen_needed(problem: Problem) -> list[int]:
     """Give the kitchen items that a tree for the goals can take, in order of id; goals at hand among them."""
     units, _ = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)

@@ -124,12 +124,16 @@ def question(
     suffixes: Mapping[str, str] | None = None,
     pose: Pose = one_problem,
     command: Callable[..., Result] | None = None,
+    used_up: bool = False,
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a decorator that describes a function for a command line, see :func:`question_of`."""
+    """Make a decorator that describes a function for a command line, see :func:`question_of`.
+
+    A question is built for items that are used up if it has an option for them, or says so with ``used_up``.
+    """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
         names = {option.name for option in options}
-        if "items" not in names:
+        if not used_up and "items" not in names:
             ask = _for_lasting_items(ask)
         ask = in_hand("time_limit" in names)(ask)
         ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, command or ask)

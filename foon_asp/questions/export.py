@@ -1,6 +1,6 @@
 """A question for planners: PDDL, and what its names stand for."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,19 +12,22 @@ from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.planning.name_map import map_json
-from foon_asp.planning.pddl_writer import domain_text, problem_text, scale_words
+from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text, scale_words
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.in_hand import OnProgress
-from foon_asp.questions.options import CONTAINERS, GOALS, OBJECTIVES
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
+from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Result
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text.json_value import Json, json_text
 
 _FORMATS = ("pddl",)
+_MERGED = "set"
+_HOW = ("lasting", _MERGED, "used-up")
 
 
 @dataclass(frozen=True, repr=False)
@@ -101,6 +104,8 @@ class Exported(Result):
 def _report(task: PlanningTask, folder: Path) -> Iterator[str]:
     yield f"{folder}: domain.pddl, problem.pddl, map.json ({task.problem.conditions})"
     yield f"{counted(len(task.actions), 'action')}, {counted(len(task.names), 'object node')}"
+    if task.problem.items is not None:
+        yield items_words(task)
     yield from (f"costs of actions by {scale_words(scale)}" for scale in task.costs.scales)
     if any(scale.rounded for scale in task.costs.scales):
         yield "rounded costs may make a planner take a tree for the best that is not quite"
@@ -112,14 +117,31 @@ def _export_and_write(
     *,
     target: str = "pddl",
     every_unit: bool = False,
+    items: str | None = None,
     folder_written: File | None = None,
 ) -> Exported:
     """Export as the command does, into a folder or to be shown."""
-    found = export(problem, objectives, target=target, every_unit=every_unit)
+    found = export(problem, objectives, target=target, every_unit=every_unit, items=items)
     if folder_written is None:
         return found
     found.write(folder_written, target)
     return Exported(found.task, Path(folder_written))
+
+
+def _posed(
+    command: Command, goals_named: Sequence[str], containers: str, items: str | None, **files: Any
+) -> tuple[Problem]:
+    items = "used-up" if items == _MERGED else items or "lasting"
+    return one_problem(command, goals_named, containers, items, **files)
+
+
+def _merged(problem: Problem, items: str | None) -> bool:
+    """Whether copies are merged; raises :class:`UserError` where that is not how the problem was posed."""
+    if items not in {None, *_HOW}:
+        raise UserError(f"found items={items!r}, expected one of {', '.join(_HOW)}")
+    if items is not None and (items == "lasting") is not (problem.items is None):
+        raise UserError(f"found items={items!r}, but the problem is posed with {problem.conditions}")
+    return items == _MERGED
 
 
 @question(
@@ -136,6 +158,15 @@ def _export_and_write(
         python="A name, names separated by commas, or several names.",
     ),
     CONTAINERS,
+    ITEMS[0]._replace(
+        default=None,
+        help="Whether items last (by default), are used up, with copies as numbers (used-up), or as set: "
+        "STRIPS with deletes, in which all copies of a node are one.",
+        part=Part.PROBLEM | Part.QUESTION,
+        choices=_HOW,
+        python="In Python by default as in the problem; ``set`` is for one in which items are used up.",
+    ),
+    *ITEMS[1:],
     Option(
         "every_unit",
         "Write the whole network, instead of the units that the goals can need.",
@@ -150,15 +181,20 @@ def _export_and_write(
         metavar="DIR",
     ),
     command=_export_and_write,
+    pose=_posed,
     help_="""
     \b
     foon-asp export --to pddl --goal 'greek salad' -o task
     fast-downward.py --plan-file plan task/domain.pddl task/problem.pddl --search 'astar(lmcut())'
     foon-asp read-plan plan --map task/map.json
 
-    Items last, so no action deletes anything: the plan of least cost is the best task tree. Costs are whole
-    numbers: exact where these fit into the 32 bits of planners, and otherwise rounded, as the logarithms of
-    success always are; the answer says so. Of several objectives, the first counts most.
+    While items last, no action deletes anything: the plan of least cost is the best task tree. Costs are
+    whole numbers: exact where these fit into the 32 bits of planners, and otherwise rounded, as the
+    logarithms of success always are; the answer says so. Of several objectives, the first counts most.
+
+    With --items used-up, copies are numbers (:numeric-fluents), and the plan of least cost is the best plan.
+    Few planners take that: with --items set, all copies of a node are one, and what is used up is deleted.
+    Every such plan runs, but it may cost more than it has to, and there may be none where there is a plan.
 
     Exits with 0 when the task is written, whether there is a plan for it or not.
     """,
@@ -169,6 +205,7 @@ def export(
     *,
     target: str = "pddl",
     every_unit: bool = False,
+    items: str | None = None,
     time_limit: float | None = None,
     on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
@@ -193,11 +230,15 @@ def export(
     if every_unit:
         problem = whole(problem)
     with reading():
-        return Exported(planning_task(problem, chosen, every_unit))
+        return Exported(planning_task(problem, chosen, every_unit, _merged(problem, items)))
 
 
 def to_unified_planning(
-    problem: Problem, objectives: Objectives = "units", *, every_unit: bool = False
+    problem: Problem,
+    objectives: Objectives = "units",
+    *,
+    every_unit: bool = False,
+    items: str | None = None,
 ) -> Any:
     """Give the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
@@ -207,6 +248,8 @@ def to_unified_planning(
         problem: The problem.
         objectives: What actions cost: a name, names separated by commas, or several names.
         every_unit: Whether to give the whole network, instead of the units that the goals can need.
+        items: How items are meant: ``lasting``, ``used-up`` with copies as numbers, or ``set``, in which all
+            copies of a node are one; by default as in the problem.
 
     Returns:
         A ``unified_planning.model.Problem``.
@@ -224,4 +267,5 @@ def to_unified_planning(
         5
     """
     chosen = chosen_objectives(problem, objectives)
-    return unified_problem(whole(problem) if every_unit else problem, chosen, every_unit)
+    problem = whole(problem) if every_unit else problem
+    return unified_problem(problem, chosen, every_unit, _merged(problem, items))

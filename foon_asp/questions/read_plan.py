@@ -4,14 +4,16 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
+from foon_asp.dataset.items import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document
 from foon_asp.errors import UserError
 from foon_asp.planning.name_map import map_of, read_name_map
-from foon_asp.planning.plan_file import read_plan_text
+from foon_asp.planning.plan_file import PlanStep, read_plan_text
 from foon_asp.planning.planning_task import planning_task
-from foon_asp.problem import Problem
+from foon_asp.problem import ITEMS, Problem
+from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import reading, whole
 from foon_asp.questions.check import Checked
@@ -39,7 +41,8 @@ class PlanRead(Checked):
     @property
     def sound(self) -> bool:
         """Whether the plan executes as it is written, with units of the network alone."""
-        return self.simulation.verdict is Verdict.AS_LISTED and not self.foreign
+        as_listed = self.replay is not None or self.simulation.verdict is Verdict.AS_LISTED
+        return as_listed and self.executes and not self.foreign
 
     @property
     def ending(self) -> Ending:
@@ -76,7 +79,8 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
             f"add --level {found.level}"
         )
     with command.reading():
-        return (dataset.problem(dataset.named_goals(found.goals), found.containers),)
+        how = found.items and items_of(dataset, ITEMS[1], found.items.stock, found.items.told)
+        return (dataset.problem(dataset.named_goals(found.goals), found.containers, items=how),)
 
 
 @question(
@@ -91,6 +95,7 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
         python="Without it, the names are those that :func:`foon_asp.export` gives to the whole network.",
     ),
     pose=_posed,
+    used_up=True,
     formats=("text", "json", "foon"),
     help_="""
     \b
@@ -116,7 +121,7 @@ def read_plan(
 ) -> PlanRead:
     r"""Read the plan of another planner back into a task tree, and execute it.
 
-    A unit that a plan executes twice is in the tree once.
+    A unit that a plan executes twice is in the tree once, unless items are used up.
 
     Parameters:
         plan: The path of the file that the planner wrote, or a plan of unified-planning.
@@ -145,7 +150,9 @@ def read_plan(
             steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
         else:  # as unified-planning writes it
             steps = read_plan_text(str(plan), "the plan", named)
-    places = dict(reversed(steps))  # of the first execution
-    units = tuple(dict.fromkeys(unit for unit, _ in steps))
-    tree = Tree.given(problem, units, [places[unit] for unit in units])
-    return PlanRead(tree, simulate_for(tree.problem, tree))
+    if problem.items is None:
+        places = dict(reversed(steps))  # of the first execution
+        steps = [PlanStep(unit, places[unit]) for unit in dict.fromkeys(unit for unit, _ in steps)]
+    tree = Tree.given(problem, [unit for unit, _ in steps], [place for _, place in steps])
+    replay = None if problem.items is None else replay_for(tree.problem, tree)
+    return PlanRead(tree, simulate_for(tree.problem, tree), replay)
