@@ -31,15 +31,26 @@ _WORDS = {
 
 
 def typed(ask: Callable[P, T]) -> Callable[P, T]:
-    """Make a function refuse values that its annotations do not allow, with :class:`UserError`.
+    """Make a function refuse values that its annotations do not allow; see :func:`checker`."""
+    check = checker(ask)
+
+    @functools.wraps(ask)
+    def checked(*given: P.args, **named: P.kwargs) -> T:
+        check(given, named)
+        return ask(*given, **named)
+
+    return checked
+
+
+def checker(ask: Callable[..., object]) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
+    """Make what raises :class:`UserError` for arguments that the annotations of a function do not allow.
 
     What can be read only once is not looked into, and annotations that are texts allow everything.
     """
     asked = inspect.signature(ask)
     kinds = {name: parameter.annotation for name, parameter in asked.parameters.items()}
 
-    @functools.wraps(ask)
-    def checked(*given: P.args, **named: P.kwargs) -> T:
+    def check(given: tuple[object, ...], named: Mapping[str, object]) -> None:
         try:
             bound = asked.bind(*given, **named)
         except TypeError as error:
@@ -50,9 +61,8 @@ def typed(ask: Callable[P, T]) -> Callable[P, T]:
                 if not _fits(kinds[name], each):
                     expected = " or ".join(dict.fromkeys(_words(kinds[name]))) or "something else"
                     raise UserError(f"found {name}={each!r}, expected {expected}")
-        return ask(*given, **named)
 
-    return checked
+    return check
 
 
 def _fits(kind: Any, value: object) -> bool:

@@ -12,6 +12,7 @@ import pytest
 import foon_asp
 from foon_asp import Cancel, Foon, StoppedError, UserError
 from foon_asp.errors import FoonWarning
+from tests.conftest import Cli
 from tests.hard_problem import hard_problem
 
 ENDLESS = "p(0). p(f(X)) :- p(X). :- use(U), p(f(U))."
@@ -100,6 +101,12 @@ def test_a_value_of_the_wrong_type_is_refused_in_words(
 ) -> None:
     with pytest.raises(UserError, match=message):
         ask(foon, foon.problem("ice"))
+
+
+def test_commands_hand_over_what_they_have_read(cli: Cli) -> None:
+    rule = ("--rule", ':- use(U), motion(U,"crush").', "--time-limit", "60")
+    for verb in ("why-not", "clash", "shopping-list", "alternatives", "regret"):
+        assert cli(verb, "--goal", "ice", *rule).code == 0
 
 
 def test_equal_questions_are_equal(foon: Foon) -> None:

@@ -44,6 +44,11 @@ def caller() -> Caller:
     return _CALLER.get() or Caller(_Warner())
 
 
+def is_python() -> bool:
+    """Whether it is Python that asks, and no command."""
+    return _CALLER.get() is None
+
+
 @contextlib.contextmanager
 def asked_by(who: Caller) -> Iterator[None]:
     """Let somebody else ask in a ``with`` block."""

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 from foon_asp.asp import Reporter
 from foon_asp.deadline import Deadline, seconds, stoppable
 from foon_asp.problem import Costs, Objective
-from foon_asp.questions.caller import asked_by, caller
-from foon_asp.typed import typed
+from foon_asp.questions.caller import asked_by, caller, is_python
+from foon_asp.typed import checker
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -77,11 +77,12 @@ def in_hand(takes_time: bool) -> Callable[[Callable[P, T]], Callable[P, T]]:
     """
 
     def decorate(ask: Callable[P, T]) -> Callable[P, T]:
-        name = ask.__name__
+        name, check = ask.__name__, checker(ask)
 
-        @typed
         @functools.wraps(ask)
         def asked(*about: P.args, **named: P.kwargs) -> T:
+            if is_python():  # commands hand over what they have read
+                check(about, named)
             token: Any = named.pop("cancel", None)
             tell: Any = named.pop("on_progress", None)
             limit = None if takes_time else named.pop("time_limit", None)

@@ -146,7 +146,7 @@ def regret(
     objectives: Objectives = "units",
     *,
     units: Iterable[int] = (),
-    motions: Iterable[str] = (),
+    motions: str | Iterable[str] = (),
     pairs: bool = False,
     constraints: Files = (),
     constants: Constants | None = None,
