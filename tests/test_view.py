@@ -150,7 +150,9 @@ def test_without_a_tree_the_page_says_why() -> None:
     assert (case["ends"], case["cuts"][0]["weight"], case["cuts"][0]["members"]) == ("hopeless", None, [])
 
 
-@pytest.mark.parametrize("objective", ["units", "success", pytest.param("attempts", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "objective", ["success", *(pytest.param(name, marks=pytest.mark.slow) for name in ("units", "attempts"))]
+)
 def test_weights_of_the_proof_add_up_to_the_cost(objective: str) -> None:
     proof = in_page(foon_asp.view(foon_asp.load().problem("tea"), objective, beside=["proof"]).html())[
         "proof"
@@ -162,6 +164,7 @@ def test_weights_of_the_proof_add_up_to_the_cost(objective: str) -> None:
             assert set(cut["members"]) & set(proof["certificate"]["tree"])
 
 
+@pytest.mark.slow
 def test_plans_that_use_items_up_have_a_page_of_their_own() -> None:
     problem = foon_asp.load().problem("ice", items="used-up")
     shown = in_page(foon_asp.view(problem).html())
@@ -170,7 +173,7 @@ def test_plans_that_use_items_up_have_a_page_of_their_own() -> None:
         foon_asp.view(problem, beside=["searches"])
 
 
-@pytest.mark.parametrize("containers", ["strict", "implied"])
+@pytest.mark.parametrize("containers", ["strict", pytest.param("implied", marks=pytest.mark.slow)])
 def test_a_page_of_a_network_has_all_of_it(containers: str) -> None:
     foon = foon_asp.load()
     network = in_page(foon_asp.view(foon, containers=containers).html())["network"]
@@ -178,8 +181,8 @@ def test_a_page_of_a_network_has_all_of_it(containers: str) -> None:
     assert [unit["motion"] for unit in network["units"]] == list(problem.network.motions)
     assert [node["node"] for node in network["objects"]] == list(map(str, problem.network.objects))
     assert set(network["kitchen"]) == problem.kitchen
-    unreachable = {o for o in range(len(network["objects"])) if foon_asp.why_not(problem).available[o] == 0}
-    assert set(network["reachable"]) == set(range(len(network["objects"]))) - unreachable
+    available = foon_asp.why_not(problem).available
+    assert set(network["reachable"]) == {o for o, there in enumerate(available) if there}
     places = list(zip(network["places"][::2], network["places"][1::2], strict=True))
     assert len(places) == len(network["units"]) + len(network["objects"])
     assert len(set(places)) > 0.99 * len(places)
