@@ -10,11 +10,14 @@ import pytest
 
 from foon_asp.certificate import Coverage, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.arrays import Arrays
+from foon_asp.certificate.coverage import needed
+from foon_asp.certificate.own_rules import check_with_clingo
+from foon_asp.deadline import Deadline
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, looked_at
 from foon_asp.proof.ruled import Limit, Ruled
-from foon_asp.proof.verify import read_certificate, verify
+from foon_asp.proof.verify import LimitError, RefusedError, read_certificate, verify
 from foon_asp.text.line_parser import parse_node
 from tests import oracle
 from tests.constraint_oracle import keeps, random_rule
@@ -275,7 +278,7 @@ def in_order(problem: Problem, units: frozenset[int]) -> list[int]:
     return order
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_what_is_best_under_each_constraint_is_certified_without_a_search(seed: int) -> None:
     problem, rules, _ = drawn(seed)
     found = [*trees(problem)]
@@ -306,3 +309,69 @@ def test_what_is_best_under_each_constraint_is_certified_without_a_search(seed: 
             with pytest.raises(NotBestError) as better:
                 certify(problem, (objective,), in_order(problem, worst), covered)
             assert costs[frozenset(better.value.units)] < costs[worst]
+
+
+def owning(*claims: list[list[int]]) -> dict[str, Any]:
+    """Give what is claimed of rules of the user's own."""
+    return {"rule": OWN, "claims": [*claims], "constants": [], "files": [], "library": []}
+
+
+def test_of_what_is_claimed_a_certificate_has_what_its_cuts_need() -> None:
+    kitchen = small("cut: start > a", "mix: a > end", "boil: start > end", "junk: start > x", "fry: b > x")
+    own = owning([[2], []], [[3], []], [[], [1, 3]], [[4], [0]])
+    motion = {"rule": "forbid_motion", "forbidden_motion": "boil"}
+    assert needed((motion, own), [0, 1, 2]) == (
+        motion,
+        {**own, "claims": [own["claims"][n] for n in (0, 2, 3)]},
+    )
+    assert needed((own,), []) == ({**own, "claims": [own["claims"][n] for n in (2, 3)]},)
+    removed = owning([[2], []], [[3], []])
+    certificate = certify(kitchen, (Objective.UNITS,), [0, 1], Coverage((removed,)))
+    assert certificate is not None
+    assert [rule["claims"] for rule in certificate.content["rules"]] == [[[[2], []]]]
+    # where all is known of the rules, nothing is left out
+    assert Coverage((removed,)).partial
+    assert not Coverage((motion,)).partial
+    plain = certify(kitchen, (Objective.UNITS,), [0, 1], Coverage((motion,)))
+    assert plain is not None
+    assert plain.content["rules"] == [motion]
+
+
+def test_cuts_may_have_nodes_that_a_search_added() -> None:
+    kitchen = small("cut: start > a", "mix: a > end", "boil: start > end")
+    nodes = len(kitchen.network.objects)
+    (end,) = kitchen.goals
+    certificate = certify(kitchen, (Objective.UNITS,), [2], cuts=[[end, nodes], [end, nodes + 7]])
+    assert certificate is not None
+    assert certificate.content["cuts"] == [[end]]
+
+
+def test_a_goal_that_no_tree_may_have_is_proved_by_its_constraint() -> None:
+    kitchen = small("cut: start > end", "mix: b > a")
+    rules = [{"rule": "forbid_ingredient", "allergen": names} for names in (["end", "x"], ["end"])]
+    certificate = certify_infeasible(kitchen, Coverage((*rules,)))
+    assert certificate is not None
+    assert certificate.content["proof"] == {"broken": 0}
+    assert certify_infeasible(kitchen, Coverage(({**rules[0], "allergen": ["a"]},))) is None
+
+
+def test_certificates_say_where_they_come_from_only_if_rates_are_those_of_motions() -> None:
+    kitchen = small("cut: start > end")
+    fixed = replace(kitchen, own_rates={0: Fraction(1, 2)})
+    motion = {"rule": "forbid_motion", "forbidden_motion": "cut"}
+    assert certify_infeasible(kitchen, Coverage((motion,))) is not None
+    assert certify_infeasible(fixed, Coverage((motion,))) is None
+    assert certify(fixed, (Objective.UNITS,), [0], Coverage(({**motion, "forbidden_motion": "no"},))) is None
+    assert certify(fixed, (Objective.UNITS,), [0]) is not None
+
+
+def test_clingo_that_does_not_finish_checks_nothing() -> None:
+    kitchen = small("cut: start > end", "mix: start > end")
+    for tree, claims in (([0], []), (None, [[[1], []]])):
+        own = owning(*claims)
+        content = {"tree": tree, "objective": ["units"] if tree else []}
+        with pytest.raises(LimitError, match="clingo does not finish"):
+            check_with_clingo(content, own, kitchen, Deadline(0.0))
+    check_with_clingo({"tree": [0], "objective": ["units", "mine"]}, owning(), kitchen)
+    with pytest.raises(RefusedError, match="is not true"):
+        check_with_clingo({"tree": None, "objective": []}, owning([[1], []]), kitchen)

@@ -1,6 +1,7 @@
 """Items that are used up: the rule, the replay of plans, and the best plans against brute force."""
 
 import json
+import random
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -269,6 +270,39 @@ def test_a_plan_may_repeat_units_and_is_read_back_with_its_repeats(cli: Cli, tmp
         ran = cli("check", plan, "--goal", "greek salad", "--items", "used-up")
         assert ran.code == 0
         assert "33 units" in ran.out
+
+
+def test_a_replay_has_the_copies_that_are_left_and_those_that_were_taken() -> None:
+    met: Counter[str] = Counter()
+    for seed in range(200):
+        problem, choose = random_problem(seed), random.Random(seed)
+        network, endless = problem.network, problem.endless
+        order = [choose.randrange(len(network)) for _ in range(choose.randint(0, 6))]
+        there = Counter({o: problem.stock_of(o) or 0 for o in problem.kitchen - endless})
+        stock, taken, lacks = Counter(there), Counter(dict.fromkeys(there, 0)), None
+        for step, unit in enumerate([*order, None]):
+            asks, uses, adds = problem.flows[unit] if unit is not None else (problem.goals, (), ())
+            missing = [o for o in asks if o not in endless and not there[o]]
+            if missing:
+                lacks = None if unit is None else step, [network.objects[o] for o in missing]
+                break
+            taken.update({o: max(0, 1 + stock[o] - there[o] - taken[o]) for o in {*asks} & stock.keys()})
+            there.subtract(o for o in uses if o not in endless)
+            there.update(o for o in adds if o not in endless)
+        replay = replay_for(problem, map(network.unit, order))
+        assert Counter(copy.node for copy in replay.left) == Counter(
+            {network.objects[o]: n for o, n in there.items()}
+        )
+        if lacks is None:
+            assert replay.stock == {network.objects[o]: n for o, n in taken.items()}
+        shortage = replay.shortage
+        assert (shortage is None) == (lacks is None)
+        if shortage is not None and lacks is not None:
+            assert shortage.step == lacks[0]
+            assert shortage.node in lacks[1]
+        met["short" if lacks else "runs"] += 1
+        assert len(replay.steps) == (len(order) if lacks is None or lacks[0] is None else lacks[0])
+    assert min(met.values()) > 10
 
 
 def test_a_missing_goal_is_said_too() -> None:

@@ -214,7 +214,7 @@ def _write(
 def _verified(content: dict[str, Any], claim: str, arrays: Arrays) -> verify.Verified:
     """Seal a certificate, and verify it as it is written."""
     problem = arrays.problem
-    content["seal"] = verify.seal({key: value for key, value in content.items() if key != "seal"})
+    content["seal"] = verify.seal(content)
     return verify.verify(
         verify.read_certificate(Certificate(content, claim, arrays.objectives).text()),
         problem.network,
