@@ -201,7 +201,8 @@ HEAD = ("goals", "containers", "items", "level", "objectives", "starting_kitchen
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "verb", [verb for verb in ASKED if verb not in {"batch", "stats", "constraints", "lint", "relax", "view"}]
+    "verb",
+    [v for v in ASKED if v not in {"batch", "stats", "constraints", "lint", "relax", "view", "units"}],
 )
 def test_the_head_is_the_same_in_every_verb(printed: Any, verb: str) -> None:
     document = printed(verb, *ASKED[verb][0])
@@ -209,7 +210,7 @@ def test_the_head_is_the_same_in_every_verb(printed: Any, verb: str) -> None:
     for head in heads:
         assert [key for key in head if key in HEAD] == [*HEAD]
         assert "ice" in {goal["label"] for goal in head["goals"]} or verb in {"why-not", "shopping-list"}
-        assert head["items"] == "lasting"
+        assert head["items"] == ("used-up" if verb == "trace" else "lasting")
 
 
 def test_the_page_has_every_verb() -> None:
@@ -346,9 +347,9 @@ def changed(document: Any) -> Iterator[Any]:
                 return
             seen.add(shape)
             if name not in OPEN:
-                value["more"] = 1
+                value["more!"] = 1  # no name, and so no measure of somebody's either
                 yield
-                del value["more"]
+                del value["more!"]
             for key in [key for key in value if name not in LOOSE and key not in SOME]:
                 kept = dict(value)
                 del value[key]
