@@ -8,6 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -313,6 +314,28 @@ def test_at_a_limit_the_best_is_given_with_its_bound(monkeypatch: pytest.MonkeyP
     assert found.starts == tuple(3 * number for number in range(len(task.lengths)))
     assert not found.proved
     assert found.bound == max(5, task.bound)
+
+
+@needs_solver
+def test_before_anything_is_found_one_step_is_done_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> Iterator[tuple[str, object]]:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(scheduling, "_idle", [])
+    monkeypatch.setattr(scheduling, "_CpSat", lambda: SimpleNamespace(ask=interrupted, end=lambda: None))
+    kinds = set()
+    for seed in range(60):
+        task = random_task(seed)
+        found = shortest(task, Deadline())
+        kinds.add((found.starts is None, found.proved))
+        if found.starts is None:
+            assert least_time(task._replace(counts=task.counts | found.lacking)) is not None
+        else:
+            least = least_time(task)
+            assert least is not None
+            assert found.bound <= least <= sum(task.lengths)
+            assert max(step.end for step in timed_steps(task, found.starts)) * 3 >= least
+    assert kinds == {(True, False), (False, False), (False, True)}
 
 
 # --- As it is asked for.

@@ -6,7 +6,7 @@ import queue
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from io import RawIOBase
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import ceil
 from typing import Any, NamedTuple
 
@@ -24,8 +24,8 @@ _EXACT = 1e-6  # a bound arrives as a float: one so little above a whole number 
 class Found(NamedTuple):
     """What was found: ``starts`` in ticks, ``None`` without a schedule, and a ``bound`` that none is below.
 
-    ``proved`` says that there is nothing shorter; without a schedule, that there is none, and ``lacking``
-    how many tools there have to be at least.
+    ``proved`` says that there is nothing shorter; without a schedule, that there is none. ``lacking`` says
+    then how many tools there have to be at least, and where nothing is proved, how many are enough.
     """
 
     starts: tuple[int, ...] | None
@@ -41,8 +41,8 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
     """
     if find_spec("ortools") is None:
         raise UserError(_MISSING)
-    best: tuple[int, ...] | None = None
-    bound, ended, lacking = task.bound, "", dict[ToolName, int]()
+    best, lacking = _one_by_one(task)
+    bound, ended = task.bound, ""
     deadline.doing = "scheduling"
     process = _idle.pop() if _idle and _idle[-1].alive else _CpSat()
     try:
@@ -71,6 +71,21 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
         bound = _length(task, best)
     proved = ended != "limit" or (best is not None and _length(task, best) == bound)
     return Found(best, bound, proved, lacking)
+
+
+def _one_by_one(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
+    """Do the steps as listed, one after the other; without enough tools, say how many that takes."""
+    spans = [(use.name, min(use.steps), max(use.steps)) for use in task.uses]
+    needed = {
+        name: max(
+            sum(each == name and first <= step <= last for each, first, last in spans)
+            for step in range(len(task.lengths))
+        )
+        for name in task.counts
+    }
+    lacking = {name: number for name, number in needed.items() if number > task.counts[name]}
+    starts = tuple(accumulate(task.lengths[:-1], initial=0)) if task.lengths else ()
+    return (None, lacking) if lacking else (starts, {})
 
 
 def _length(task: ScheduleTask, starts: Sequence[int]) -> int:

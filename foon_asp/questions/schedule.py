@@ -51,9 +51,10 @@ class Schedule(Result):
     ``status`` says what is proved: that the schedule is a shortest one (``optimal``), or that there is none
     (``infeasible``). ``timetable`` has the steps of the plan, in its order, and is empty without a schedule.
     ``makespan`` and ``lower_bound`` are in seconds: how long it takes, ``None`` without a schedule, and what
-    none takes less than. ``lacking`` says of how many tools there would have to be more, at least, so that
-    there is one. ``means`` is what there is to work with, and ``after`` has for each step those that it
-    waits for, by position. ``stopped`` is the limit that came first, in words, if one did.
+    none takes less than. ``lacking`` says how many there would have to be of some tools, so that there is
+    one: at least, where it is proved that there is none, and else how many are enough. ``means`` is what
+    there is to work with, and ``after`` has for each step those that it waits for, by position. ``stopped``
+    is the limit that came first, in words, if one did.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -173,7 +174,10 @@ class Schedule(Result):
             lines.append("if the kitchen has as many of them, say so in a file for --tools:")
             lines += [f"  {name}\t{needed}" for name, needed in self.lacking.items()]
         else:
-            lines.append(f"no schedule found for {agents}")
+            lines.append(
+                f"no schedule found for {agents}; with so many tools there is one (a file for --tools):"
+            )
+            lines += [f"  {name}\t{needed}" for name, needed in self.lacking.items()]
         if self.status in {Status.FEASIBLE, Status.UNKNOWN}:
             lines.append(f"none takes less than {time_text(self.lower_bound)}; stopped by {self.stopped}")
         return [*lines, ""] if self.timetable else lines
