@@ -447,7 +447,7 @@ COLOURS = """(() => {
 
 def test_colours_of_a_network_can_be_chosen(chromium: Browser, shown: Callable[..., Path]) -> None:
     chromium.size(1440, 900)
-    chromium.open(shown("macaroni", beside=["network"]))
+    chromium.open(shown("macaroni", beside=["network", "proof"]))
     chromium.run(
         "[...document.querySelectorAll('[role=tab]')].find(t => t.textContent === 'The network').click()"
     )
@@ -463,6 +463,11 @@ def test_colours_of_a_network_can_be_chosen(chromium: Browser, shown: Callable[.
         assert chromium.run(COLOURS) > 20
     lit = int(texts(chromium, HERE + ".bar output")[0].split()[0])
     assert lit > 2 * drawn
+    chromium.run("{" + choose.format("cuts") + "}")
+    assert texts(chromium, HERE + ".bar output") == ["1 of 9, weight 1: 1 of 9"]
+    last = "const r = document.querySelector('[aria-label=Cut]'); r.value = 9;"
+    chromium.run("{" + last + "r.dispatchEvent(new Event('input'))}")
+    assert texts(chromium, HERE + ".bar output") == ["9 of 9, weight 1: 9 of 9"]
     chromium.run("{" + choose.format("recipes") + "}")
     chromium.run("document.querySelector('main:not([hidden]) aside section .item').click()")
     assert texts(chromium, HERE + "aside [aria-pressed=true]") != []

@@ -105,11 +105,15 @@ class NetworkPanel {
     const tool = (text, help, act) => el("button", { type: "button", title: help, "aria-label": help, click: act }, text);
     const modes = [["recipes", graph.named ? "recipes" : "parts that hang together"], ["reach", "kitchen and what can be made"], ["kinds", "units and objects"]];
     if (data.answer?.units?.length) modes.push(["tree", "the tree in the network"]);
+    this.cuts = (data.proof?.cases.length === 1 ? data.proof.cases[0].cuts : []).filter((cut) => cut.weight !== null);
+    if (this.cuts.length) modes.push(["cuts", "the cuts of the proof"]);
+    this.cutRange = el("input", { type: "range", min: 1, max: this.cuts.length, value: 1, step: 1, "aria-label": "Cut", input: () => this.light() });
+    this.cut = el("label", { class: "far" }, "cut ", this.cutRange);
     const select = el("select", { "aria-label": "Colours", change: () => { this.mode = select.value; this.light(); this.legend(); } }, modes.map(([value, name]) => el("option", { value, selected: value === this.mode }, name)));
     this.range = el("input", { type: "range", min: 0, max: 8, value: 1, step: 1, "aria-label": "How far around the chosen node", input: () => { this.depth = Number(this.range.value); this.light(); } });
     this.said = el("output", {});
     this.far = el("label", { class: "far" }, "neighbours up to ", this.range);
-    const bar = el("div", { class: "bar" }, select, this.far, this.said, el("span", { class: "gap" }),
+    const bar = el("div", { class: "bar" }, select, this.far, this.cut, this.said, el("span", { class: "gap" }),
       tool("−", "Smaller", () => this.zoom(0.8)), tool("+", "Larger", () => this.zoom(1.25)), tool("Fit", "Show it all", () => this.fit()),
       tool("PNG", "Save what is seen as PNG", () => this.canvas.toBlob((blob) => save(blob, "network.png"))));
     this.side = el("aside", { "aria-label": "The network in words" });
@@ -322,6 +326,7 @@ class NetworkPanel {
   light() {
     const { graph } = this;
     this.far.hidden = this.chosen === null;
+    this.cut.hidden = this.chosen !== null || this.mode !== "cuts";
     if (this.chosen !== null) {
       this.lit = graph.around(this.chosen, this.depth);
       this.said.textContent = `${this.depth} · ${counted(this.lit.size, "node")}`;
@@ -330,6 +335,14 @@ class NetworkPanel {
       const mine = data.answer.units.map((unit) => here.get(unit.id)).filter((u) => u !== undefined);
       this.lit = new Set([...mine, ...mine.flatMap((u) => graph.near[u])]);
       this.said.textContent = counted(this.lit.size, "node");
+    } else if (this.mode === "cuts") {
+      const at = Number(this.cutRange.value);
+      const cut = this.cuts[at - 1];
+      const units = new Map(graph.units.map((unit, u) => [unit.id, u]));
+      const objects = new Map(graph.objects.map((node, o) => [node.id, graph.units.length + o]));
+      this.lit = new Set([...cut.members.map((id) => units.get(id)), ...cut.nodes.map((id) => objects.get(id))]);
+      const sum = this.cuts.slice(0, at).reduce((total, each) => total + each.weight, 0);
+      this.said.textContent = `${at} of ${this.cuts.length}, weight ${+cut.weight.toPrecision(4)}: ${+sum.toPrecision(4)} of ${+data.proof.cost.toPrecision(4)}`;
     } else {
       this.lit = this.only === undefined ? null : new Set(graph.groups[this.only].units.flatMap((u) => [u, ...graph.near[u]]));
       this.said.textContent = "";
@@ -355,6 +368,7 @@ class NetworkPanel {
       this.only = undefined;
       const words = this.mode === "reach"
         ? [["--goal", "in the kitchen"], ["--object-line", "can be made"], ["--motion", "unit that can be done"], ["--rule", "out of reach"]]
+        : this.mode === "cuts" ? [["--motion", "unit that crosses the cut: every tree has one of these"], ["--object-line", "object in the cut"]]
         : [["--motion", "unit"], ["--object-line", "object node"]];
       shown = el("div", { class: "legend" }, words.map(([name, text]) => swatch(this.colour(name), text)));
     }
