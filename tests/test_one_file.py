@@ -128,6 +128,14 @@ def test_rates_matter_where_success_is_asked(cli: Cli, recipe: Path) -> None:
         assert "success is left out, since no success rates are given" in ran.err
     ran = cli("compare", recipe)
     assert ran.code == 0
+    assert f"what is marked as a goal in the files: {EGG}" in ran.err
+    script = recipe.with_name("script.txt")
+    script.write_text("solve\n", encoding="utf-8")
+    ran = cli("shell", script, "--network", recipe)
+    assert ran.code == 0
+    assert "no kitchen is given" in ran.err
+    assert "optimal by units" in ran.out
+    ran = cli("compare", recipe)
     assert "greedy-success" in ran.err
     assert "greedy-success" not in ran.out
     rates = recipe.with_name("rates.txt")

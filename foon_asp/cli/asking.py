@@ -21,7 +21,7 @@ from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.index import module_name, question_name
-from foon_asp.questions.posing import DATA, each_goal, one_problem
+from foon_asp.questions.posing import DATA, no_data, one_problem
 from foon_asp.questions.result import Result
 
 
@@ -67,16 +67,16 @@ def ask(
 def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
     asked = parameters(question, given, Part.PROBLEM)
-    unnamed = (
-        "goals_named" in asked and not asked["goals_named"] and question.pose in {one_problem, each_goal}
-    )
+    unnamed = question.pose is not no_data and asked.get("goals_named") == ()
     goals = command.dataset.assumed_goals() if unnamed else []
-    if len(goals) < 2 or question.pose is each_goal:
+    if len(goals) < 2 or question.pose is not one_problem:
         posed = [question.pose(command, **asked)]
     else:
         _refuse_one_file(question, given)
         posed = [question.pose(command, **asked | {"goals_named": [goal]}) for goal in goals]
     problems = [each for about in posed for each in about if isinstance(each, Problem)]
+    if {goal for problem in problems for goal in problem.goal_nodes} != set(goals):
+        goals = []  # it is about others
     if problems and (goals or not command.dataset.has_kitchen):
         from foon_asp.dataset.assumed import goal_lines, kitchen_lines
 

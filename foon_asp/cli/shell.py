@@ -59,6 +59,9 @@ def command(
     """
     from_terminal = script is None and sys.stdin.isatty() and sys.stdout.isatty()
     dataset = options.read_dataset(lenient=lenient, level=level, **data)  # type: ignore[arg-type]
+    if not dataset.has_kitchen:
+        text = "warning: no kitchen is given, so what no unit makes is at hand; the word kitchen lists it"
+        click.echo(text, err=True)
     session = ShellSession(dataset, lenient, level, encodings)
     session.files += read_files()
     session.containers = ContainerRule(containers)
