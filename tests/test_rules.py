@@ -18,6 +18,7 @@ from foon_asp.encoding.encoding_file import included_files
 from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import bundled_kitchen, encodings_folder
+from foon_asp.rules.constraint import given_constraint
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import find_goal
@@ -260,6 +261,15 @@ def test_what_clingo_would_leave_out_is_an_error(
         source = raised.value.diagnostics[0].source
         assert (Path(source.file), source.line, source.column) == (mine, 1, column)
         assert "clingo would leave this out" in raised.value.diagnostics[0].message
+
+
+@pytest.mark.parametrize("weight", ["N-40", "-1"])
+def test_a_weight_below_0_where_none_counts(weight: str, ice: Problem) -> None:
+    rule = given_constraint(f":- #sum+ {{ {weight},U : use(U), inputs(U,N) }} > 20.")
+    with pytest.raises(InputError) as raised:
+        solve(ice, [Objective.UNITS], Settings((rule,)))
+    assert "is below 0, which #sum+ counts as nothing" in raised.value.diagnostics[0].message
+    assert "not a number" not in str(raised.value)
 
 
 def test_it_is_one_in_soft_constraints_and_clashes(ice: Problem, tmp_path: Path) -> None:

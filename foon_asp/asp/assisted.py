@@ -2,11 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 
-from foon_asp.asp.settings import Bounded
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.settings import Bounded, Settings
 from foon_asp.encoding.facts import write_assisted
 from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.errors import UserError
+from foon_asp.grounding.stated import Stated
 from foon_asp.rules.constraint import Constraint, find_constraint
 
+# What rules may look at in this question is as near to a unit as its motion.
+_AS_FACTS = "_by_person(U) :- motion(U,_). _takes_over(P,U) :- motion(P,M), motion(U,M), P < U."
 _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
 
@@ -31,3 +36,24 @@ def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
 
     files = loaded([*map(find_constraint, constraints)]).values()
     return any(_OF_DOERS & read_encoding(rules).used.keys() for rules in files)
+
+
+def require_near(settings: Settings) -> None:
+    """Require that constraints look at nothing beyond the tree, where units are there twice.
+
+    Raises :class:`UserError` with the place of a rule that does.
+    """
+    from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
+    from foon_asp.rules.rules import Rules  # noqa: PLC0415
+    from foon_asp.rules.stating import loaded  # noqa: PLC0415
+
+    program = assemble(settings, lambda _: None)
+    files = loaded([*map(find_constraint, settings.constraints)]).values()
+    encodings = [read_encoding(rules) for rules in (*files, Stated("a person", _AS_FACTS))]
+    for told in Rules(encodings, program.constants[1::2]).told:
+        if not told.rule.local:
+            raise UserError(
+                f"{told.source}: this rule looks at units that the tree need not have ({told.rule.further}). "
+                "Beside a rule about who does a unit it would see those twice that a person does better: ask "
+                "it about units that are used, or leave one of the two out"
+            )

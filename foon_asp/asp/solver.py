@@ -23,7 +23,8 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.grounding.run import Run
 
 _NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
-_LOOSE = 3  # times that trees with loose ends are looked for, with ever fewer of these
+_LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer of these
+_MANY = 3000  # units that are known then, at most about
 _MORE = 4  # times as many, where there is none
 
 Units = frozenset[int]
@@ -235,7 +236,8 @@ class _Solver:
         sets = wide.landmarks()
         text = write_objectives(self.levels)
         text += write_required([map(number, sorted(each)) for each in sets])
-        known = set(tree).union(*(each for each in sets if len(each) <= _NEAR))
+        first = tree.union(*(each for each in sets if len(each) <= _NEAR))
+        known = wide.with_only_makers(first, _MANY)
         for _ in range(_LOOSE):
             self._look_at(known.union(wide.makers(known), *sets))
             asked = replace(self.first, program=program._replace(files=files))
@@ -243,12 +245,10 @@ class _Solver:
             if not ended.exhausted or ended.units is None:
                 return ended if ended.exhausted else None
             ended.units = self._ids(ended.units)
-            fresh, most = set(ended.units - known), _MORE * len(known)
-            if not fresh:
-                return ended
-            while fresh and len(known) < most:  # what they need, and what that needs
-                known |= fresh
-                fresh = wide.makers(fresh) - known
+            if ended.units <= known or len(known) > _MANY:
+                return ended if ended.units <= known else None
+            fresh = wide.beside(ended.units - known)
+            known |= wide.with_only_makers(fresh | wide.makers(fresh), _MANY)
         return None
 
     def _look_at(self, units: Collection[int]) -> None:

@@ -56,6 +56,7 @@ _CODES = {ASTType.Minimize: "minimize", ASTType.Program: "program-part"}
 # A message of clingo: file, line and column of what it is about, its kind, and its first line.
 _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<kind>\w+): (?P<text>.*)")
 _STRING = re.compile(r'"([^"\\]|\\["\\n])*"')  # as clingo reads one
+_NEGATIVE = re.compile(r"-\d+(,|$)")  # the weight of an element
 _ESCAPED = re.compile(r"\\(.)")
 _EXAMPLE = ':- use(U), motion(U,"fry").'
 _WORD = re.compile(r"[a-z][A-Za-z0-9_]*")
@@ -491,6 +492,11 @@ def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ())
 def _left_out(what: str, part: str) -> str:
     """Explain why clingo would leave out a part of a program."""
     no_value = f"a term has no value here: {part.removeprefix('(').removesuffix(')')}"
+    if what == "tuple ignored" and _NEGATIVE.match(part):
+        return (
+            f"the weight in {part} is below 0, which #sum+ counts as nothing; clingo would leave this out "
+            "silently: use #sum, or a condition that keeps such weights out"
+        )
     reason = {
         "operation undefined": no_value,
         "interval undefined": no_value,

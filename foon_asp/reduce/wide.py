@@ -44,6 +44,25 @@ class Wide:
         needed = {o for unit in units for o in graph.needs[unit] if o not in kitchen}
         return {maker for o in needed.union(graph.goals) for maker in graph.makers[o]}
 
+    def beside(self, units: Iterable[int]) -> set[int]:
+        """Give units with all others that make one of the same things."""
+        graph, kitchen = self.graph, self.problem.kitchen
+        made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
+        return {maker for o in made for maker in graph.makers[o]}
+
+    def with_only_makers(self, units: Iterable[int], most: int) -> set[int]:
+        """Give units with all that they build upon without a choice, or part of it beyond ``most``."""
+        graph, kitchen = self.graph, self.problem.kitchen
+        found, waiting = set(units), list(units)
+        while waiting and len(found) < most:
+            for o in graph.needs[waiting.pop()]:
+                if o not in kitchen and len(graph.makers[o]) == 1:
+                    [maker] = graph.makers[o]
+                    if maker not in found:
+                        found.add(maker)
+                        waiting.append(maker)
+        return found
+
     def total(self, units: Iterable[int]) -> int:
         """Give what a tree costs, with the items that it takes where these are counted."""
         tree = set(units)

@@ -8,7 +8,7 @@ from itertools import count
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-from foon_asp.asp.assisted import assisted, sees_who_does_it
+from foon_asp.asp.assisted import assisted, require_near, sees_who_does_it
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.ranking import Ranked
 from foon_asp.problem import Costs, Objective, Problem, reach, relevant
@@ -83,6 +83,8 @@ class Assistant:
         self._priced: PricedHelp | None = None
         if settings.replaced is None and not sees_who_does_it(settings.constraints):
             self._priced = PricedHelp(problem, self._better, self._unbounded, self._ranked)
+        elif settings.replaced is None:
+            require_near(settings)
         self._twins: Problem | None = None
 
     def rows(self, most: int | None, wanted: Fraction | None) -> Rows:
