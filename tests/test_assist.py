@@ -494,7 +494,7 @@ def test_units_with_rates_of_their_own(rule: ContainerRule) -> None:
 
 
 def test_a_rule_that_would_see_units_twice_is_refused(cli: Cli) -> None:
-    """A unit that the person does better is there twice for rules about rates: a count of all units is off."""
+    """For rules about rates, a unit that the person does better is there twice: a count of all is off."""
     few = ":- use(U), motion(U,M), #count { V : motion(V,M) } < 2."
     slow, knife = ":- use(U), rate(U,N), N < 300000.", ":- use(U), not _by_person(U), motion(U,M), rate(U,1)."
     asked = ["assist", "--goal", "macaroni", "--assist", 1]
@@ -502,5 +502,5 @@ def test_a_rule_that_would_see_units_twice_is_refused(cli: Cli) -> None:
     assert cli(*asked, "--rule", slow, "--rule", knife).code == 0
     ran = cli(*asked, "--rule", slow, "--rule", few)
     assert ran.code == 2
-    assert "error: rule 2:1:1: this rule looks at units that the tree need not have" in ran.err
+    assert "error: rule 2:1: this rule looks at units that the tree need not have" in ran.err
     assert "it would see those twice that a person does better" in ran.err

@@ -444,3 +444,10 @@ def test_questions_take_rules(verb: str, cli: Cli) -> None:
     plain = cli(verb, "--goal", "ice", *words, "--constraint", "forbid_motion:forbidden_motion=crush")
     assert (rule.code, rule.out) == (plain.code, plain.out)
     assert "/tmp" not in rule.err
+
+
+@pytest.mark.parametrize("verb", ["alternatives", "pareto", "sensitivity", "optima"])
+def test_rules_are_taken_as_they_were_read(verb: str, cli: Cli) -> None:
+    """A command hands on what it read, which is no text any more; Python is told what it takes."""
+    crush, use = ':- use(U), motion(U,"crush").', "forbid_motion:forbidden_motion=grate"
+    assert cli(verb, "--goal", "ice", "--rule", crush, "--constraint", use).code == 0

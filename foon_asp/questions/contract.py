@@ -135,8 +135,9 @@ def question(
         names = {option.name for option in options}
         if not used_up and "items" not in names:
             ask = _for_lasting_items(ask)
+        typed_in = command or ask  # a command line has read its values already, rules among them
         ask = in_hand("time_limit" in names)(ask)
-        ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, command or ask)
+        ask.__dict__["question"] = Question(options, help_, formats, suffixes or {}, pose, typed_in)
         return described(*options)(ask)
 
     return decorate
