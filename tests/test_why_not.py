@@ -202,6 +202,19 @@ def test_exit_codes(cli: Cli) -> None:
     assert "there is a task tree" in cli("why-not", "--goal", "ice", "--encodings", "by_need").out
 
 
+def test_causes_that_are_not_shown_are_counted() -> None:
+    builder = NetworkBuilder()
+    soup = ObjectNode.of("soup")
+    for count in (1, 12):
+        missing = [ObjectNode.of(f"herb {count} {number}") for number in range(count)]
+        builder.add("cook", missing, [soup], Source("soup", count))
+    network = builder.build()
+    goal = network.object_id(soup)
+    assert goal is not None
+    said = why_not(Problem(network, frozenset(), (goal,), None, frozenset())).text()
+    assert "\n12 more behind other units; --format json lists all\n" in said
+
+
 def test_the_last_line_is_the_cheapest_fix(cli: Cli) -> None:
     ran = cli("why-not", "--goal", "hot cocoa")
     fix = "cheapest fix: add cocoa tin; contains {cocoa powder} (foon-asp shopping-list says more)"

@@ -96,8 +96,7 @@ class Explanation(Result):
         for root in shown:
             yield from _root_lines(self.problem, root, numbers[root.object])
         if len(self.roots) > len(shown):
-            more = counted(len(self.roots) - len(shown), "more")
-            yield f"{more} behind other units; --format json lists all"
+            yield f"{len(self.roots) - len(shown)} more behind other units; --format json lists all"
         yield _fix_line(self.problem, self.fix)
 
     def json_dict(self) -> object:
