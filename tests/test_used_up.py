@@ -16,11 +16,12 @@ from foon_asp import ObjectNode, Source, UserError, parse_node
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.deadline import Deadline
-from foon_asp.problem import Fate, Objective, Problem, UsedUp, levels
+from foon_asp.problem import Fate, Objective, Problem, UsedUp, levels, parse_objectives
 from foon_asp.problem.items import fate
 from foon_asp.proof.replay import replay_for
 from foon_asp.resources import bundled_kitchen
 from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.measure import read_measures
 from foon_asp.text.item_list import read_stays, read_stock
 from tests.conftest import Cli
 from tests.used_up_oracle import UTENSILS, key, plans, random_problem, stays
@@ -322,10 +323,10 @@ def test_other_questions_say_by_name_that_they_are_not_built_for_it(cli: Cli) ->
         foon_asp.pareto(problem)
     with pytest.raises(UserError, match=r"^why-not is not built"):
         foon_asp.why_not(problem)
-    ran = cli("regret", "--goal", "ice", "--items", "used-up")
+    ran = cli("assist", "--goal", "ice", "--items", "used-up")
     assert (ran.code, ran.err) == (
         2,
-        "error: regret is not built for items that are used up (--items used-up)\n",
+        "error: assist is not built for items that are used up (--items used-up)\n",
     )
     for words in (("--soft", "forbid_motion=3"), ("--cross-check",), ("--certificate", "x.json")):
         ran = cli("solve", "--goal", "ice", "--items", "used-up", *words)
@@ -571,3 +572,47 @@ def test_rules_on_many_small_networks() -> None:
     statuses = Counter(map(hold_under_a_rule, range(22, 700)))
     assert statuses[Status.UNKNOWN] + statuses[Status.FEASIBLE] < 20
     assert min(statuses[Status.OPTIMAL], statuses[Status.INFEASIBLE]) > 100
+
+
+REST = 'cost(mess,U,N) :- unit(U), not motion(U,"a"), N = #count { O : output(U,O) }.'
+
+
+@pytest.mark.parametrize("seed", range(100, 112))
+def test_measures_of_the_users_own_count_each_execution(seed: int) -> None:
+    measures = read_measures([f'cost(mess,U,"{seed % 3}.5") :- unit(U), motion(U,"a"). {REST}'])
+    problem = replace(random_problem(seed), measures=measures)
+    objectives = parse_objectives(["mess"], measures)
+    network = problem.network
+
+    def mess(counts: Counter[int]) -> Fraction:
+        dirty = seed % 3 + Fraction(1, 2)
+        each = {
+            u: dirty if motion == "a" else len(network.outputs[u]) for u, motion in enumerate(network.motions)
+        }
+        return sum((n * Fraction(each[u]) for u, n in counts.items()), Fraction(0))
+
+    best = min((mess(counts) for counts, _ in plans(problem, _LONGEST)), default=None)
+    outcome = solve(problem, objectives)
+    if outcome.costs is None:
+        assert (outcome.status, best) == (Status.INFEASIBLE, None)
+    else:
+        assert outcome.status is Status.OPTIMAL
+        assert outcome.costs.measure(objectives[0]) == mess(Counter(outcome.units)) == best
+
+
+@pytest.mark.parametrize("seed", [1, 21, 102, 292])
+def test_what_units_and_items_are_worth(seed: int) -> None:
+    problem = random_problem(seed)
+    found = foon_asp.regret(problem, "inputs")
+    assert found.regrets
+    asked = levels((Objective.INPUTS,))
+    for each in found.regrets:
+        unit = each.id if str(each.part) == "unit" else None
+        fewer = problem if unit is not None else replace(problem, kitchen=problem.kitchen - {each.id})
+        left = [plan for plan in plans(fewer, _LONGEST) if unit not in plan[0]]
+        best = min((key(problem, *plan, asked) for plan in left), default=None)
+        if each.costs is None:
+            assert (each.status, best) == (Status.INFEASIBLE, None)
+        else:
+            assert each.status is Status.OPTIMAL
+            assert each.costs.units > _LONGEST or tuple(map(Fraction, each.costs.key(asked))) == best

@@ -24,7 +24,7 @@ from foon_asp.questions.arguments import Constants, Objectives, asked_with, chos
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.in_hand import OnProgress
-from foon_asp.questions.options import HOW, TREE
+from foon_asp.questions.options import HOW, ITEMS, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import costs_text, goal_lines, headline, success_text
 
@@ -114,6 +114,7 @@ class Regrets(WithOutcome):
 
 @question(
     *TREE,
+    *ITEMS,
     Option(
         "units",
         "The id of a unit to ask about as well.",
@@ -266,7 +267,7 @@ def _lines(best: Answer, regret: Regret) -> Iterator[str]:
 
 def _loss(best: Answer, regret: Regret) -> str:
     if regret.status is Status.INFEASIBLE:
-        return "no tree "
+        return "no tree " if best.problem.items is None else "no plan "
     if regret.status is not Status.OPTIMAL:
         return "unknown "
     first = best.objectives[0]
