@@ -616,3 +616,22 @@ def test_what_units_and_items_are_worth(seed: int) -> None:
         else:
             assert each.status is Status.OPTIMAL
             assert each.costs.units > _LONGEST or tuple(map(Fraction, each.costs.key(asked))) == best
+
+
+@pytest.mark.parametrize("seed", [102, 266, 503])
+def test_all_optimal_plans_are_found(seed: int) -> None:
+    problem, objectives = random_problem(seed), OBJECTIVES[seed % len(OBJECTIVES)]
+    asked = levels(objectives)
+    found = foon_asp.alternatives(problem, objectives)
+    assert found.complete
+    assert len(found.optimal) == len(found.trees) > 1
+    best = found.trees[0].costs.key(asked)
+    expected = {
+        tuple(sorted(counts.items()))
+        for counts, kitchen in plans(problem, found.trees[0].costs.units)
+        if key(problem, counts, kitchen, asked) == tuple(map(Fraction, best))
+    }
+    assert {tuple(sorted(Counter(tree.units).items())) for tree in found.trees} == expected
+    assert all(replay_for(problem, problem.tree(tree.units)).shortage is None for tree in found.trees)
+    first = foon_asp.alternatives(problem, objectives, limit=1)
+    assert (len(first.trees), first.complete) == (1, False)

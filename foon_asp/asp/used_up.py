@@ -86,6 +86,45 @@ def most_executions(
     return {u: (0, outcome.costs.units if cap is None else cap) for u, cap in zip(units, caps, strict=True)}
 
 
+def best_plans(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    settings: Settings,
+    reporter: Reporter,
+    most: int,
+) -> tuple[list[tuple[Plan, Costs]], bool, bool]:
+    """Give plans that are best, none of which executes each unit as often as another does; at most so many.
+
+    Then whether the first is proved the best, and whether there are no others.
+    """
+    solver = _solver(problem, tuple(objectives), settings, reporter)
+    outcome = solver.solve()
+    if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
+        known = [] if outcome.units is None or outcome.costs is None else [(outcome.units, outcome.costs)]
+        return known, False, outcome.status is Status.INFEASIBLE
+    units, best = solver._cut() or [], outcome.costs
+    counting = _Counting(solver, units)
+    counting.bound.derivation = [a for a, unit in enumerate(units) if unit in outcome.units]
+    found = {frozenset(Counter(outcome.units).items()): outcome.units}
+
+    def ask(counts: Counts) -> None:
+        plan = counting.order(counts)
+        if plan is not None and problem.costs(plan).key(solver.levels) == best.key(solver.levels):
+            found.setdefault(frozenset(Counter(plan).items()), plan)
+            if len(found) > most:
+                raise Stopped
+
+    complete = True
+    try:
+        if units:
+            counting.bound.every([counting.level(each, best) for each in solver.levels], ask)
+    except (Stopped, KeyboardInterrupt) as stop:
+        complete = False
+        if isinstance(stop, KeyboardInterrupt):
+            solver.deadline.interrupt()
+    return [(plan, problem.costs(plan)) for plan in list(found.values())[:most]], True, complete
+
+
 def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
     """Give units, repeats included, in an order in which a plan runs; ``None`` where none does."""
     solver = _solver(problem, (Objective.UNITS,), Settings(), Reporter())

@@ -215,6 +215,20 @@ class CountBound:
         for place in range(len(levels)):
             self._prove(levels[:place], levels[place], is_better)
 
+    def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
+        """Ask about all counts that may be those of a plan as good as the one in hand, by each level.
+
+        Costs of the last level are whole numbers. Raises :class:`Stopped`.
+        """
+        *before, last = levels
+        worse = last._replace(cost=last.cost + 1, most=last.most + 1)
+
+        def asked(counts: Counts) -> bool:
+            ask(counts)
+            return False
+
+        self._prove(before, worse, asked)
+
     def _prove(self, before: Sequence[Level], level: Level, is_better: Callable[[Counts], bool]) -> None:
         model = _Model(self, [each.measure for each in (*before, level)])
         for each in before:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.asp.ranking import Ranked
+from foon_asp.asp.used_up import best_plans
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, mention_json, nodes_json, steps_json
@@ -26,9 +27,9 @@ from foon_asp.questions.arguments import (
     settings,
 )
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import Kind, Option, not_built, question
 from foon_asp.questions.in_hand import OnProgress
-from foon_asp.questions.options import HOW, TREE
+from foon_asp.questions.options import HOW, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, goal_lines, unit_lines
@@ -195,6 +196,7 @@ class Alternatives(Result):
 
 @question(
     *TREE,
+    *ITEMS,
     Option("best", "Find this many of the best trees, in order.", Kind.WHOLE, metavar="K", least=1),
     Option(
         "different",
@@ -222,7 +224,8 @@ class Alternatives(Result):
     foon-asp alternatives --goal macaroni --different 3 --within 20
 
     A tree that contains all units of another listed tree is not listed. Trees are
-    found one by one in order of their costs, which are compared exactly.
+    found one by one in order of their costs, which are compared exactly. With --items used-up, the plans
+    listed are the optimal ones that execute units differently often.
 
     Exits with 0 when all trees that were asked for are listed, 1 when there is no tree, 3 when a limit
     came first.
@@ -327,6 +330,12 @@ def _ranked(
 
     ``None`` allows any tree. With ``worse`` 0 only optimal trees are taken, by the whole list of objectives.
     """
+    if problem.items is not None:
+        if worse != 0:
+            raise not_built("alternatives --best and --different")
+        plans, proved, complete = best_plans(problem, objectives, how, caller().reporter, most)
+        given = tuple(Alternative(plan, costs) for plan, costs in plans)
+        return Alternatives(problem, objectives, given, complete, unproved=0 if proved else len(given))
     order = levels(objectives)
     ranked = Ranked(problem, objectives, how, caller().reporter)
     trees: list[Alternative] = []
