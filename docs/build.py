@@ -37,6 +37,7 @@ PAGES = {
         "docs/batch",
         "docs/store",
         "docs/pddl",
+        "docs/programs",
         "docs/entry-points",
         "docs/api",
     ),
