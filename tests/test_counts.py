@@ -227,7 +227,7 @@ def test_a_circle_does_not_make_itself() -> None:
     assert circle.counts([UNITS]) is None
     costs = Measure([1, 1, 5])
     bound = CountBound(flows("1*>0", "0*>1", ">0"))
-    assert not bound.none()
+    assert bound.none() is False
     assert bound.counts([costs]) == {2: 1}
     assert proves(bound, whole(costs, 5)) == []
     assert better(bound, whole(costs, 6)) == {2: 1}
@@ -409,8 +409,12 @@ def test_landmarks_of_targets_are_cut_where_they_are_hit_in_part() -> None:
     assert bound._separate(x, model, at_root=True)
     assert sorted(landmark.members for landmark in bound._landmarks) == [(0, 1), (0, 2), (1, 2)]
     assert rows(model)[len(before) :] == [({3: 1, 4: 1}, 1), ({3: 1, 5: 1}, 1), ({4: 1, 5: 1}, 1)]
-    assert not bound._separate([1.0] * 6, model, at_root=True)
-    assert not CountBound(half)._separate(x, model, at_root=True)  # without a derivation
+    assert bound._separate([1.0] * 6, model, at_root=True) is False
+    none_left = flows(">1", "1*>0", start={1: 0})
+    bound = CountBound(none_left, derivation=[0, 1])
+    assert bound._separate([0.5, 0.5, 0.0, 0.0], _Model(bound, []), at_root=True)
+    assert {landmark.members for landmark in bound._landmarks} == {(0,), (1,)}
+    assert CountBound(half)._separate(x, model, at_root=True) is False  # without a derivation
     assert not CountBound(flows(">0", start={0: 1}), derivation=[0])._separate(x, model, at_root=True)
     assert not CountBound(flows("1>0"), derivation=[0])._separate(x, model, at_root=True)
 
@@ -521,6 +525,11 @@ def test_actions_that_cannot_be_executed_twice_are_found_at_the_root(
     assert tightened(flows("1*>0", "0*>1", ">0"), [1, 1, 5], 7, landmarks=1) == [7, 7, 1]
     reading = flows("1*>0", "0*>1", ">0", ">3", "3*>4", targets=(0, 4))
     assert tightened(reading, [1, 1, 2, 1, 1], 4, landmarks=1) == [4, 4, 2, 4, 1]
+    bound, seen = CountBound(once), list[int]()
+    with monkeypatch.context() as patched:
+        patched.setattr(CountBound, "_tighten_root", lambda _, __, ___, cutoff: seen.append(cutoff))
+        assert proves(bound, whole(Measure([1, 1]), 2)) == []
+    assert seen == [1]
     monkeypatch.setattr(counts_module, "_PROBES", 1)
     assert tightened(cutting, [1, 1, 1], 3) == [3, 1, 3]
 
@@ -594,6 +603,7 @@ def test_a_circle_that_is_met_later_is_left_out_as_well() -> None:
     hold(flows(">0", "2*>1", "1*>2", "1*>0"), whole(Measure([1, 1, 1, 1]), 5))
     hold(flows(">0", "2*>1", "1*>2", "1*>3", "3 >0"), whole(Measure([1, 1, 1, 1, 1]), 5))
     hold(flows("1*>0", "0*>1", ">1", start={1: 0}), whole(UNITS, 5))
+    hold(flows(">0", "4* 2*>1", "1*>2", ">2", start={4: 1}), whole(Measure([1, 1, 1, 1]), 5))
     hold(flows("4 1*>0", "0*>1", ">1", start={4: 2}), whole(UNITS, 5))
     hold(flows("100>0", "2*>1", "1*>2", "1*>0", start={2: 1}), whole(Measure([1, 1, 1, 1], 1), 5))
 

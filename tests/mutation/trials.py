@@ -93,6 +93,8 @@ class Trials:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Try mutants in place of running tests."""
+        import highspy  # noqa: F401, PLC0415  # slow to import, so not in every process anew
+
         self._items = {item.nodeid: item for item in session.items}
         self._places = {nodeid: place for place, nodeid in enumerate(self._items)}
         self._functions = _functions(self._texts)
