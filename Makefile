@@ -2,7 +2,7 @@
 # make docs   the documentation as a site, in site/html, with a reference made from the program
 # make test   the tests, in less than three minutes; make test-slow for the long ones
 # make test-lowest   the tests with the lowest versions of our dependencies that pyproject.toml allows
-# make coverage  which lines and branches of the package the tests reach, in one process: some minutes
+# make coverage  which lines of the package the tests reach: from Python 3.12 little slower than the tests
 # make mutants   changes the code on purpose, to see whether a test notices: hours, or with SAMPLE=600 ten minutes
 # make lint   style and types
 # make tables  after a change of the grammar of FOON text: the tables that are read in its place
@@ -41,8 +41,7 @@ test-slow: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES) -m slow
 
 coverage: $(VENV)/installed-dev
-	$(BIN)/coverage run -m pytest
-	$(BIN)/coverage report --skip-covered --sort=-miss
+	COVERAGE_CORE=sysmon $(BIN)/python -m pytest $(CORES) --cov --cov-report=term:skip-covered
 
 mutants: $(VENV)/installed-dev
 	$(BIN)/python -m tests.mutation $(if $(SAMPLE),--seconds $(SAMPLE))
