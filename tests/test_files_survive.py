@@ -211,6 +211,7 @@ def test_any_value_of_a_comparison_may_be_wrong(cli: Cli, tmp_path: Path, wrong:
                 "verdict": [None],
                 "order": [[]],
                 "measures": [{}],
+                "breaks": [["1", "2"]],
             }
             if wrong in may_be.get(key, []) or wrong == value:
                 continue
