@@ -27,7 +27,7 @@ from foon_asp.questions.arguments import (
     settings,
 )
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, not_built, question
+from foon_asp.questions.contract import TABLES, Kind, Option, not_built, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
@@ -217,6 +217,7 @@ class Alternatives(Result):
         "limit", "The greatest number of trees to look at.", Kind.WHOLE, default=100, metavar="N", least=1
     ),
     *HOW,
+    formats=TABLES,
     help_="""
     \b
     foon-asp alternatives --goal macaroni             every optimal tree, and what all of them have

@@ -13,6 +13,9 @@ from foon_asp.questions.in_hand import HELP, in_hand
 from foon_asp.questions.posing import Pose, one_problem
 from foon_asp.questions.result import Result
 
+TABLES = ("text", "json", "csv", "markdown")
+"""The formats of a result that lists things: a row for each."""
+
 P = ParamSpec("P")
 T = TypeVar("T")
 R = TypeVar("R", bound=Result)

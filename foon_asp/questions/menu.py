@@ -15,7 +15,7 @@ from foon_asp.problem import Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import question
+from foon_asp.questions.contract import TABLES, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending, Result
@@ -99,6 +99,7 @@ class Menu(Result):
 @question(
     *TREE,
     *HOW,
+    formats=TABLES,
     help_="""
     \b
     foon-asp menu --goal macaroni --goal omelet

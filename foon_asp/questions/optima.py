@@ -18,7 +18,7 @@ from foon_asp.questions.arguments import (
     usual_objectives,
 )
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import question
+from foon_asp.questions.contract import TABLES, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES, RULES
 from foon_asp.questions.posing import each_goal
@@ -77,6 +77,7 @@ class Optima(Result):
     *ITEMS,
     *RULES,
     *EACH_LIMITS,
+    formats=TABLES,
     help_="""
     The limits are for each answer. Exits with 0 when every answer is proved, a goal without a tree
     included, and with 3 when one was stopped at the limit.

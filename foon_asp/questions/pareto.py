@@ -26,7 +26,7 @@ from foon_asp.questions.arguments import (
     usual_objectives,
 )
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
@@ -182,6 +182,7 @@ class Front(Result):
         many=True,
     ),
     *HOW,
+    formats=TABLES,
     help_="""
     \b
     foon-asp pareto --goal macaroni                                  units against success

@@ -22,7 +22,7 @@ from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, ITEMS, TREE
 from foon_asp.questions.result import Ending
@@ -132,6 +132,7 @@ class Regrets(WithOutcome):
     ),
     Option("pairs", "Ask about pairs of kitchen items as well.", Kind.FLAG, default=False),
     *HOW,
+    formats=TABLES,
     help_="""
     \b
     foon-asp regret --goal macaroni

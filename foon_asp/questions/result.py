@@ -74,6 +74,18 @@ class Result:
 
         return frame(self.json())
 
+    def csv(self) -> str:
+        """Give a line for each thing that is listed, under headings, for a spreadsheet."""
+        from foon_asp.report.frame import csv_text  # noqa: PLC0415 (seldom asked for)
+
+        return csv_text(self.json())
+
+    def markdown(self) -> str:
+        """Give the same as a table in Markdown."""
+        from foon_asp.report.frame import markdown_text  # noqa: PLC0415 (seldom asked for)
+
+        return markdown_text(self.json())
+
     def foon(self) -> str:
         """Give the tree as FOON text.
 

@@ -22,7 +22,7 @@ from foon_asp.proof.timetable import Means, TimedStep, ToolName, timetable_fault
 from foon_asp.questions.answer import of_status
 from foon_asp.questions.arguments import at_least, begin
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS
 from foon_asp.questions.posing import Command
@@ -282,6 +282,7 @@ def _last_made(unit: FunctionalUnit) -> list[ObjectNode]:
     ),
     *LIMITS,
     pose=_posed,
+    formats=TABLES,
     help_="""
     \b
     foon-asp solve --goal 'greek salad' --items used-up --format json > plan.json

@@ -26,7 +26,7 @@ from foon_asp.problem.shop import Shop
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, at_least, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
@@ -177,6 +177,7 @@ class Shopping(WithOutcome):
     ),
     Option("lists", "How many lists to find, at most.", Kind.WHOLE, default=3, least=1),
     *HOW,
+    formats=TABLES,
     help_="""
     \b
     foon-asp shopping-list --goal 'hot cocoa'

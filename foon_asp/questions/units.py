@@ -9,7 +9,7 @@ from foon_asp.document.json_document import document, unit_json
 from foon_asp.foon import Foon
 from foon_asp.network import Network, ObjectNode
 from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
-from foon_asp.questions.contract import Kind, Option, Part, question
+from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
@@ -89,6 +89,7 @@ class Units(Result):
     ITEMS[2]._replace(
         help="Labels and object nodes that stay, or are used up, whatever the rule says.", part=Part.QUESTION
     ),
+    formats=TABLES,
     help_="""
     \b
     foon-asp units --explain-items

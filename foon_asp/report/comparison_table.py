@@ -65,7 +65,7 @@ def comparisons_markdown(comparisons: Sequence[Comparison]) -> str:
     """Give the same table as Markdown."""
     broken = _broken(comparisons)
     rows = [row for comparison in comparisons for row in _rows(comparison, broken)]
-    lines = [_markdown_row(_HEADINGS), "|---|---|--:|--:|--:|---|", *map(_markdown_row, rows)]
+    lines = [markdown_row(_HEADINGS), "|---|---|--:|--:|--:|---|", *map(markdown_row, rows)]
     return "\n".join([*lines, "", *(f"{note}  " for note in _notes(comparisons))]) + "\n"
 
 
@@ -91,11 +91,11 @@ def comparisons_csv(comparisons: Sequence[Comparison]) -> str:
                 row += ["" if measure is None else fraction_text(measure)]
                 row += ["" if optimum.value is None else fraction_text(optimum.value), optimum.status]
                 row += ["" if ratio is None else f"{float(ratio):.6g}"]
-            writer.writerow(map(_cell_text, row))
+            writer.writerow(map(cell_text, row))
     return file.getvalue()
 
 
-def _cell_text(text: str) -> str:
+def cell_text(text: str) -> str:
     """Give a cell that no spreadsheet takes for a formula: one that begins like it gets an apostrophe."""
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _NUMBER.fullmatch(text) else text
@@ -210,5 +210,6 @@ def _notes(comparisons: Sequence[Comparison]) -> list[str]:
     return notes
 
 
-def _markdown_row(cells: Sequence[str]) -> str:
+def markdown_row(cells: Sequence[str]) -> str:
+    """Give a row of a table in Markdown."""
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"

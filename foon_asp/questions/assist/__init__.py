@@ -15,7 +15,7 @@ from foon_asp.problem import Number, Objective, Problem, success_rate
 from foon_asp.questions.arguments import Constants, asked_with, at_least, settings
 from foon_asp.questions.assist.assistant import Assistant, Assisted
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
@@ -125,6 +125,7 @@ class Assistance(Result):
         Kind.FILE,
     ),
     *HOW,
+    formats=TABLES,
     help_="""
     \b
     foon-asp assist --goal macaroni               for every number that makes a difference

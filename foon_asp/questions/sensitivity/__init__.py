@@ -18,7 +18,7 @@ from foon_asp.problem.root import Root
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, asked_with, settings
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import question
+from foon_asp.questions.contract import TABLES, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending
@@ -86,6 +86,7 @@ class Sensitivity(WithOutcome):
     GOALS,
     CONTAINERS,
     *HOW,
+    formats=TABLES,
     help_="""
     \b
     foon-asp sensitivity --goal macaroni
