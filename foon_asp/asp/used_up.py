@@ -18,6 +18,7 @@ from foon_asp.asp.solver import solve as solve_lasting
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
 from foon_asp.encoding.exact_success import RateScale, rate_scale
 from foon_asp.errors import BugError, UserError
+from foon_asp.grounding.run import Run
 from foon_asp.problem import (
     Costs,
     Objective,
@@ -41,6 +42,8 @@ _FINE = 10**6  # steps of the greatest cost, where costs are rounded
 # and predicates of the first kind.
 _NOT_BUILT = ("before", "require_intermediate", "at_most_price")
 _NOT_READ = frozenset({"available", "executes", "taken", "makes"})
+_MANY = 10  # counts without an order, after which clingo looks at all that are left
+_MOST_AT_ONCE = 500  # executions that it can look at
 _MOST_COPIES = 4  # executions of a unit beyond its count, up to which a first plan is looked for
 
 
@@ -145,6 +148,10 @@ def _require_built(settings: Settings) -> None:
     ):
         if given is not None:
             raise UserError(f"{what} are not built for items that are used up")
+
+
+class _ManyError(Exception):
+    """Many counts have no order: clingo had better look at all of them at once."""
 
 
 class _Solver:
@@ -360,6 +367,7 @@ class _Counting:
             left=lambda: solver.deadline.left,
         )
         self._measures: dict[Objective, Measure] = {}
+        self._asked = -math.inf  # orders that were asked for in vain, where they are counted
 
     def measure(self, objective: Objective) -> Measure:
         """Give what each unit costs by an objective, once for each objective."""
@@ -423,7 +431,14 @@ class _Counting:
         """Prove that no plan is better than the best so far; raises :class:`BetterError` if one is."""
         assert self._solver.best is not None
         costs = self._solver.best[1]
-        self.bound.prove([self.level(objective, costs) for objective in self._solver.levels], self._is_better)
+        levels = [self.level(objective, costs) for objective in self._solver.levels]
+        self._asked = 0
+        try:
+            self.bound.prove(levels, self._is_better)
+        except _ManyError:
+            if not self._best_within_caps(levels[0]):
+                self._asked = -math.inf
+                self.bound.prove(levels, self._is_better)
 
     def none_is_left(self) -> bool:
         """Prove that no counts are those of a plan, where there are not too many; whether that is so.
@@ -449,7 +464,25 @@ class _Counting:
         least = Fraction(math.ceil(self.bound.proved)) / self._scale(objective)
         return {objective: int(least) if objective.row.whole else least}
 
+    def _best_within_caps(self, level: Level) -> bool:
+        """Let clingo prove that no plan is better, if all that is better is known to be within caps.
+
+        Whether that is proved. Raises :class:`BetterError` if one is.
+        """
+        caps = [cap for cap in self.bound.caps(level) if cap is not None]
+        if len(caps) < len(self._units) or sum(caps) > _MOST_AT_ONCE:
+            return False
+        if not all(each.row.whole for each in self._solver.levels):
+            return False
+        ended = self._ended({a: (0, cap) for a, cap in enumerate(caps)}, True)
+        if ended.units is not None and self._solver._take(self._sequence(ended)):
+            raise BetterError({})
+        return ended.exhausted and ended.units is not None
+
     def _is_better(self, counts: Counts) -> bool:
+        self._asked += 1
+        if self._asked > _MANY:
+            raise _ManyError
         plan = self.order(counts)
         return plan is not None and self._solver._take(plan)
 
@@ -468,6 +501,17 @@ class _Counting:
         return None
 
     def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
+        ended = self._ended(times, best)
+        if ended.units is None:
+            if not ended.exhausted:
+                raise Stopped
+            return None
+        return self._sequence(ended)
+
+    def _sequence(self, ended: Run) -> Plan:
+        return _sequence(self._problem, ended.rows["times"], ended.rows["_after"])
+
+    def _ended(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
         from foon_asp.encoding import facts, search  # noqa: PLC0415 (clingo, which not every question needs)
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
@@ -492,11 +536,7 @@ class _Counting:
         )
         solver.seconds["ground"] = solver.seconds.get("ground", 0.0) + ended.ground_seconds
         solver.seconds["solve"] = solver.seconds.get("solve", 0.0) + ended.solve_seconds
-        if ended.units is None:
-            if not ended.exhausted:
-                raise Stopped
-            return None
-        return _sequence(problem, ended.rows["times"], ended.rows["_after"])
+        return ended
 
 
 def _sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:
