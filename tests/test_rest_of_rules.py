@@ -2,15 +2,20 @@
 
 import random
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
-from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp import solver as solver_module
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.prepared import prepare
+from foon_asp.asp.solver import Reporter, _Heard, _Solver
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.rules.constraint import given_constraint
 from tests import oracle
 from tests.random_problems import MOTIONS, random_problem
+from tests.test_constraint_meanings import small
 
 OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS, Objective.KITCHEN)
 
@@ -50,3 +55,34 @@ def test_what_is_found_near_the_goals_is_the_best_of_all(part: int, monkeypatch:
         assert {*tree} in map(set, kept), seed
         assert oracle.key(problem, tree, [str(objective)]) == best, seed
     assert met[Status.OPTIMAL] > 2
+
+
+def test_what_was_found_among_few_units_is_held_against_all_that_may_be_better(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    problem = small("cut: start > a", "mix: a > b", "fry: b > end", "boil: start > end", "junk: start > x")
+    settings = Settings((given_constraint(':- use(U), motion(U,"boil"), not use(4).'),))
+
+    def begun() -> _Solver:
+        heard = _Heard(problem, (Objective.UNITS,), Reporter())
+        first = prepare(problem, (Objective.UNITS,), settings, assemble(settings, print), heard)
+        assert first.rest
+        return _Solver(first, (Objective.UNITS,), heard, {})
+
+    def found(solver: _Solver, among: set[int]) -> Outcome:
+        reduced = solver.first.reduced
+        assert reduced is not None
+        wide = reduced.wide
+        assert wide is not None
+        solver.first = replace(solver.first, reduced=reduced._replace(settled=False))
+        solver._look_at(among)
+        ended = solver._run(solver.levels)
+        assert ended.units is not None
+        solver.heard.tree(ended.units)
+        return solver._up_to(wide, solver._in_hand(ended.units), ended)
+
+    few = found(begun(), {0, 1, 2})
+    assert (few.status, few.units) == (Status.OPTIMAL, (3, 4))
+    monkeypatch.setattr(_Solver, "_search", None)  # what was found among all of them is the best
+    every = found(begun(), {0, 1, 2, 3, 4})
+    assert (every.status, every.units) == (Status.OPTIMAL, (3, 4))
