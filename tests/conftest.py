@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import jsonschema
 import pytest
+from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 
 from foon_asp.cli.main import main
@@ -19,6 +20,10 @@ from foon_asp.text.json_value import schema_name
 
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = ROOT.parent / "shared" / "corpus"
+
+# The machine may be busy: no example fails for being slow.
+settings.register_profile("busy", deadline=None, suppress_health_check=(HealthCheck.too_slow,))
+settings.load_profile("busy")
 
 # Hypothesis also draws what is written in modules of ours that are imported by then. So examples would depend
 # on which tests ran before, and a sixth of all time would go into choosing among thousands of texts.
