@@ -932,6 +932,26 @@ def test_what_is_taken_on_trust_has_a_form_of_its_own() -> None:
     more = claiming(files=[{**file, "more": 1}])
     assert refusal(PLAIN, **BOUND, rules=[more]) == "expected the keys name, sha256, text"
     assert refusal(PLAIN, **BOUND, rules=[own, {"rule": "unknown"}]) == "a rule is unknown"
+    for wrong, said in (
+        (claiming([[99], []]), "expected ids of the network"),
+        (claiming([[POUR, POUR], []]), "an id stands twice"),
+        (claiming(constants=["b=1", "a=1"]), "expected names in order, each of them once"),
+        (claiming(library=[1]), "expected names"),
+        (claiming(files=[{**file, "name": 1}]), "expected names"),
+        (claiming(files=[{**file, "text": 1}]), "expected names"),
+    ):
+        assert refusal(PLAIN, **BOUND, rules=[wrong]) == said
+
+
+def test_steps_of_claims(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rule takes ten for each unit and node; the tree is held against it, and so is each leaf."""
+    units, nodes = len(PLAIN.network), len(PLAIN.network.objects)
+    claims = claiming([[MIX, BAKE], [POUR]], [[POUR, DIG], []])
+    said = (1 + 2 + 1) + (1 + 2 + 0)
+    proof = 10 * (units + nodes) + 1 + units + 5 * said + 5
+    steps(monkeypatch, proof, PLAIN, **BOUND, rules=[claims])
+    # one rule bars units; then what the tree costs, and that less the bound
+    steps(monkeypatch, proof + units + 5 + 10, PLAIN, **BOUND, **POURED, rules=[claims])
 
 
 def test_a_claim_is_about_all_units_of_one_set_and_none_of_another() -> None:
