@@ -176,3 +176,44 @@ def test_what_is_only_handed_on_is_at_hand(recipe: Path) -> None:
     (folder / "kitchen.json").unlink()
     with pytest.warns(FoonWarning, match="no kitchen is given"):
         assert foon_asp.load(folder).problem("ice").starting
+
+
+@pytest.mark.parametrize("stored", [False, True])
+def test_sessions_and_questions_of_a_batch_can_start_from_what_no_unit_makes(
+    cli: Cli, recipe: Path, monkeypatch: pytest.MonkeyPatch, stored: bool
+) -> None:
+    monkeypatch.chdir(recipe.parent)
+    network = recipe
+    if stored:
+        network = Path("egg.foon")
+        assert cli("import", recipe, "--store", network).code == 0
+    Path("bare.txt").write_text("O\tstove\nS\toff\n", encoding="utf-8")
+    Path("lines.txt").write_text(
+        f"goal '{EGG}'\nsolve\nkitchen @starting\nkitchen\nsolve\nkitchen bare.txt\nshow\n", encoding="utf-8"
+    )
+    ran = cli("shell", "lines.txt", "--network", network, "--kitchen", "bare.txt")
+    assert (ran.code, "kitchen: 3 object nodes, all that no unit makes" in ran.err) == (0, True)
+    assert "infeasible" in ran.out
+    assert "starting kitchen" in ran.out
+    assert all(f"\n{node}\n" in ran.out for node in STARTING)
+
+    asked = {"goal": EGG, "kitchen": [None, "bare.txt", "@starting"]}
+    Path("questions.jsonl").write_text(json.dumps(asked) + "\n", encoding="utf-8")
+    words = (
+        "batch",
+        "questions.jsonl",
+        "--results",
+        "rows.jsonl",
+        "--network",
+        network,
+        "--kitchen",
+        "bare.txt",
+    )
+    assert cli(*words).code == 0
+    rows = [json.loads(line) for line in Path("rows.jsonl").read_text(encoding="utf-8").splitlines()[1:]]
+    assert {row["kitchen"]: row["status"] for row in rows} == {
+        None: "infeasible",
+        "bare.txt": "infeasible",
+        "@starting": "optimal",
+    }
+    assert "3 of them answered before" in cli(*words).out

@@ -11,9 +11,9 @@ from foon_asp.text.json_value import json_line
 class Asked(NamedTuple):
     """One question of a batch, by names.
 
-    ``goals`` are made by one tree. ``kitchen`` is a file, or ``None`` for that of the data. ``objective`` is
-    a list by commas of which the first counts most. ``time_limit`` is in seconds. ``items`` may be used up,
-    with files for what is in ``stock`` and what ``stays``.
+    ``goals`` are made by one tree. ``kitchen`` is a file, ``@starting``, or ``None`` for that of the
+    data. ``objective`` is a list by commas of which the first counts most. ``time_limit`` is in seconds.
+    ``items`` may be used up, with files for what is in ``stock`` and what ``stays``.
     """
 
     goals: tuple[str, ...]

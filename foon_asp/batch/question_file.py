@@ -10,6 +10,7 @@ from foon_asp.batch.asked import Asked, Asker
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import ITEMS, ContainerRule, parse_objectives
+from foon_asp.text.data_folder import STARTING
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_fault import json_fault
 from foon_asp.text.json_value import json_line, read_json
@@ -23,7 +24,7 @@ class QuestionLine(NamedTuple):
     """One line of a file of questions: every combination of its values is asked.
 
     ``goals`` holds for each tree the names of the goals that it makes; a name that begins with ``@`` stands
-    for many.
+    for many. ``kitchens`` are files, ``STARTING``, or ``None`` for that of the data.
     """
 
     goals: tuple[tuple[str, ...], ...]
@@ -38,7 +39,9 @@ class QuestionLine(NamedTuple):
     @property
     def files(self) -> tuple[Path, ...]:
         """The files that it names."""
-        return tuple(filter(None, (*self.kitchens, *self.stocks, *self.stays)))
+        return tuple(
+            file for file in (*self.kitchens, *self.stocks, *self.stays) if file not in {None, STARTING}
+        )
 
 
 def read_questions(
@@ -102,7 +105,7 @@ def _line(value: object, folder: Path, time_limit: float | None, measures: Colle
     rules = _known(value.get("containers", "strict"), "containers", tuple(ContainerRule))
     items = _known(value.get("items", "lasting"), "items", ITEMS)
     kitchens, stocks, stays = (
-        tuple(None if file is None else folder / _name(file, key) for file in _several(value.get(key)))
+        tuple(_file(file, key, folder) for file in _several(value.get(key)))
         for key in ("kitchen", "stock", "stays")
     )
     if "lasting" in items and any((*stocks, *stays)):
@@ -113,6 +116,14 @@ def _line(value: object, folder: Path, time_limit: float | None, measures: Colle
         raise ValueError(f"found the time_limit {str(limit)[:40]}, expected seconds, at most {_LONGEST:g}")
     limit = None if limit is None else float(limit)
     return QuestionLine(goals, objectives, rules, kitchens, limit, items, stocks, stays)
+
+
+def _file(value: object, key: str, folder: Path) -> Path | None:
+    """A name of a file in the folder of the questions; the starting kitchen is no file."""
+    if value is None:
+        return None
+    name = _name(value, key)
+    return STARTING if key == "kitchen" and name == str(STARTING) else folder / name
 
 
 def _known(value: object, key: str, known: Collection[str]) -> tuple[str, ...]:

@@ -72,7 +72,8 @@ def command(
     {"goal": "@goals", "items": "used-up", "stock": "stock.txt"}
 
     @goals stands for the goals file, @makeable for everything that can be made; a list within the list is one
-    tree for several goals; kitchens, stocks and what stays are files in the folder of the questions.
+    tree for several goals; kitchens, stocks and what stays are files in the folder of the questions;
+    the kitchen @starting is what no unit makes.
     --time-limit is for each question without a limit of its own, --memory-limit for each process that
     answers, and rules hold for all questions.
 

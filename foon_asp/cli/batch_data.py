@@ -64,7 +64,11 @@ class BatchData:
         dataset = self._datasets.get(kitchen)
         if dataset is None:
             assert kitchen is not None
-            dataset = self._datasets[None].with_kitchen(read_object_list(kitchen))
+            given = self._datasets[None]
+            if kitchen == STARTING:
+                dataset = given.with_starting_kitchen()
+            else:
+                dataset = given.with_kitchen(read_object_list(kitchen))
             self._datasets[kitchen] = dataset
         return dataset
 

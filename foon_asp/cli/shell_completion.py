@@ -13,6 +13,7 @@ from foon_asp.cli.shell_session import QUESTIONS, WORDS, ShellSession
 from foon_asp.cli.verbs import verb_command
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.rules.constraint_library import library_constraints
+from foon_asp.text.data_folder import STARTING
 from foon_asp.text.goal_name import NodeNames, nodes_beginning, notation
 
 MOST = 200
@@ -71,6 +72,7 @@ def _words(before: list[str], fragment: str, session: ShellSession) -> Iterable[
         "have": lambda: _nodes(fragment, kitchen.names),
         "lack": lambda: _nodes(fragment, kitchen.names_at_hand),
         "objective": lambda: _list(fragment, session),
+        "kitchen": lambda: beginning([str(STARTING)], fragment),
         "containers": lambda: beginning(ContainerRule, fragment),
         "constraint": lambda: _constraints(fragment, session),
         "drop": lambda: beginning(map(str, session.constraints), fragment),

@@ -9,7 +9,7 @@ from foon_asp.cli.shell_line import quoted
 from foon_asp.dataset import Dataset
 from foon_asp.errors import UserError
 from foon_asp.network import Network, ObjectNode, counted, pattern_at_level
-from foon_asp.text.data_folder import kitchen_item_warning
+from foon_asp.text.data_folder import STARTING, kitchen_item_warning
 from foon_asp.text.diagnostics import Diagnostic, summarize
 from foon_asp.text.goal_name import NodeNames, Wording, find_goal
 from foon_asp.text.object_list import ListedObject, read_object_list
@@ -55,7 +55,16 @@ class ShellKitchen:
             _say(f"no longer at hand: {self.names.node(o)}")
 
     def take(self, file: Path) -> None:
-        """Take the kitchen of a file instead; raises :class:`InputError` for what is not understood in it."""
+        """Take the kitchen of a file instead, or the starting kitchen for ``@starting``.
+
+        Raises :class:`UserError` if there is no such file, and :class:`InputError` for what is not understood
+        in it.
+        """
+        if file == STARTING:
+            self._read = self._read.with_starting_kitchen()
+            self._change(frozenset(), frozenset())
+            _say(f"kitchen: {self.size}, all that no unit makes")
+            return
         if not file.is_file():
             raise UserError(f"{file}: no such file; have and lack change single object nodes")
         warnings: list[Diagnostic] = []

@@ -26,6 +26,7 @@ from foon_asp.questions.index import INDEX
 from foon_asp.rules.constraint import Constraint, RuleText, find_constraint, named_constraint
 from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.rules.stating import loaded
+from foon_asp.text.data_folder import STARTING
 from foon_asp.text.goal_name import Wording, notation
 
 # The verbs that ask something of a network and a kitchen.
@@ -48,7 +49,7 @@ WORDS = {
     "goal": Usage("goal NAME...", "make this, or all of these with one tree"),
     "have": Usage("have NAME...", "put object nodes into the kitchen"),
     "lack": Usage("lack NAME...", "take object nodes out of the kitchen"),
-    "kitchen": Usage("kitchen [FILE]", "list what is at hand, or take another kitchen"),
+    "kitchen": Usage("kitchen [FILE|@starting]", "list what is at hand, or take another kitchen"),
     "containers": Usage("containers strict|implied", "whether a unit needs every input"),
     "objective": Usage("objective LIST", "what is best, most important first"),
     "constraint": Usage(
@@ -192,7 +193,8 @@ class ShellSession:
         if files:
             file = NamedPath(_only(files, "kitchen"))
             self.kitchen.take(file)
-            self.files.append(file)
+            if file != STARTING:
+                self.files.append(file)
         else:
             for node in self.kitchen.nodes():
                 click.echo(node)
