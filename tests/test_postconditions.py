@@ -127,11 +127,9 @@ def test_other_objectives_in_our_own_encodings_are_a_bug(
 ) -> None:
     folder = tmp_path / "encodings"
     shutil.copytree(encodings_folder(), folder)
-    for module in ("assembly", "settings", "own_encodings"):
-        monkeypatch.setattr(f"foon_asp.asp.{module}.encodings_folder", lambda: folder)
-    monkeypatch.setattr("foon_asp.asp.assembly.is_own", lambda _: True)
-    monkeypatch.setattr("foon_asp.asp.settings.is_own", lambda _: True)
-    monkeypatch.setattr("foon_asp.encoding.own_encodings.is_own", lambda _: True)
+    for module in ("asp.assembly", "asp.settings", "encoding.own_encodings"):
+        monkeypatch.setattr(f"foon_asp.{module}.encodings_folder", lambda: folder)
+        monkeypatch.setattr(f"foon_asp.{module}.is_own", lambda _: True)
     motions = FoonReader().read_network([bundled_kitchen() / "FOON.txt"]).motions
     (tmp_path / "prices.txt").write_text("".join(f"{motion}\t2\n" for motion in motions))
     words = ["--goal", "ice", "--objective", objective, "--unit-prices", str(tmp_path / "prices.txt")]

@@ -420,23 +420,25 @@ def test_labels(tmp_path: Path) -> None:
 
 def test_goals_by_label_notation_and_goals_file(tmp_path: Path) -> None:
     (tmp_path / "FOON.txt").write_text(
-        "O\tmilk\nO\tsalt\nM\tmix\nO\tmilk\nS\tsalted\nO\tfoam\nS\tin\t[cup]\nS\ton\t[milk]\n//\n"
+        "O\tmilk\nO\tsalt\nM\tmix\nO\tmilk\nS\tsalted\nO\tfoam\nS\tin\t[cup]\nS\ton\t[milk]\n"
+        "O\tfoam\nS\tcold\n//\n"
     )
     (tmp_path / "goal_nodes.json").write_text('[{"label": "milk", "states": ["salted"]}]')
     data = read_data(find_data(tmp_path))
     network, listed = data.network, data.goals
     salted = network.object_id(ObjectNode.of("milk", ["salted"]))
     assert find_goal("milk", network, listed) == salted
-    assert find_goal("milk;", network, listed) == network.object_id(ObjectNode.of("milk"))
+    bare = network.object_id(ObjectNode.of("milk"))
+    assert find_goal("milk;", network, listed) == find_goal("milk", network) == bare
     assert find_goal("milk; salted", network) == salted
     assert find_goal("salt", network) == network.object_id(ObjectNode.of("salt"))
     foam = network.object_id(ObjectNode.of("foam", [], [("in", "cup"), ("on", "milk")]))
     assert find_goal("foam; on [milk]; in [cup]", network) == foam
     with pytest.raises(UserError, match="means 2 object nodes") as caught:
-        find_goal("milk", network)
+        find_goal("foam", network)
     for line in str(caught.value).splitlines()[1:]:
         pasted = line.removeprefix("  --goal ").strip("'")
-        assert find_goal(pasted, network) in {salted, network.object_id(ObjectNode.of("milk"))}
+        assert find_goal(pasted, network) in {foam, network.object_id(ObjectNode.of("foam", ["cold"]))}
     with pytest.raises(UserError, match="no object node has the label 'mlik'; similar are"):
         find_goal("mlik", network)
 

@@ -68,13 +68,16 @@ def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) ->
     """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
     asked = parameters(question, given, Part.PROBLEM)
     unnamed = question.pose is not no_data and asked.get("goals_named") == ()
-    goals = command.dataset.assumed_goals() if unnamed else []
-    if len(goals) < 2 or question.pose is not one_problem:
+    each_alone = unnamed and question.pose is one_problem
+    goals = command.dataset.assumed_goals() if each_alone else []
+    if len(goals) < 2:
         posed = [question.pose(command, **asked)]
     else:
         _refuse_one_file(question, given)
         posed = [question.pose(command, **asked | {"goals_named": [goal]}) for goal in goals]
     problems = [each for about in posed for each in about if isinstance(each, Problem)]
+    if problems and unnamed:  # what is about no problem may need no data
+        goals = command.dataset.assumed_goals()
     if {goal for problem in problems for goal in problem.goal_nodes} != set(goals):
         goals = []  # it is about others
     if problems and (goals or not command.dataset.has_kitchen):
