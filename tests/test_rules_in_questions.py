@@ -1,5 +1,6 @@
 """Other questions under rules: what they find is the same whether rules are applied beforehand or not."""
 
+import json
 import random
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,11 +11,15 @@ import pytest
 
 import foon_asp
 from foon_asp.asp import Settings, solve
+from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, levels
+from foon_asp.questions.result import Ending
 from foon_asp.reduce import NONE
+from tests.conftest import ROOT, Cli, valid
 from tests.test_reductions import LISTS, posed
 from tests.test_restricted_answers import CLASSES, rules
 
+KITCHEN = ROOT / "data" / "kitchen"
 Rules = dict[str, Any]
 Asked = Callable[[Problem, Rules], object]
 
@@ -165,3 +170,50 @@ def test_optima_keep_to_rules() -> None:
 def test_what_is_required_and_not_there_is_broken_once(name: str) -> None:
     rule = f"require_{name}:required_{name}=dough"
     assert foon_asp.solve_soft(foon_asp.load().problem("ice"), soft={rule: 3}).penalty == 3
+
+
+@pytest.mark.parametrize("stored", [False, True])
+def test_which_rules_a_given_tree_breaks(tmp_path: Path, cli: Cli, stored: bool) -> None:
+    """One about the tree, one that looks beyond it, and one that is kept; also where a store is read."""
+    data = KITCHEN
+    if stored:
+        data = tmp_path / "kitchen.foon"
+        assert cli("import", "--data", KITCHEN, "--store", data).code == 0
+    problem = foon_asp.load(data).problem("ice")
+    tree = foon_asp.solve(problem).tree
+    assert tree is not None
+    twist = ':- use(U), motion(U,"twist").'
+    beyond = ':- unit(U), not use(U), motion(U,"pour"), output(U,O), label(O,"ice").'
+    fry = ':- use(U), motion(U,"fry").'
+    checked = foon_asp.check(problem, tree, constraints=[twist, beyond, fry])
+    assert checked.breaks is not None
+    assert [rule.text for rule in checked.breaks] == [twist, beyond]
+    assert (checked.executes, checked.ending) == (True, Ending.NEGATIVE)
+    kept = foon_asp.check(problem, tree, constraints="forbid_motion", constants={"forbidden_motion": "fry"})
+    assert (kept.breaks, kept.ending) == ((), Ending.DONE)
+    assert kept.text().endswith("\nit keeps to the rules\n")
+    assert foon_asp.check(problem, tree).breaks is None
+    half = foon_asp.check(problem, tree.units[1:], constraints=twist)
+    assert half.breaks is None
+    assert "not looked at, since it does not execute" in half.text()
+    with pytest.raises(UserError, match="without encodings"):
+        foon_asp.check(problem, tree, encodings=tmp_path)
+
+
+def test_check_and_draw_on_a_command_line(tmp_path: Path, cli: Cli) -> None:
+    tree = tmp_path / "ice.txt"
+    tree.write_text(cli("solve", "--goal", "ice", "--format", "foon").out, encoding="utf-8")
+    rule = ("--rule", ':- use(U), motion(U,"twist"), not motion(U,"fry").')
+    ran = cli("check", tree, "--goal", "ice", *rule, "--format", "json")
+    assert ran.code == 1
+    (broken,) = valid(json.loads(ran.out))["breaks"]
+    assert (broken["file"], broken["text"]) == ("rule 1", rule[1])
+    crush = ("--rule", ':- use(U), motion(U,"crush").')
+    assert '"2. pound"' in cli("draw", "--goal", "ice", *crush).out
+    assert '"2. pound"' not in cli("draw", "--goal", "ice").out
+    for words in (("--unit", "3"), ("--tree", tree, "--goal", "ice"), ()):
+        assert "--rule is for the best tree for a --goal" in cli("draw", *words, *rule).err
+    ran = cli("check", tree, "--goal", "ice", *rule, "--items", "used-up")
+    assert (ran.code, "check with constraints is not built for items" in ran.err) == (2, True)
+    with pytest.raises(UserError, match="nothing is solved here"):
+        foon_asp.draw(foon_asp.load(), constraints=rule[1])

@@ -595,13 +595,23 @@ def test_a_constant_that_stands_is_replaced_by_a_word_alone(nuts: Cli) -> None:
     assert "replaced" not in ran.err
 
 
-@pytest.mark.parametrize("line", ["search bfs", "draw", "check tree.txt"])
+@pytest.mark.parametrize("line", ["search bfs", "units"])
 def test_what_knows_of_no_rules_is_not_asked_while_some_stand(nuts: Cli, line: str) -> None:
     ran = nuts(line)
     verb = line.split(maxsplit=1)[0]
     assert (ran.code, ran.out) == (2, "")
     assert f"{verb} takes no constraints, and this session has allergy.lp: drop them first" in ran.err
     assert nuts(f"{verb} --help").code == 0
+
+
+def test_a_given_tree_and_a_picture_are_under_the_rules_that_stand(nuts: Cli) -> None:
+    Path("tree.txt").write_text(NUTS[: NUTS.index("//") + 3])
+    ran = nuts("check tree.txt", "draw", "draw --tree tree.txt")
+    checked, *_ = ran.out.partition("digraph")
+    assert 'it breaks 1 rule:\n  allergy.lp:1\n      :- use(U), input(U,O), label(O,"nut").\n' in checked
+    solved, shown = ran.out.split("digraph foon")[1:]
+    assert ("1. bake" in solved, "1. crush" in solved) == (True, False)
+    assert "1. crush" in shown  # nothing is solved
 
 
 def test_encodings_that_stand_are_not_replaced_by_a_line(nuts: Cli, tmp_path: Path) -> None:

@@ -13,7 +13,10 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class Breaking:
-    """Constraints, read once, to be held against trees that execute."""
+    """Constraints, read once, to be held against trees that execute.
+
+    ``local`` says that whether a tree keeps to them does not depend on units outside it.
+    """
 
     def __init__(self, settings: Settings) -> None:
         """Read the constraints of settings.
@@ -21,7 +24,7 @@ class Breaking:
         Raises :class:`UserError` for what is wrong with them.
         """
         rules = assemble(settings, lambda _: None).understood
-        self._local = rules is not None and rules.local
+        self.local = rules is not None and rules.local
         weights = dict.fromkeys(settings.constraints, 1)
         self._rules, _, relaxed = soft_rules(settings._replace(constraints=()), weights)
         self._settings = settings._replace(constraints=(), relaxed=relaxed, session=None)
@@ -32,7 +35,7 @@ class Breaking:
 
         Raises ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
         """
-        units = sorted(tree if self._local else {*tree, *reach(problem).units})
+        units = sorted(tree if self.local else {*tree, *reach(problem).units})
         asked = levels((Objective.UNITS,))
         deadline = self._settings.begun
         first = Prepared(problem, asked, self._settings, deadline, self._program, tuple(units))

@@ -163,8 +163,7 @@ class ShellSession:
         """Raise :class:`UserError` if the session has rules that a verb does not accept."""
         standing = [*map(str, self.constraints), *(["--encodings"] if self._encodings else [])]
         knows = any(parameter.name == "constraints" for parameter in verb_command(verb).params)
-        shown = verb == "draw" and any(word.startswith(("--tree", "--unit")) for word in words)
-        if standing and not knows and not shown and verb not in _WITHOUT_RULES and not _asks_for_help(words):
+        if standing and not knows and verb not in _WITHOUT_RULES and not _asks_for_help(words):
             raise UserError(
                 f"{verb} takes no constraints, and this session has {', '.join(standing)}: drop them first, "
                 "or ask in a session without them"

@@ -1,18 +1,22 @@
 """Does a tree that some program wrote execute?"""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from os import PathLike
+from typing import TYPE_CHECKING
 
+from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document
-from foon_asp.network import FunctionalUnit
+from foon_asp.errors import UserError
+from foon_asp.network import FunctionalUnit, counted
 from foon_asp.problem import Problem
 from foon_asp.proof.replay import Replay, replay_for
 from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.arguments import Constants, settings, whole
+from foon_asp.questions.contract import Kind, Option, not_built, question
 from foon_asp.questions.in_hand import OnProgress
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.drawing import Drawing
@@ -20,13 +24,20 @@ from foon_asp.report.replay import replay_json, replay_text
 from foon_asp.report.verdict import Listed, verdict_json, verdict_text
 from foon_asp.text.json_value import Json
 
+if TYPE_CHECKING:  # clingo, which only rules need
+    from foon_asp.asp import Settings
+    from foon_asp.asp.breaking import Breaking
+    from foon_asp.asp.integrity import IntegrityConstraint
+
 
 @dataclass(frozen=True, repr=False)
 class Checked(Result):
     """The ``tree`` that was simulated, and the ``simulation`` with its ``verdict`` and what stops the tree.
 
     Where items are used up, the tree is a plan, whose order and repeats count, and ``replay`` says what
-    became of each copy; otherwise it is ``None``.
+    became of each copy; otherwise it is ``None``. ``ruled`` says that there are rules to keep to, and
+    ``breaks`` has those that the tree breaks: each with its ``source`` and ``text``. It is ``None`` without
+    rules, and for a tree that does not execute, or has units of its own.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -37,6 +48,8 @@ class Checked(Result):
     tree: Tree
     simulation: Simulation
     replay: Replay | None = None
+    ruled: bool = False
+    breaks: "tuple[IntegrityConstraint, ...] | None" = None
 
     @property
     def executes(self) -> bool:
@@ -63,8 +76,9 @@ class Checked(Result):
 
     @property
     def ending(self) -> Ending:
-        """Done when the tree executes and has no unit but those of the network."""
-        return Ending.DONE if self.executes and not self.foreign else Ending.NEGATIVE
+        """Done when the tree executes, has no unit but those of the network, and breaks no rule."""
+        sound = self.executes and not self.foreign and not self.breaks
+        return Ending.DONE if sound else Ending.NEGATIVE
 
     @property
     def foreign(self) -> tuple[int, ...]:
@@ -72,10 +86,26 @@ class Checked(Result):
         return tuple(position for position, unit in enumerate(self._ids()) if unit is None)
 
     def text(self) -> str:
-        """Say whether the tree executes, in which order, and what stops it."""
+        """Say whether the tree executes, in which order, what stops it, and which rules it breaks."""
         if self.replay is not None:
             return replay_text(self.problem, self._listed(), self.replay)
-        return verdict_text(self.problem, self._listed(), self.simulation)
+        found = verdict_text(self.problem, self._listed(), self.simulation)
+        return found + "".join(f"{line}\n" for line in self._about_rules())
+
+    def _about_rules(self) -> Iterator[str]:
+        if not self.ruled:
+            return
+        if self.breaks is None:
+            why = "has units that are not in the network" if self.executes else "does not execute"
+            yield f"whether it keeps to the rules is not looked at, since it {why}"
+        elif not self.breaks:
+            yield "it keeps to the rules"
+        else:
+            from foon_asp.report.integrity_constraint import constraint_lines  # noqa: PLC0415
+
+            yield f"it breaks {counted(len(self.breaks), 'rule')}:"
+            for rule in self.breaks:
+                yield from constraint_lines(rule)
 
     def json_dict(self) -> Json:
         """Give the same; positions count from 1."""
@@ -88,7 +118,13 @@ class Checked(Result):
             **({} if replay is None else {"replay": replay_json(problem, self._listed(), replay)}),
             not_in_network=[position + 1 for position in foreign],
             costs=None if foreign else costs_json(problem.costs(known)),
+            **({"breaks": self._breaks_json()} if self.ruled else {}),
         )
+
+    def _breaks_json(self) -> list[Json] | None:
+        from foon_asp.report.integrity_constraint import constraint_json  # noqa: PLC0415
+
+        return None if self.breaks is None else list(map(constraint_json, self.breaks))
 
     def drawing(self) -> Drawing | None:
         """Give what the picture shows."""
@@ -112,22 +148,29 @@ class Checked(Result):
     GOALS,
     CONTAINERS,
     *ITEMS,
+    *RULES,
     help_="""
     \b
     foon-asp check tree.txt --goal macaroni
+    foon-asp check tree.txt --goal macaroni --rule ':- use(U), motion(U,"fry").'
 
     The tree is FOON text, units in the order of execution, or an answer in JSON.
 
     With --items used-up, order and repeats count: the plan is replayed copy by copy.
 
+    Under rules, it says of a tree that executes which of them it breaks.
+
     Exits with 0 when the tree executes, as listed or in the order that is then given; with 1 when no
-    order executes or a unit is not in the network.
+    order executes, a unit is not in the network, or a rule is broken.
     """,
 )
 def check(
     problem: Problem,
     tree: str | PathLike[str] | Iterable[FunctionalUnit],
     *,
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
     time_limit: float | None = None,
     on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
@@ -140,10 +183,11 @@ def check(
             several times.
 
     Returns:
-        Whether the tree ``executes``, the tree ``in_order``, and the ``simulation`` with what stops it.
+        Whether the tree ``executes``, the tree ``in_order``, the ``simulation`` with what stops it, and the
+        rules that it ``breaks``.
 
     Raises:
-        UserError: if the file cannot be read or contains no tree.
+        UserError: if the file cannot be read or contains no tree, or for a wrong rule.
 
     Example:
         >>> problem = foon_asp.load().problem("macaroni")
@@ -152,7 +196,29 @@ def check(
         <Verdict.REORDERED: 'executes in another order'>
         >>> checked.simulation.as_listed.missing.label
         'stove'
+        >>> rule = ':- use(U), motion(U,"turn on").'
+        >>> checked = foon_asp.check(problem, foon_asp.solve(problem).tree, constraints=rule)
+        >>> [broken.text for broken in checked.breaks] == [rule]
+        True
     """
+    rules = settings(constraints, constants, encodings)._replace(session=None)
+    if rules.replaced is not None:
+        raise UserError(f"{rules.replaced}: a tree is checked without encodings: leave them out")
+    if rules.constraints and problem.items is not None:
+        raise not_built("check with constraints")
+    breaking = _breaking(rules) if rules.constraints else None
+    if breaking is not None and not breaking.local:
+        problem = whole(problem)
     given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
     replay = None if given.problem.items is None else replay_for(given.problem, given)
-    return Checked(given, simulate_for(given.problem, given), replay)
+    found = Checked(given, simulate_for(given.problem, given), replay, breaking is not None)
+    if breaking is None or not found.executes or found.foreign:
+        return found
+    units = {unit for unit in map(given.problem.network.unit_id, given.units) if unit is not None}
+    return replace(found, breaks=breaking.broken(given.problem, units))
+
+
+def _breaking(rules: "Settings") -> "Breaking":
+    from foon_asp.asp.breaking import Breaking  # noqa: PLC0415 (takes clingo along)
+
+    return Breaking(rules)

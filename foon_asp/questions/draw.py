@@ -6,19 +6,18 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from foon_asp.asp import solve as find
-from foon_asp.dataset.paths import File
+from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
 from foon_asp.problem import ContainerRule, Problem, container_rule
-from foon_asp.questions.answer import Answer
-from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
-from foon_asp.questions.caller import caller
+from foon_asp.questions.answer import Answer, answered_under
+from foon_asp.questions.arguments import Constants, Objectives, chosen_objectives, settings
+from foon_asp.questions.caller import is_python
 from foon_asp.questions.contract import Kind, Option, Part, question, question_of
 from foon_asp.questions.in_hand import OnProgress
-from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES
+from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree, read_listed
@@ -32,6 +31,13 @@ from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.data_folder import Data
 
 _MERMAID_PAGE = ".md"
+_FOR_THE_BEST = {
+    "objectives": "--objective",
+    "constraints": "--constraint",
+    "rules": "--rule",
+    "constants": "-c",
+    "encodings": "--encodings",
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -139,8 +145,10 @@ def _posed(
     """Pose the goals that are named; without any it is about the data."""
     if not goals_named and command.given("items"):
         raise UserError("--items is for a plan for a --goal: name one")
-    if command.given("objectives") and (not goals_named or tree is not None or units):
-        raise UserError("--objective is for the best tree for a --goal; nothing is solved here")
+    solves = bool(goals_named) and tree is None and not units
+    for option, flag in _FOR_THE_BEST.items():
+        if command.given(option) and not solves:
+            raise UserError(f"{flag} is for the best tree for a --goal; nothing is solved here")
     return one_problem(command, goals_named, containers, **items) if goals_named else the_data(command)
 
 
@@ -159,10 +167,11 @@ def _posed(
     OBJECTIVES,
     CONTAINERS._replace(part=Part.PROBLEM | Part.QUESTION),
     *ITEMS,
-    *LIMITS,
+    *HOW,
     help_="""
     \b
     foon-asp draw --goal macaroni -o tree.svg                the optimal task tree for a goal
+    foon-asp draw --goal ice --constraint mine.lp -o i.svg   the best one under rules
     foon-asp draw --tree tree.txt --goal macaroni -o t.png   a task tree read from FOON text
     foon-asp draw --unit 12 -o unit.svg                      one functional unit, by id
     foon-asp draw --network FILE -o whole.svg                a whole network
@@ -181,6 +190,9 @@ def draw(
     tree: str | PathLike[str] | Iterable[FunctionalUnit] | None = None,
     units: Iterable[int] = (),
     containers: str = "strict",
+    constraints: Files = (),
+    constants: Constants | None = None,
+    encodings: File | None = None,
     time_limit: float | None = None,
     memory_limit: int | str | None = None,
     on_progress: OnProgress | None = None,
@@ -188,7 +200,7 @@ def draw(
 ) -> Drawn:
     """Draw the optimal task tree of a problem, a given tree, some units, or a whole network.
 
-    Only the first of these is solved, and only for that are there ``objectives`` and limits.
+    Only the first of these is solved, and only for that are there ``objectives``, rules and limits.
 
     Parameters:
         about: A problem, whose goals are marked in the picture; or data that were loaded, whose whole
@@ -202,8 +214,8 @@ def draw(
         The drawing, which gives ``svg()``, ``png()``, ``dot()`` and ``mermaid()``, and can ``write`` a file.
 
     Raises:
-        UserError: for a wrong argument, a file that cannot be read, or a unit that the network does not
-            have.
+        UserError: for a wrong argument, a file that cannot be read, a unit that the network does not
+            have, or rules where nothing is solved.
 
     Example:
         >>> drawn = foon_asp.draw(foon_asp.load().problem("ice"))
@@ -214,9 +226,11 @@ def draw(
     if tree is not None and wanted:
         raise UserError("a tree and units are two different drawings: give one of them")
     if isinstance(about, Problem) and tree is None and not wanted:
-        how = settings(time_limit=time_limit, memory_limit=memory_limit)
-        outcome = Answer._make(find(about, chosen_objectives(about, objectives), how, caller().reporter))
+        how = settings(constraints, constants, encodings, time_limit, memory_limit)
+        outcome = answered_under(about, chosen_objectives(about, objectives), how)
         return Drawn(None if outcome.units is None else solved_tree(outcome, outcome.units), outcome)
+    if is_python() and (constraints or constants or encodings is not None):  # those of a session stand
+        raise UserError("rules are for the best tree of a problem; nothing is solved here")
     if isinstance(about, Problem) and about.items is not None and tree is not None:
         read = Tree.read(about, tree) if isinstance(tree, str | PathLike) else Tree.given(about, tree)
         name = Path(tree).name if isinstance(tree, str | PathLike) else ""
