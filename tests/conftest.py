@@ -65,6 +65,9 @@ def valid(value: Any) -> Any:
     if not validator.is_valid(value):
         fault = jsonschema.exceptions.best_match(validator.iter_errors(value))
         raise AssertionError(f"{kind}: {fault.json_path}: {fault.message[:500]}")
+    if kind == "each":
+        for answer in value["answers"]:
+            valid(answer)
     return value
 
 

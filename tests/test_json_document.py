@@ -138,6 +138,7 @@ _CONTENTS = {
     "O\tbowl\nS\tcontains\t{egg}\nO\tbowl\nS\tcontains\t{salt}\nM\tcrush\nO\tdough\n//\n",
     "THINGS": "//\nO\tegg\n//\nO\tsalt\n//\nO\tbowl\n//\n",
     "LABELS": "bowl\n",
+    "TWO": f"//\n{_UNIT}O\tmuddler\nS\twet\n//\n",
     "LENGTHS": "twist\t10\ncrush\t1 min\tpassive\n",
     "TREE": ("solve", "--goal", "ice", "--format", "json"),
     "TORN": f"//\n{_UNIT}//\n",
@@ -194,6 +195,17 @@ def test_every_verb_that_answers_has_a_schema() -> None:
 def test_what_is_printed_is_what_the_schema_says(printed: Any, verb: str, words: tuple[str, ...]) -> None:
     kind = "answer" if verb == "solve" else verb
     assert printed(verb, *words)["schema"] == schema_name(kind)
+
+
+@pytest.mark.parametrize("verb", ["solve", "search", "regret", "pareto", "alternatives", "why-not"])
+def test_goals_that_nobody_named_have_a_document_each(printed: Any, verb: str) -> None:
+    document = printed(verb, *["bfs"][: verb == "search"], "--network", "TWO")
+    kind = "answer" if verb == "solve" else verb
+    assert document["schema"] == schema_name("each")
+    assert [answer["schema"] for answer in document["answers"]] == [schema_name(kind)] * 2
+    document["answers"][0]["own"] = 1
+    with pytest.raises(AssertionError, match=kind):
+        valid(document)
 
 
 HEAD = ("goals", "containers", "items", "level", "objectives", "starting_kitchen")

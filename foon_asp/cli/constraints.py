@@ -9,12 +9,12 @@ from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.held import held
 from foon_asp.errors import UserError
-from foon_asp.questions.contract import Part
+from foon_asp.questions.contract import TABLES, Part
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
 from foon_asp.report.constraint_list import constraints_json, constraints_text
+from foon_asp.report.frame import document_text
 from foon_asp.rules.constraint import Constraint, RuleText
 from foon_asp.rules.constraint_library import library_constraints
-from foon_asp.text.json_value import json_text
 
 _EXPLAIN = CONSTRAINTS._replace(
     name="explained",
@@ -27,7 +27,7 @@ _CONSTANTS = CONSTANTS._replace(name="given", help="The value of a #const in wha
 
 @click.command("constraints")
 @click_options(_EXPLAIN, _RULE, _CONSTANTS)
-@options.format_option("text", "json")
+@options.format_option(*TABLES)
 @options.debug_option
 def command(
     explained: tuple[Constraint, ...], stated: tuple[str, ...], given: tuple[str, ...], format_: str
@@ -47,9 +47,8 @@ def command(
     if given:
         raise UserError("-c sets a constant of what is explained: name that with --explain")
     listed = library_constraints()
-    click.echo(
-        json_text(constraints_json(listed)) if format_ == "json" else constraints_text(listed), nl=False
-    )
+    text = constraints_text(listed) if format_ == "text" else document_text(constraints_json(listed), format_)
+    click.echo(text, nl=False)
     return ExitCode.DONE
 
 
@@ -65,5 +64,7 @@ def _explain(asked: tuple[Constraint, ...], constants: tuple[str, ...], format_:
     ).understood
     if rules is None:
         raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
-    click.echo(json_text(rules_json(rules)) if format_ == "json" else rules_text(rules), nl=False)
+    click.echo(
+        rules_text(rules) if format_ == "text" else document_text(rules_json(rules), format_), nl=False
+    )
     return ExitCode.DONE

@@ -12,11 +12,12 @@ from foon_asp.errors import UserError
 from foon_asp.lint.catalog import CATALOG
 from foon_asp.lint.linter import lint
 from foon_asp.lint.mending import mended
+from foon_asp.questions.contract import TABLES
+from foon_asp.report.frame import document_text
 from foon_asp.report.lint_findings import lint_annotations, lint_json, lint_text
 from foon_asp.report.whole_file import write_whole
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
-from foon_asp.text.json_value import json_text
 
 _CODE = click.Choice(list(CATALOG))
 
@@ -28,7 +29,7 @@ _CODE = click.Choice(list(CATALOG))
     "--select", multiple=True, type=_CODE, metavar="CODE", help="Report this kind only; repeatable."
 )
 @click.option("--ignore", multiple=True, type=_CODE, metavar="CODE", help="Leave this kind out; repeatable.")
-@options.format_option("text", "json", "github")
+@options.format_option(*TABLES, "github")
 @options.debug_option
 def command(
     paths: tuple[Path, ...], fix: bool, select: tuple[str, ...], ignore: tuple[str, ...], format_: str
@@ -63,7 +64,8 @@ def command(
         write_data(lint_annotations(findings))
     else:
         told = findings, len(files), count
-        click.echo(json_text(lint_json(*told)) if format_ == "json" else lint_text(*told), nl=False)
+        text = lint_text(*told) if format_ == "text" else document_text(lint_json(*told), format_)
+        click.echo(text, nl=False)
     bad = any(finding.severity is not Severity.NOTE for finding in findings)
     return ExitCode.NEGATIVE if bad else ExitCode.DONE
 

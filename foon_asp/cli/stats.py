@@ -9,14 +9,15 @@ from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.network import LEVELS, network_at_level
 from foon_asp.network.statistics import count
+from foon_asp.questions.contract import TABLES
+from foon_asp.report.frame import document_text
 from foon_asp.report.statistics_table import statistics_json, statistics_text
 from foon_asp.text.data_folder import kitchen_nodes
-from foon_asp.text.json_value import json_text
 
 
 @click.command("stats")
 @options.files_argument(required=False)
-@options.format_option("text", "json")
+@options.format_option(*TABLES)
 @options.network_options
 def command(
     paths: tuple[Path, ...], format_: str, folder: Path | None, network: tuple[Path, ...], **data: Any
@@ -45,5 +46,6 @@ def command(
         kitchen = kitchen_nodes(at_level, read.kitchen_items) if read.kitchen_items else None
         levels.append(count(at_level, kitchen))
     told = read.network, levels, bool(read.kitchen_items)
-    click.echo(json_text(statistics_json(*told)) if format_ == "json" else statistics_text(*told), nl=False)
+    text = statistics_text(*told) if format_ == "text" else document_text(statistics_json(*told), format_)
+    click.echo(text, nl=False)
     return ExitCode.DONE

@@ -21,7 +21,7 @@ from foon_asp.problem import (
     tree_costs,
 )
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.contract import Option, Part, question
+from foon_asp.questions.contract import TABLES, Option, Part, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
@@ -206,6 +206,7 @@ def _file_side(file: Path, dataset: Dataset, goals_named: Sequence[str], contain
     Option("right", "The other tree, in the same way.", part=Part.PROBLEM, metavar="B", positional=True),
     GOALS,
     CONTAINERS,
+    formats=TABLES,
     help_="""
     \b
     foon-asp diff mine.txt answer.json

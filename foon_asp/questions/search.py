@@ -7,7 +7,7 @@ from foon_asp.document.json_document import costs_json, document, nodes_json, st
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
 from foon_asp.questions.arguments import begin
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS
 from foon_asp.questions.result import Ending, Result
@@ -146,7 +146,7 @@ class Retrieved(Result):
     Exits with 0 when the tree executes, as listed or in another order; 1 when it never does or there is
     none; 3 when stopped at a limit.
     """,
-    formats=("text", "json", "foon"),
+    formats=(*TABLES, "foon"),
 )
 def retrieve(
     problem: Problem,

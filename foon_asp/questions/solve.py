@@ -17,7 +17,7 @@ from foon_asp.questions.arguments import (
     settings,
     whole,
 )
-from foon_asp.questions.contract import Kind, Option, not_built, question
+from foon_asp.questions.contract import TABLES, Kind, Option, not_built, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Result
@@ -119,7 +119,7 @@ def solve_and_more(
         metavar="[-- CLINGO OPTIONS]",
         positional=True,
     ),
-    formats=("text", "json", "foon", "steps"),
+    formats=(*TABLES, "foon", "steps"),
     command=solve_and_more,
     help_="""
     \b

@@ -15,7 +15,7 @@ from foon_asp.problem import Problem, UsedUp
 from foon_asp.proof.replay import Copy, Replay, replay_for
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
-from foon_asp.questions.contract import Kind, Option, question
+from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES
 from foon_asp.questions.result import Ending, Result
@@ -221,6 +221,7 @@ def trace_and_write(
     CONTAINERS,
     *ITEMS,
     *LIMITS,
+    formats=TABLES,
     command=trace_and_write,
     help_="""
     \b
