@@ -292,7 +292,7 @@ def test_a_goal_in_the_kitchen_needs_nothing(cli: Cli, data: Path) -> None:
         (["--", "--opt-mode=ignore"], "would change what an answer means"),
         (["--", "--no-such-option"], "unknown option: 'no-such-option'"),
         (["--", "-"], "found '-' after --"),
-        (["--format", "xml"], "is not one of 'text', 'json', 'foon'"),
+        (["--format", "xml"], "is not one of 'text', 'json', 'csv', 'markdown', 'foon'"),
         (["--no-such-option"], "No such option"),
     ],
 )

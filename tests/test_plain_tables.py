@@ -1,13 +1,18 @@
-"""Tables as CSV and Markdown: the rows of the JSON, and cells that break neither."""
+"""Tables as CSV and Markdown, of the rows of the JSON, and stacked where a terminal is narrow."""
 
 import csv
 import io
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 import foon_asp
+from foon_asp.network.statistics import count
+from foon_asp.questions.result import Result
 from foon_asp.report.frame import csv_text, markdown_text
+from foon_asp.report.stacked import room
+from foon_asp.report.statistics_table import statistics_text
 from foon_asp.rules.constraint_library import library_constraints
 from tests.conftest import Cli
 
@@ -80,3 +85,54 @@ def test_in_python_the_same(cli: Cli) -> None:
     front = foon_asp.pareto(foon_asp.load().problem("macaroni"))
     assert front.csv() == cli("pareto", "--goal", "macaroni", "--format", "csv").out
     assert front.markdown() == cli("pareto", "--goal", "macaroni", "--format", "markdown").out
+
+
+def shown(result: Result, columns: int) -> list[str]:
+    """Give what a terminal shows, without blanks at the ends of lines."""
+    with room(columns):
+        drawn = result.renderable() or result.text().rstrip()
+    console = Console(file=io.StringIO(), width=columns, color_system=None)
+    with console.capture() as captured:
+        console.print(drawn, markup=False, highlight=False)
+    return [line.rstrip() for line in captured.get().splitlines()]
+
+
+def test_a_narrow_terminal_shows_a_block_for_each_row() -> None:
+    problem = foon_asp.load().problem("macaroni")
+    best = shown(foon_asp.optima(problem), 60)
+    assert best[2:8] == [
+        "goal: macaroni",
+        "best by: units, inputs",
+        "units: 9",
+        "inputs: 21",
+        "success: 0.4988",
+        "status: optimal",
+    ]
+    judged = shown(foon_asp.compare_searches(problem, ["bfs"]), 74)
+    assert judged[-7:-2] == [
+        "search: bfs",
+        "units: 10  1.11×",
+        "inputs: 24  1.14×",
+        "success: 0.5955  0.95×",
+        "executes: when reordered",
+    ]
+    front = shown(foon_asp.pareto(problem), 60)
+    assert front[-4:] == [
+        "point: 3",
+        "units: 11",
+        "success: ≈ 0.6293",
+        "changes: - fill, heat  + fill, switch on, pour",
+    ]
+    assert "beyond: above 0.8075 (+15.3 %): - twist, pound, pour  +" in shown(
+        foon_asp.sensitivity(foon_asp.load().problem("ice")), 60
+    )
+    network = foon_asp.load().network
+    with room(60):
+        assert max(map(len, statistics_text(network, [count(network)], False).splitlines()[3:38])) <= 60
+
+
+def test_at_75_columns_tables_are_tables() -> None:
+    problem = foon_asp.load().problem("macaroni")
+    front = foon_asp.pareto(problem)
+    assert shown(front, 75)[-5:] == front.text().splitlines()[-5:]
+    assert any(line.startswith("macaroni units, inputs") for line in shown(foon_asp.optima(problem), 75))

@@ -2,8 +2,9 @@
 
 import contextlib
 import os
+import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
 from foon_asp.errors import UserError
@@ -121,6 +122,16 @@ def console(err: bool = False) -> "Console":
     here = sys.stderr if err else sys.stdout
     stream = here.stream if isinstance(here, SafeStream) else here
     return Console(file=cast(TextIO, SafeStream(stream, remarks=err, styled=True)))
+
+
+def fitted(text: Callable[[], str]) -> str:
+    """Give a text as wide as the terminal that it is printed on; anywhere else, its width is free."""
+    if not sys.stdout.isatty():
+        return text()
+    from foon_asp.report.stacked import room
+
+    with room(shutil.get_terminal_size().columns):
+        return text()
 
 
 def drop_output() -> None:

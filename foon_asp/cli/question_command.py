@@ -1,6 +1,7 @@
 """A command for each question of the catalog, made from its description."""
 
 import contextlib
+import functools
 import sys
 import textwrap
 from collections.abc import Callable, Mapping
@@ -14,7 +15,7 @@ from foon_asp.cli.asking import ask, find_question, parameters
 from foon_asp.cli.click_option import Command, click_option
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import console, write_data
+from foon_asp.cli.output import console, fitted, write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
@@ -144,7 +145,7 @@ def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
 
         click.echo(plain_text(renderable), nl=False)
     elif format_ == "text":
-        click.echo(found.text(**how), nl=False)
+        click.echo(fitted(functools.partial(found.text, **how)), nl=False)
     elif format_ == "json":
         click.echo(found.json_text(), nl=False)
     elif format_ in _SHOWN:

@@ -1,5 +1,6 @@
 """``foon-asp stats``: what is in a network."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,7 @@ import click
 
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.output import fitted
 from foon_asp.network import LEVELS, network_at_level
 from foon_asp.network.statistics import count
 from foon_asp.questions.contract import TABLES
@@ -46,6 +48,8 @@ def command(
         kitchen = kitchen_nodes(at_level, read.kitchen_items) if read.kitchen_items else None
         levels.append(count(at_level, kitchen))
     told = read.network, levels, bool(read.kitchen_items)
-    text = statistics_text(*told) if format_ == "text" else document_text(statistics_json(*told), format_)
-    click.echo(text, nl=False)
+    if format_ == "text":
+        click.echo(fitted(partial(statistics_text, *told)), nl=False)
+    else:
+        click.echo(document_text(statistics_json(*told), format_), nl=False)
     return ExitCode.DONE

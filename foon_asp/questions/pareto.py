@@ -39,6 +39,7 @@ from foon_asp.report.answer import (
     success_texts,
     unit_lines,
 )
+from foon_asp.report.stacked import is_narrow, stacked_lines
 
 _FEWEST, _MOST = 2, 3  # objectives
 
@@ -352,6 +353,10 @@ def _table(front: Front) -> Iterator[str]:
     words = ["", *(changes_text(network, gone, new) for gone, new in changes)]
     if len(front.points) > 1:
         words[0] = "units that go (-) and come (+)"
+    if is_narrow():
+        headings, *rows = zip(*columns, words, strict=True)
+        yield from stacked_lines([*headings[:-1], "changes"], rows)
+        return
     for *cells, note in zip(*columns, words, strict=True):
         row = "  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
         yield f"{row}    {note}"

@@ -19,6 +19,7 @@ from foon_asp.escapes import escaped
 from foon_asp.network import counted
 from foon_asp.problem import Objective, multiplies
 from foon_asp.proof.simulation import Verdict
+from foon_asp.report.stackable import Stackable
 
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)
 _HEADINGS = ("goal", "search", "units", "inputs", "success", "executes")
@@ -57,7 +58,7 @@ def comparisons_table(comparisons: Sequence[Comparison]) -> RenderableType:
         for row in (goal, *rows):
             verdict = Text("  " + escaped(row[5]), style=_STYLES.get(row[5].partition(" (")[0], ""))
             table.add_row(*row[1:5], verdict, style="bold" if row is goal else "")
-        parts += [Text(), Text(escaped(comparison.goal), style="bold cyan"), table]
+        parts += [Text(), Text(escaped(comparison.goal), style="bold cyan"), Stackable(table)]
     return Group(*parts, Text(), *(Text(note, style="dim") for note in _notes(comparisons)))
 
 

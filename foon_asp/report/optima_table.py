@@ -10,6 +10,7 @@ from rich.text import Text
 from foon_asp.asp import Outcome, Status
 from foon_asp.escapes import escaped
 from foon_asp.problem import Objective
+from foon_asp.report.stackable import Stackable
 
 _STYLES = {
     Status.OPTIMAL: "green",
@@ -19,7 +20,7 @@ _STYLES = {
 }
 
 
-def optima_table(outcomes: Sequence[Outcome]) -> Table:
+def optima_table(outcomes: Sequence[Outcome]) -> Stackable:
     """Lay out the table; outcomes of one goal stand together, and equal trees share a row."""
     problem = outcomes[0].problem
     trees, tree = ("task trees", "tree") if problem.items is None else ("plans", "plan")
@@ -45,7 +46,7 @@ def optima_table(outcomes: Sequence[Outcome]) -> Table:
     for goal, rows in _by_goal(outcomes):
         for place, row in enumerate(rows):
             table.add_row(Text(escaped(goal) if place == 0 else ""), *_cells(row, asked))
-    return table
+    return Stackable(table)
 
 
 def _by_goal(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, list[list[Outcome]]]]:

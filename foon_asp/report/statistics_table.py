@@ -8,6 +8,7 @@ from foon_asp.document.json_document import document, nodes_json
 from foon_asp.escapes import escaped
 from foon_asp.network import Network, counted
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
+from foon_asp.report.stacked import is_narrow
 from foon_asp.text.json_value import Json
 
 _SHOWN = 10
@@ -113,4 +114,6 @@ def _origins(network: Network) -> tuple[Counter[str], tuple[str, ...]]:
 
 
 def _row(name: str, figures: Sequence[str]) -> str:
+    if is_narrow():
+        return f"{name}: {', '.join(figures)}"
     return f"{name:<46}" + "".join(f"{figure:>10}" for figure in figures)

@@ -25,6 +25,7 @@ from foon_asp.questions.result import Ending
 from foon_asp.questions.sensitivity.envelope import Envelope
 from foon_asp.questions.sensitivity.interval import End, Flip, Interval
 from foon_asp.report.answer import changes_text, goal_lines, headline, success_text
+from foon_asp.report.stacked import is_narrow, stacked_lines
 
 _SUCCESS = (Objective.SUCCESS,)
 _SHORT = Fraction(1, 10**9)  # from which on a number is written without an exponent
@@ -190,8 +191,17 @@ def _table(found: Sensitivity, flipping: list[Interval]) -> Iterator[str]:
                 high + "?" * (not interval.above.proved),
             ]
         )
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     names = ["motion", *map(_named, flipping)]
+    if is_narrow():
+        beyond = [
+            "; ".join(f"{_side(flip)}: {_changes(found.outcome, flip)}" for flip in i.flips) for i in flipping
+        ]
+        blocks = zip(names[1:], rows[1:], beyond, strict=True)
+        yield from stacked_lines(
+            ["motion", *rows[0], "beyond"], ([name, *row, text] for name, row, text in blocks)
+        )
+        return
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for place, (row, name) in enumerate(zip(rows, names, strict=True)):
         cells = "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True))
         yield f"  {cells}  {name}"

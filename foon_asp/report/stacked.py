@@ -1,0 +1,38 @@
+"""Tables of text where there is little room: a block for each row, a line ``name: value`` for each cell."""
+
+import contextlib
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
+from contextvars import ContextVar
+
+NARROW = 75  # columns: with fewer, a table is stacked
+
+_room: ContextVar[int | None] = ContextVar("_room", default=None)
+
+
+@contextlib.contextmanager
+def room(columns: int | None) -> Iterator[None]:
+    """Make texts in a ``with`` block for a terminal of so many columns; ``None`` where there is none."""
+    token = _room.set(columns)
+    try:
+        yield
+    finally:
+        _room.reset(token)
+
+
+def is_narrow() -> bool:
+    """Whether tables of text are to be stacked."""
+    columns = _room.get()
+    return columns is not None and columns < NARROW
+
+
+def stacked_lines(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """Give the lines of all rows, with an empty one between two; empty cells are left out."""
+    columns = max(20, _room.get() or NARROW)
+    for place, row in enumerate(rows):
+        if place:
+            yield ""
+        for heading, cell in zip(headings, row, strict=True):
+            if text := cell.strip():
+                text = f"{heading.strip()}: {text}"
+                yield from textwrap.wrap(text, columns, subsequent_indent="  ", break_on_hyphens=False)
