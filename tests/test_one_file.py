@@ -217,3 +217,39 @@ def test_sessions_and_questions_of_a_batch_can_start_from_what_no_unit_makes(
         "@starting": "optimal",
     }
     assert "3 of them answered before" in cli(*words).out
+
+
+def test_a_recipe_follows_what_is_the_verbs_own(
+    cli: Cli, recipe: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(recipe.parent)
+    marked(recipe)
+    tree, proof, asked = Path("tree.txt"), Path("proof.json"), Path("asked.jsonl")
+    tree.write_text(cli("search", "bfs", recipe, "--format", "foon").out, encoding="utf-8")
+    assert cli("check", tree, recipe).out == cli("check", tree, "--network", recipe).out
+    assert cli("check", tree, recipe).code == 0
+    for verb in ("trace", "schedule"):  # what they say of this tree is not the point
+        named, option = cli(verb, tree, recipe), cli(verb, tree, "--network", recipe)
+        assert (named.code, named.out) == (option.code, option.out)
+    asked.write_text('{"goal": "@goals"}\n', encoding="utf-8")
+    assert "1 optimal" in cli("batch", asked, recipe, "--results", "rows.jsonl").out
+    assert (
+        "1 of them answered before" in cli("batch", asked, "--network", recipe, "--results", "rows.jsonl").out
+    )
+    for words in ((recipe,), ("--network", recipe)):
+        assert "the same 2 units" in cli("diff", tree, "solve", *words).out
+    other = recipe.with_name("other.txt")
+    other.write_text(RECIPE.replace("egg", "tofu"), encoding="utf-8")
+    two = cli("diff", "solve", f"solve {other}", recipe).err  # what the last unit makes
+    assert "name one with --goal" in two
+    assert "tofu; fried" in cli("diff", "solve", f"solve {other} --goal 'tofu; fried; in [pan]'", recipe).out
+
+    proof.write_text(cli("certify", recipe).out, encoding="utf-8")
+    assert "other data are named with --network or --data" in cli("verify", proof, recipe).err
+    assert cli("verify", proof, "--network", recipe).code == 0
+    for network in (recipe, recipe.parent):
+        assert "data are named with --network or --data" in cli("shell", network).err
+    Path("lines.txt").write_text("# a session\n\nsolve\n", encoding="utf-8")
+    assert EGG in cli("shell", "lines.txt", recipe).out
+    ran = cli("search", "bfs", "egg")
+    assert (ran.code, "a goal is named with --goal" in ran.err) == (2, True)

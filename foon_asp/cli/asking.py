@@ -139,11 +139,13 @@ class _Command:
             flags = sorted(each.opts[0] for each in command.params if each.name in without)
             raise UserError(f"found {words!r}, expected a question without {', '.join(flags)}")
         beside = {option: value for option, value in here.params.items() if _is_given(here, option)}
-        if any(_is_given(own, option) for option in DATA):
+        if any(own.params.get(option) for option in DATA):
             beside = {option: value for option, value in beside.items() if option not in DATA}
         defaults = {**(here.default_map or {}), **beside}  # a session has something to say, too
         asked = command.make_context(name, rest, default_map=defaults, obj=here.obj)
         here.call_on_close(asked.close)
+        if beside.get("sources"):  # a default is for options
+            asked.params["sources"] = beside["sources"]
         given = {name: value for name, value in asked.params.items() if name not in {"format_", "output"}}
         with asked.scope(cleanup=False):
             deadline = options.begin(given.pop("time_limit", None), given.pop("memory_limit", None))

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -31,6 +32,7 @@ from foon_asp.text.json_value import Json, json_text
 
 @click.command("batch")
 @click.argument("questions", type=click.Path(path_type=NamedPath), metavar="QUESTIONS.jsonl")
+@options.sources_argument
 @click.option(
     "--results",
     "results_file",
@@ -55,13 +57,15 @@ def command(
     time_limit: float | None,
     memory_limit: int | None,
     format_: str,
-    **data: object,
+    sources: tuple[Path, ...],
+    **data: Any,
 ) -> ExitCode:
     """Answer every question of a file, and write each answer as soon as it is found.
 
     \b
     foon-asp batch questions.jsonl --results answers.jsonl --jobs 2
     foon-asp batch questions.jsonl --results answers.parquet --network recipes.foon
+    foon-asp batch questions.jsonl recipe.txt --results answers.jsonl
     foon-asp batch questions.jsonl --results answers.jsonl --scheduler tcp://10.0.0.5:8786
 
     \b
@@ -82,6 +86,8 @@ def command(
     with 3 when a limit stopped some, or ctrl-C the run.
     """
     check_outputs()
+    given = options.with_sources(sources, data["folder"], data["network"])
+    data["folder"], data["network"] = given
     lines = read_questions(questions, time_limit, measured(data))
     opening = Opening(tuple(data.items()), digest(data, [file for line in lines for file in line.files]))
     asked = list(each_question(lines, opening(quiet=False)))

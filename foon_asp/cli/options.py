@@ -147,6 +147,24 @@ def reading() -> Watch:
     return (deadline or Deadline()).watched("reading", late=True)
 
 
+def with_sources(
+    sources: Sequence[Path], folder: Path | None, network: Sequence[Path]
+) -> tuple[Path | None, tuple[Path, ...]]:
+    """Give the folder and the networks that are named, with and without an option.
+
+    A single folder without an option is one with all data. Raises :class:`UserError` for what is not there.
+    """
+    for source in sources:
+        if not source.exists():
+            raise UserError(
+                f"found {str(source)!r}, expected a recipe, a folder or a store, and there is no such path; "
+                "a goal is named with --goal"
+            )
+    if len(sources) == 1 and sources[0].is_dir() and folder is None and not network:
+        return sources[0], ()
+    return folder, (*sources, *network)
+
+
 def read_dataset(
     folder: Path | None,
     network: Sequence[Path],
@@ -162,7 +180,7 @@ def read_dataset(
 ) -> Dataset:
     """Read the data that the options name; warnings go to stderr. A session has it already.
 
-    ``sources`` are networks named without an option; a single folder among them is one with all data.
+    ``sources`` are networks named without an option, see :func:`with_sources`.
     """
     here = held()
     if here:
@@ -172,16 +190,7 @@ def read_dataset(
                 "a session keeps the data it was started with; to take another kitchen: kitchen FILE"
             )
         return here.dataset
-    for source in sources:
-        if not source.exists():
-            raise UserError(
-                f"found {str(source)!r}, expected a recipe, a folder or a store, and there is no such path; "
-                "a goal is named with --goal"
-            )
-    if len(sources) == 1 and sources[0].is_dir() and folder is None and not network:
-        folder = sources[0]
-    else:
-        network = (*sources, *network)
+    folder, network = with_sources(sources, folder, network)
     with reading():
         files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
         dataset = read_data(files, lenient, level)

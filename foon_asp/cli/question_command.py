@@ -35,7 +35,8 @@ def question_command(verb: str) -> click.Command:
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answering(question)
     command = (options.debug_option if question.pose is no_data else options.data_options)(command)
-    if question.pose is not no_data and not any(option.positional for option in question.options):
+    takes_all = any(option.positional and option.many for option in question.options)
+    if question.pose is not no_data and not takes_all:  # behind what is the question's own
         command = options.sources_argument(command)
     for option in _format_options(question):
         command = option(command)

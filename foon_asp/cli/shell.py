@@ -1,5 +1,6 @@
 """``foon-asp shell``: a session: data is read once, and many questions are asked."""
 
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,9 +18,13 @@ from foon_asp.problem import ContainerRule
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.rules.constraint import Constraint
 
+_NETWORK = re.compile(r"(\s*(#.*)?\n)*(//|O\d*\s|[\[{])")  # as FOON text and JSON begin, and no session
+_DATA = "data are named with --network or --data"
+
 
 @click.command("shell")
 @click.argument("script", required=False, type=click.Path(path_type=NamedPath), metavar="[SCRIPT]")
+@options.sources_argument
 @click_options(GOALS, OBJECTIVES, CONTAINERS, *RULES, *LIMITS)
 @options.data_options
 def command(
@@ -106,11 +111,15 @@ def _lines(script: Path | None) -> Iterator[str]:
         yield from sys.stdin
         return
     try:
+        if script.is_dir():
+            raise UserError(f"{script}: found a folder, expected the lines of a session; {_DATA}")
         text = script.read_text(encoding="utf-8")
     except OSError as error:
         raise UserError(f"{script}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise UserError(f"{script}: cannot be read: {error}") from None
+    if _NETWORK.match(text):
+        raise UserError(f"{script}: found a network, expected the lines of a session; {_DATA}")
     yield from text.splitlines()
 
 

@@ -21,7 +21,7 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
     deadline.doing = "reading"
     if len(files) == 1:
         text = read_plain_text(files[0])
-        if not text.startswith(sas_reader.BEGINNING):
+        if not is_translated(text):
             raise UserError(
                 f"{files[0]}: found one file that is not of Fast Downward's translator (it begins with "
                 f"{sas_reader.BEGINNING}), expected DOMAIN.pddl PROBLEM.pddl"
@@ -33,3 +33,8 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
     with deadline.watched("reading"):
         task = read_pddl(*files)
     return relaxed(task, deadline)
+
+
+def is_translated(text: str) -> bool:
+    """Whether a text looks like what Fast Downward's translator writes."""
+    return text.startswith(sas_reader.BEGINNING)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, head_json, listed_unit_json, named_json
+from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, Source, UnitPrices, counted, unit_at_level
 from foon_asp.problem import (
     ContainerRule,
@@ -22,6 +23,7 @@ from foon_asp.problem import (
 )
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.contract import TABLES, Option, Part, question
+from foon_asp.questions.each import Each
 from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
@@ -174,6 +176,8 @@ def _posed_side(command: Command, name: str, goals_named: Sequence[str], contain
     if name.split(" ", maxsplit=1)[0] != "solve" or Path(name).exists():
         return _file_side(Path(name), command.dataset, goals_named, containers)
     answer = command.ask(name, without=("certificate_file", "cross_check", "soft"))
+    if isinstance(answer, Each):
+        raise UserError(f"{name}: no goal is named, and it is solved for several: name one with --goal")
     assert isinstance(answer, Answer)
     if answer.units is None:
         raise NoTreeError(f"{name}: {headline(answer)}", answer.ending)

@@ -19,6 +19,7 @@ from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.certified import verified_json, verified_text
+from foon_asp.text.plain_file import read_plain_text
 
 if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
     from foon_asp.certificate import Certificate
@@ -83,8 +84,13 @@ def _posed(command: Command, task: Sequence[Path]) -> tuple[Foon | Problem]:
         return the_data(command)
     if any(map(command.given, DATA)):
         raise UserError("found options for data beside a planning task: a certificate is about one of them")
-    from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)
+    from foon_asp.planning.task_files import is_translated, read_task  # noqa: PLC0415 (it loads clingo)
 
+    if len(task) == 1 and (task[0].is_dir() or not is_translated(read_plain_text(task[0]))):
+        raise UserError(
+            f"{task[0]}: found no planning task, which may follow a certificate; other data are named with "
+            "--network or --data"
+        )
     with command.reading():
         return (read_task(task, begin(None, None)).problem(),)
 
