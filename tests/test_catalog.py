@@ -62,7 +62,7 @@ reduce: derivation dominance exact_costs forced graph narrow near reduction redu
     upper_bound wide
 report: answer
 rules: constraint
-text: assumed_goals clean_line data_folder diagnostics exact_price goal_name grammar item_list
+text: assumed_goals bytes_read clean_line data_folder diagnostics exact_price goal_name grammar item_list
     json_fault json_list json_node json_object json_value label_list line line_parser listed_unit
     motion_times object_list
     plain_file provenance rate_table reader stated_prices table_rows unit_price_list writer

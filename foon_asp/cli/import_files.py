@@ -8,6 +8,7 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.progress import bytes_bar
 from foon_asp.dataset.dataset import left_out
 from foon_asp.errors import UserError
 from foon_asp.network import counted
@@ -43,7 +44,8 @@ def command(
     if beside["folder"] is None and not paths and not network:
         raise UserError("name the networks to import, or a folder of data with --data")
     files = find_data(network=(*paths, *network), **beside)
-    imported = import_files(files, store, lenient)
+    with bytes_bar("importing", files.network):
+        imported = import_files(files, store, lenient)
     for text in (*summarize(imported.warnings), *imported.remarks):
         click.echo(text, err=True)
     if imported.left_out:

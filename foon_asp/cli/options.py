@@ -10,6 +10,7 @@ from foon_asp.cli.click_option import Command, click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.held import held
 from foon_asp.cli.named_path import NamedPath
+from foon_asp.cli.progress import bytes_bar
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.reading import read_dataset as read_data
 from foon_asp.deadline import Deadline, LimitError, Watch
@@ -193,6 +194,7 @@ def read_dataset(
     folder, network = with_sources(sources, folder, network)
     with reading():
         files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices)
+    with bytes_bar("reading", files.network), reading():
         dataset = read_data(files, lenient, level)
         if measures:
             from foon_asp.rules.measure import read_measures

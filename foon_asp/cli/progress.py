@@ -3,8 +3,9 @@
 import contextlib
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
@@ -14,11 +15,14 @@ from foon_asp.asp import Reporter
 from foon_asp.cli.output import console
 from foon_asp.problem import Costs, Objective
 from foon_asp.report.answer import bound_text, costs_text
+from foon_asp.text.bytes_read import telling
 
 if TYPE_CHECKING:
+    from rich.progress import ProgressColumn
     from rich.status import Status
 
 _PATIENCE = 0.3  # seconds before anything is shown: most answers are there by then
+_LONG = 1.0  # seconds of reading before a bar is shown
 
 
 class Progress(Reporter):
@@ -80,10 +84,47 @@ def bar(word: str, total: int, completed: int) -> Iterator[Callable[[], None]]:
     if total < 20 or not sys.stderr.isatty():
         yield lambda: None
         return
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import MofNCompleteColumn
+
+    with _bar(word, MofNCompleteColumn(), total, completed) as advance:
+        yield lambda: advance(1)
+
+
+@contextlib.contextmanager
+def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
+    """Show at a terminal how many bytes of networks are read in a ``with`` block, and the time left.
+
+    Most networks are read before anything is shown. Workers, which have no command, show nothing.
+    """
+    if not sys.stderr.isatty() or click.get_current_context(silent=True) is None:
+        yield
+        return
+    total = sum(file.stat().st_size for file in files if file.is_file())
+    began, done = time.monotonic(), 0
+    advance: Callable[[int], None] | None = None
+    with contextlib.ExitStack() as bars:
+
+        def tell(read: int) -> None:
+            nonlocal advance, done
+            done += read
+            if advance is not None:
+                advance(read)
+            elif time.monotonic() - began >= _LONG:
+                from rich.progress import DownloadColumn
+
+                advance = bars.enter_context(_bar(word, DownloadColumn(), total, done))
+
+        with telling(tell):
+            yield
+
+
+@contextlib.contextmanager
+def _bar(word: str, count: "ProgressColumn", total: int, completed: int) -> Iterator[Callable[[int], None]]:
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
-    columns = (TextColumn(word), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Bar(*columns, console=console(err=True)) as progress:
+    with Bar(
+        TextColumn(word), BarColumn(), count, TimeRemainingColumn(), console=console(err=True)
+    ) as progress:
         task = progress.add_task("", total=total, completed=completed)
-        yield lambda: progress.advance(task)
+        yield lambda steps: progress.advance(task, steps)

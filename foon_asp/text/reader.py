@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple, cast
 
 from foon_asp.network import Contents, FunctionalUnit, Network, NetworkBuilder, ObjectNode, Relation, Source
+from foon_asp.text.bytes_read import told
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import parse_line, parse_lines
@@ -273,12 +274,18 @@ class _FileReading:
         """Cut the text at the separators; give each piece, its line number, and whether it is the last."""
         text = self.text
         number = 1
+        tell, untold = told(), 0
         while (end := text.find("\n//\n", self.start)) >= 0:
             chunk = text[self.start : end]
             yield chunk, number, False
             number += chunk.count("\n") + 2
             self.start = end + 4
+            if tell and self.start - untold >= _AHEAD:
+                tell(len(text[untold : self.start].encode()))
+                untold = self.start
         yield text[self.start :], number, True
+        if tell:
+            tell(len(text[untold:].encode()))
 
     def _look_ahead(self, length: int) -> None:
         """Parse the new lines of the piece at hand, of that length, and of those that follow."""
