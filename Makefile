@@ -20,7 +20,7 @@ PAGE := --page docs/performance.md
 # pip compiles what it installs, but not what stays in a checkout: a third of a start where Python may not do so later
 COMPILE = $(BIN)/python -m compileall -q foon_asp
 
-.PHONY: demo docs test test-slow test-lowest coverage mutants tables lint bench bench-full clean
+.PHONY: demo docs man test test-slow test-lowest coverage mutants tables lint bench bench-full clean
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -33,6 +33,10 @@ demo: $(VENV)/installed
 docs: $(VENV)/installed-docs
 	$(BIN)/python docs/build.py
 	@echo "built: site/html/index.html"
+
+man: $(VENV)/installed
+	$(BIN)/python docs/man.py
+	@echo "written: build/man; man -M build/man foon-asp"
 
 test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest $(CORES)
@@ -74,7 +78,7 @@ bench-full: $(VENV)/installed-bench
 	rm -f recipe-like.jsonl deep.jsonl large.jsonl
 
 clean:
-	rm -rf .venv .venv-* site .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
+	rm -rf .venv .venv-* site build .mypy_cache .pytest_cache .ruff_cache .hypothesis dist
 
 $(VENV)/bin/python:
 	@test -n "$(PYTHON)" || { echo "foon-asp needs Python 3.11 or newer"; exit 1; }

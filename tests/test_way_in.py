@@ -2,14 +2,17 @@
 
 import re
 import runpy
+import shutil
+import subprocess
 from pathlib import Path
 
+import click
 import one_screen
 import pytest
 
 import foon_asp
 from foon_asp.asp import Status
-from foon_asp.cli.verbs import VERBS
+from foon_asp.cli.verbs import VERBS, verb_command
 from tests import notebooks
 from tests.conftest import ROOT
 
@@ -49,6 +52,34 @@ def test_the_reference_has_every_verb_every_name_and_every_schema() -> None:
     schemas = {file.stem for file in (ROOT / "foon_asp/document/schemas").glob("*.json")} - {"defs"}
     assert set(re.findall(r"^## (.*)$", pages["reference/schemas"], re.MULTILINE)) == schemas
     assert all(f"\n{page}\n" in pages["index"] for group in build["PAGES"].values() for page in group)
+
+
+def test_a_manual_page_has_every_option_and_only_plain_requests() -> None:
+    man = runpy.run_path(str(ROOT / "docs" / "man.py"))
+    page, front = "\n".join(man["verb_page"]("solve")), "\n".join(man["main_page"]())
+    for option in verb_command("solve").params:
+        if isinstance(option, click.Option) and not option.hidden:
+            assert option.opts[0].replace("-", r"\-") in page
+    assert "\n.nf\nfoon\\-asp solve \\-\\-goal \\(aqgreek salad\\(aq\n" in page
+    for verb in VERBS:
+        assert rf"\fBfoon\-asp\-{man['roff'](verb)}\fR(1)" in front
+    for each in (page, front):
+        assert each.isascii()
+        assert {*re.findall(r"^[.'](\w*)", each, re.MULTILINE)} <= {"TH", "SH", "SS", "PP", "TP", "nf", "fi"}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("groff") is None, reason="groff is not installed")
+def test_every_manual_page_can_be_read(tmp_path: Path) -> None:
+    man = runpy.run_path(str(ROOT / "docs" / "man.py"))
+    man["main"]([str(tmp_path)])
+    assert {file.stem for file in tmp_path.iterdir()} == {"foon-asp", *(f"foon-asp-{verb}" for verb in VERBS)}
+    for file in tmp_path.iterdir():
+        ran = subprocess.run(
+            ["groff", "-man", "-Tascii", "-ww", str(file)], capture_output=True, text=True, check=True
+        )
+        assert ran.stderr == ""
+        assert "SYNOPSIS" in re.sub(r".\x08|\x1b\[[0-9;]*m", "", ran.stdout)
 
 
 def test_the_demo_is_one_screen_and_says_what_is_true(capsys: pytest.CaptureFixture[str]) -> None:
