@@ -203,25 +203,40 @@ def regret(
             holds.no_better(left, outcome, f"with the {part} {id_}")
         regrets.append(Regret(part, id_, left.status, left.costs, other))
 
-    def kitchen_without(*gone: int) -> Problem:
-        if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
-            return problem.vary(without=[problem.network.objects[o] for o in gone])
-        return replace(problem, kitchen=problem.kitchen.difference(gone))
-
     alone = how._replace(session=None)  # another network: a program kept for it would be of no use
     for unit in sorted(tree.union(unit for unit in found if unit is not None)):
         without(Part.UNIT, unit, _without_units(problem, [unit]), alone)
     for of_one in of_motion.values():
         without(Part.MOTION, of_one[0], _without_units(problem, of_one), alone)
     for o in taken:
-        without(Part.ITEM, o, kitchen_without(o), how)
+        without(Part.ITEM, o, _kitchen_without(problem, o), how)
     if pairs:
         spared = [each.id for each in regrets if each.part is Part.ITEM and each.costs is not None]
         for o, other in combinations(spared, 2):
-            without(Part.PAIR, o, kitchen_without(o, other), how, other)
+            without(Part.PAIR, o, _kitchen_without(problem, o, other), how, other)
     order = (*chosen, Objective.UNITS)
     regrets.sort(key=lambda each: _worst_first(each, order))
     return Regrets(Answer._make(outcome), tuple(regrets))
+
+
+def regret_of(best: Answer, part: Part, id_: int, how: Settings) -> Regret:
+    """Find the optimum without one unit or one kitchen item of a problem that was answered."""
+    unit = part is Part.UNIT
+    fewer = _without_units(best.problem, [id_]) if unit else _kitchen_without(best.problem, id_)
+    left = find(fewer, best.objectives, how, Reporter())
+    return Regret(part, id_, left.status, left.costs)
+
+
+def loss_text(best: Answer, regret: Regret) -> str:
+    """Say in one line how much worse it is without a part, and what the best is then."""
+    left = "" if regret.costs is None else f"; the best is then {costs_text(regret.costs, best.objectives)}"
+    return f"{_loss(best, regret).strip()}{left}"
+
+
+def _kitchen_without(problem: Problem, *gone: int) -> Problem:
+    if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
+        return problem.vary(without=[problem.network.objects[o] for o in gone])
+    return replace(problem, kitchen=problem.kitchen.difference(gone))
 
 
 def _without_units(problem: Problem, gone: Sequence[int]) -> Problem:

@@ -1,11 +1,12 @@
 """A page that shows a tree and what else is known: one file, for any browser, without a network."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+from foon_asp.asp import Settings
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
@@ -253,30 +254,53 @@ def view(
             raise not_built(f"view --beside {name}")
         return View(answered(asked_with(problem, how), chosen, how))
     wanted = wanted or {Beside.SEARCHES, Beside.PROOF}
+    rules = {"constraints": constraints, "constants": constants, "encodings": encodings}
+    *_, grown = pages(problem, chosen, how, wanted, rules)
+    return grown
+
+
+def pages(
+    problem: Problem,
+    chosen: Sequence[Objective],
+    how: Settings,
+    wanted: Container[str],
+    rules: Mapping[str, Any],
+) -> Iterator[View]:
+    """Give a page about a tree as it grows: first with its answer, then with one thing more beside it each.
+
+    ``rules`` are those of the settings, as questions take them. Where items are used up, the answer is all
+    there is.
+    """
     deadline = how.begun
     how = how._replace(deadline=deadline)
-    proof = certified(problem, chosen, how) if Beside.PROOF in wanted else None
+    lasting = problem.items is None
+    proof = certified(problem, chosen, how) if Beside.PROOF in wanted and lasting else None
     answer = answered(asked_with(problem, how), chosen, how) if proof is None else proof.answer
     page = View(answer, certified=proof, network=whole(problem) if Beside.NETWORK in wanted else None)
+    yield page
+    if not lasting:
+        return
 
     def left() -> dict[str, Any]:
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
-    rules: dict[str, Any] = {"constraints": constraints, "constants": constants, "encodings": encodings}
-    if constraints or encodings is not None:
+    if how.constraints or how.encodings is not None:
         page = replace(page, without_rules=answered(problem, chosen, settings(**left())))
+        yield page
     if answer.ending is Ending.NEGATIVE:
         explained = why_not(problem, **rules, **left())
-        helped = None if explained.tree_exists else shopping_list(problem, objectives, **rules, **left())
-        return replace(page, why_not=explained, shopping=helped)
+        helped = None if explained.tree_exists else shopping_list(problem, chosen, **rules, **left())
+        yield replace(page, why_not=explained, shopping=helped)
+        return
     if Beside.SEARCHES in wanted:
         page = replace(page, searches=tuple(retrieve(problem, each.name, **left()) for each in searched(())))
+        yield page
     if Beside.ALTERNATIVES in wanted:
-        page = replace(page, alternatives=alternatives(problem, objectives, best=_BEST, **rules, **left()))
+        page = replace(page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **left()))
+        yield page
     if Beside.FRONT in wanted:
         several = chosen if len(chosen) > 1 else _against(chosen)
-        page = replace(page, front=pareto(problem, several, **rules, **left()))
-    return page
+        yield replace(page, front=pareto(problem, several, **rules, **left()))
 
 
 def _against(chosen: Sequence[Objective]) -> tuple[Objective, ...]:

@@ -20,7 +20,7 @@ from foon_asp.text.json_value import Json, json_line
 
 WEB = Path(__file__).resolve().parent / "web"
 
-_SCRIPTS = ("layout", "tree", "page", "obstacle", "answers", "proof", "network", "start")
+_SCRIPTS = ("element", "layout", "tree", "page", "obstacle", "answers", "proof", "network", "start")
 _OTHERS = ("without_rules", "alternatives", "front", "proof", "why_not", "shopping_list", "network")
 
 
@@ -33,16 +33,15 @@ class Page(NamedTuple):
 
     def html(self) -> str:
         """Give the page, a document by itself."""
-        light, picture, dark, page = (_web(f"{name}.css") for name in ("light", "picture", "dark", "page"))
-        script = '"use strict";\n(() => {\n' + "\n".join(_web(f"{name}.js") for name in _SCRIPTS) + "})();\n"
+        light, picture, dark, page = (web(f"{name}.css") for name in ("light", "picture", "dark", "page"))
+        script = '"use strict";\n(() => {\n' + "\n".join(web(f"{name}.js") for name in _SCRIPTS) + "})();\n"
         styles = {"light": light, "picture": picture, "page": dark + page}
-        return _web("page.html").format(
+        return web("page.html").format(
             title=html.escape(_seen(self.title)),
             text=html.escape(_seen(self.text)),
-            # data end at </script>, which is nowhere in them once < is written as a number
-            data=json_line(self.data).replace("<", "\\u003c"),
-            scripts=_digest(script),
-            styles=" ".join(map(_digest, styles.values())),
+            data=in_script(self.data),
+            scripts=digest(script),
+            styles=" ".join(map(digest, styles.values())),
             style="\n".join(f'<style id="{name}">{text}</style>' for name, text in styles.items()),
             script=f"<script>{script}</script>",
         )
@@ -107,12 +106,19 @@ def network_json(problem: Problem) -> Json:
     }
 
 
-def _web(name: str) -> str:
-    return (WEB / name).read_text(encoding="utf-8")
+def web(name: str, folder: Path = WEB) -> str:
+    """Give a file that pages are made of."""
+    return (folder / name).read_text(encoding="utf-8")
 
 
-def _digest(text: str) -> str:
+def digest(text: str) -> str:
+    """Give the digest of a script or style, as a policy names what it allows."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def in_script(data: Json) -> str:
+    """Write data into a script, which ends at </script>: that is nowhere in them with < as a number."""
+    return json_line(data).replace("<", "\\u003c")
 
 
 def _seen(text: str) -> str:

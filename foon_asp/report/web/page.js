@@ -1,21 +1,5 @@
 // The page: what is in the data, each part under a tab of its own. Text of the data is text, never markup.
 
-// Letters that are not seen, or that turn the direction of others, are shown as what cannot be shown.
-const UNSEEN = /[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff\u{e0000}-\u{e007f}]/gu;
-
-const data = JSON.parse(document.getElementById("data").textContent, (_, value) =>
-  typeof value === "string" ? value.replace(UNSEEN, "\ufffd") : value);
-
-function el(name, attributes = {}, ...children) {
-  const element = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) {
-    if (typeof value === "function") element.addEventListener(key, value);
-    else if (value !== null && value !== false) element.setAttribute(key, value === true ? "" : value);
-  }
-  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
-  return element;
-}
-
 const counted = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
 const figure = (value) => {
   if (value === null || value === undefined) return "–";
@@ -228,6 +212,16 @@ class TreePanel {
     }
     this.chosen.replaceChildren(...parts, el("button", { type: "button", class: "tool no-print", click: () => { this.chosen.hidden = true; this.picture.choose(""); } }, "Close"));
     this.chosen.hidden = false;
+    const kitchen = object !== undefined && this.fromKitchen().get(object);
+    if (object === undefined || kitchen) this.ask(object === undefined ? { unit: unit.id } : { item: kitchen.node });
+  }
+
+  // Lets who shows this page say more about what was chosen.
+  ask(what) {
+    const said = el("p", {});
+    const say = (text) => { said.textContent = text; };
+    this.chosen.children[0].after(said);
+    document.dispatchEvent(new CustomEvent("picked", { detail: { ...what, say } }));
   }
 }
 
