@@ -70,12 +70,12 @@ class Browser:
         scheme = "dark" if dark else "light"
         self._ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
 
-    def open(self, file: Path) -> None:
-        """Open a file, and wait until it is there."""
+    def open(self, page: Path | str) -> None:
+        """Open a file or an address, and wait until it is there."""
         self.requests.clear()
         self.complaints.clear()
         self._loaded = False
-        self._ask("Page.navigate", url=file.resolve().as_uri())
+        self._ask("Page.navigate", url=page if isinstance(page, str) else page.resolve().as_uri())
         while not self._loaded:
             self._read()
         self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

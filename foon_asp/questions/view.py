@@ -193,6 +193,7 @@ def _posed(
     foon-asp view --goal 'greek salad' --objective success --beside front -o salad.html
     foon-asp view --goal ice --constraint mine.lp -o ice.html
     foon-asp view --network FILE -o whole.html          a whole network
+    foon-asp view --goal macaroni --serve               a page that asks again
 
     The file is whole in itself: open it in any browser, with no network. It walks through the best tree step
     by step, shows the trees of the searches and why no tree is better, and where there is none, why. Under

@@ -1,0 +1,177 @@
+"""Where questions are handed in: one is answered at a time, and a later one ends the one before."""
+
+import threading
+from collections.abc import Callable
+from fractions import Fraction
+
+from foon_asp.asp import Reporter, Settings, Status
+from foon_asp.deadline import Cancel, Deadline, StoppedError, stoppable
+from foon_asp.errors import UserError
+from foon_asp.foon import Foon
+from foon_asp.problem import Costs, Objective
+from foon_asp.questions.arguments import chosen_objectives
+from foon_asp.questions.caller import Caller, asked_by
+from foon_asp.questions.regret import Part, loss_text, regret_of
+from foon_asp.questions.view import Beside, View, pages
+from foon_asp.report.answer import bound_text, costs_text, headline
+from foon_asp.rules.constraint import RuleText
+from foon_asp.serve.form import Form, Without
+from foon_asp.text.diagnostics import InputError
+from foon_asp.text.goal_name import nodes_beginning, notation
+from foon_asp.text.json_value import Json
+
+_KEPT = 4  # pages
+_NAMES = 30  # completions
+
+Tell = Callable[[Json], object]
+Rules = tuple[RuleText, ...]
+
+
+class _Told(Reporter):
+    """Tells of what is found until there is an answer; what other questions find later is not about it."""
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell, self._answered = tell, False
+
+    def event(self, event: Json) -> None:
+        """Tell of anything; of progress only before there is a page."""
+        self._answered = self._answered or event["kind"] == "page"
+        if event["kind"] != "progress" or not self._answered:
+            self._tell(event)
+
+    def warning(self, message: str) -> None:
+        """Tell of a warning."""
+        self.event({"kind": "warning", "text": message})
+
+    def tree(self, costs: Costs) -> None:
+        """Tell of a tree."""
+        self.event({"kind": "progress", "text": f"found a tree: {costs_text(costs)}"})
+
+    def bound(self, objective: Objective, bound: int | Fraction) -> None:
+        """Tell of a bound."""
+        self.event({"kind": "progress", "text": bound_text(objective, bound)})
+
+    def step(self, word: str, done: int, total: int) -> None:
+        """Tell of an answer of several."""
+        self.event({"kind": "progress", "text": f"{word}: {done} of {total}"})
+
+
+class Desk:
+    """What is asked of data, under limits for each question, ``first`` the question that the page opens with.
+
+    What happens is told as it happens, in plain values: ``progress`` and ``warning`` with a text, ``page``
+    with the number of a page, ``error`` with a text and, for rules, places in their text.
+    """
+
+    def __init__(
+        self, foon: Foon, first: Form, time_limit: float | None = None, memory_limit: int | None = None
+    ) -> None:
+        self._foon, self._first = foon, first
+        self._limits = time_limit, memory_limit
+        self._turn = threading.Lock()
+        self._token = Cancel()
+        self._pages: dict[int, tuple[View, Rules]] = {}
+        self._number = 0
+
+    def start(self) -> Json:
+        """Give what the page knows when it opens."""
+        dataset = self._foon.dataset
+        return {
+            "goals": [entry.pattern.label for entry in dataset.listed],
+            "kitchen": sorted(notation(dataset.names.node(o)) for o in dataset.kitchen),
+            "objectives": [*Objective, *dataset.measures],
+            "beside": [*Beside],
+            "first": self._first._asdict(),
+        }
+
+    def names(self, start: str) -> list[str]:
+        """Give object nodes whose names begin so, in the notation by which they are asked for."""
+        names = self._foon.dataset.names
+        return [notation(names.node(o)) for o in nodes_beginning(start, names, _NAMES)]
+
+    def page(self, number: int) -> str | None:
+        """Give a page by its number, ``None`` where it is no longer kept."""
+        kept = self._pages.get(number)
+        return None if kept is None else kept[0].html()
+
+    def cancel(self) -> None:
+        """End what is being answered, with what was found by then."""
+        self._token.cancel()
+
+    def next(self) -> Cancel:
+        """End what is being answered, and give a token for the next question."""
+        self._token.cancel()
+        self._token = Cancel()
+        return self._token
+
+    def ask(self, form: Form, token: Cancel, tell: Tell) -> None:
+        """Answer a question with pages, and tell of all that happens."""
+
+        def answer(deadline: Deadline, told: _Told) -> None:
+            if not form.goals:
+                raise UserError("name a goal")
+            with deadline.watched("reading", late=True):
+                foon = self._foon.vary(adding=form.adding, without=form.without)
+                problem = foon.problem(*form.goals, containers=form.containers, items=form.items)
+            chosen = chosen_objectives(problem, form.objectives)
+            rules = (RuleText(form.rules),) if form.rules.strip() else ()
+            how = Settings(rules, deadline=deadline)
+            for page in pages(problem, chosen, how, form.beside, {"constraints": rules}):
+                assert page.answer is not None
+                tell({"kind": "page", "number": self._kept(page, rules), "text": headline(page.answer)})
+
+        self._run(answer, token, tell)
+
+    def without(self, asked: Without, token: Cancel, tell: Tell) -> None:
+        """Tell what the optimum of an answer is without one part of it."""
+
+        def answer(deadline: Deadline, told: _Told) -> None:
+            view, rules = self._pages.get(asked.page, (None, ()))
+            if view is None or view.answer is None:
+                raise UserError("this page is no longer kept: ask again")
+            best, network = view.answer, view.answer.problem.network
+            if best.status is not Status.OPTIMAL:
+                raise UserError("the tree is not proved best")
+            if asked.unit is not None:
+                part, found = Part.UNIT, network.unit_of_number(asked.unit)
+            else:
+                of_item = (o for o in best.problem.kitchen if str(network.objects[o]) == asked.item)
+                part, found = Part.ITEM, next(of_item, None)
+            if found is None:
+                raise UserError("the tree has nothing of that kind")
+            how = Settings(rules, deadline=deadline)
+            told.event({"kind": "without", "text": loss_text(best, regret_of(best, part, found, how))})
+
+        self._run(answer, token, tell)
+
+    def _kept(self, page: View, rules: Rules) -> int:
+        self._number += 1
+        self._pages[self._number] = page, rules
+        for old in sorted(self._pages)[:-_KEPT]:
+            del self._pages[old]
+        return self._number
+
+    def _run(self, answer: Callable[[Deadline, _Told], None], token: Cancel, tell: Tell) -> None:
+        """Answer when it is its turn; whatever goes wrong is told."""
+        places, told = [], _Told(tell)
+        try:
+            with self._turn, stoppable(None, token, "asking") as within:
+                deadline = Deadline(*self._limits, within=within)
+                with asked_by(Caller(told, deadline=deadline)):
+                    answer(deadline, told)
+            return
+        except StoppedError as stopped:
+            text = str(stopped)
+        except InputError as error:
+            text = str(error)
+            places = [
+                {"line": each.source.line, "column": each.source.column, "text": each.message}
+                for each in error.diagnostics
+            ]
+        except UserError as error:
+            text = str(error)
+        except MemoryError:
+            text = "out of memory; --memory-limit stops before that"
+        except Exception as error:
+            text = f"foon-asp has a bug: {type(error).__name__}: {error}"
+        told.event({"kind": "error", "text": text, "places": places})

@@ -1,0 +1,37 @@
+"""The server: it listens on this machine alone, at an address that nobody can guess."""
+
+import secrets
+import socket
+from collections.abc import Callable
+
+import uvicorn
+
+from foon_asp.serve.desk import Desk
+from foon_asp.serve.site import site
+
+
+def serve(desk: Desk, ready: Callable[[str], object]) -> None:
+    """Serve a desk until ctrl-C; ``ready`` is called with the address."""
+    token = secrets.token_urlsafe(24)
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen()
+        port = listener.getsockname()[1]
+        config = uvicorn.Config(
+            site(desk, token, port),
+            access_log=False,  # it would have the token
+            log_config=None,
+            log_level="critical",
+            lifespan="off",
+            ws="none",
+            proxy_headers=False,
+            server_header=False,
+            timeout_graceful_shutdown=1,
+        )
+        ready(f"http://127.0.0.1:{port}/{token}/")
+        try:
+            uvicorn.Server(config).run(sockets=[listener])
+        except KeyboardInterrupt:
+            pass
+        finally:
+            desk.cancel()

@@ -1,0 +1,162 @@
+"""What the browser may ask of this machine, and who may ask it.
+
+An address is ``/TOKEN/...``. Who does not know the token, or comes by another host or from another site, is
+refused before anything else is looked at. No address is a path of a file.
+"""
+
+import asyncio
+import contextlib
+import hmac
+import threading
+from collections.abc import AsyncIterator, Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
+from starlette.routing import Route
+
+from foon_asp.deadline import Cancel
+from foon_asp.errors import UserError
+from foon_asp.report.page import digest, in_script, web
+from foon_asp.serve.desk import Desk, Tell
+from foon_asp.serve.form import read_form, read_without
+from foon_asp.text.json_value import Json, json_line
+
+Asgi = Callable[[Any, Any, Any], Any]
+
+_LONGEST = 1_000_000  # bytes of a question
+_WEB = Path(__file__).resolve().parent / "web"
+_HEADERS = {
+    "content-security-policy": "default-src 'none'; frame-ancestors 'none'",
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",  # the address has the token
+    "cache-control": "no-store",
+    "cross-origin-resource-policy": "same-origin",
+    "cross-origin-opener-policy": "same-origin",
+}
+
+
+def site(desk: Desk, token: str, port: int) -> Asgi:
+    """Give the site of a desk, for whoever knows the token and comes to this port of this machine."""
+
+    def opened(_: Request) -> Response:
+        page, policy = _asking_page(desk.start())
+        return HTMLResponse(page, headers={"content-security-policy": policy})
+
+    def answer(request: Request) -> Response:
+        page = desk.page(request.path_params["number"])
+        if page is None:
+            return PlainTextResponse("this page is no longer kept: ask again", 404)
+        return HTMLResponse(page, headers={"content-security-policy": "frame-ancestors 'self'"})
+
+    def names(request: Request) -> Response:
+        return JSONResponse(desk.names(request.query_params.get("start", "")))
+
+    async def ask(request: Request) -> Response:
+        return await _told(request, desk, lambda body: partial(desk.ask, read_form(body)))
+
+    async def without(request: Request) -> Response:
+        return await _told(request, desk, lambda body: partial(desk.without, read_without(body)))
+
+    async def cancel(_: Request) -> Response:
+        desk.cancel()
+        return Response(status_code=204)
+
+    routes = [
+        Route(f"/{token}/", opened),
+        Route(f"/{token}/page/{{number:int}}", answer),
+        Route(f"/{token}/names", names),
+        Route(f"/{token}/ask", ask, methods=["POST"]),
+        Route(f"/{token}/without", without, methods=["POST"]),
+        Route(f"/{token}/cancel", cancel, methods=["POST"]),
+    ]
+    return _guarded(Starlette(routes=routes), token, f"127.0.0.1:{port}")
+
+
+def _guarded(app: Asgi, token: str, host: str) -> Asgi:
+    """Refuse who may not ask, and send the headers that every answer has."""
+
+    async def guarded(scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] != "http":
+            return
+
+        async def sent(message: Any) -> None:
+            if message["type"] == "http.response.start":
+                own = {name.lower() for name, _ in message["headers"]}
+                more = [(name.encode(), value.encode()) for name, value in _HEADERS.items()]
+                message["headers"] = [*message["headers"], *(each for each in more if each[0] not in own)]
+            await send(message)
+
+        headers: dict[str, list[str]] = {}
+        for name, value in scope["headers"]:
+            headers.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
+        refused = _refused(scope["method"], scope["path"], headers, token, host)
+        await (app if refused is None else PlainTextResponse("refused", refused))(scope, receive, sent)
+
+    return guarded
+
+
+def _refused(method: str, path: str, headers: Mapping[str, list[str]], token: str, host: str) -> int | None:
+    """Say with which status a request is refused, ``None`` where it is not."""
+    if headers.get("host") != [host]:
+        return 421
+    origins = headers.get("origin", [])
+    if any(each != f"http://{host}" for each in origins):
+        return 403
+    if not hmac.compare_digest(path[1 : len(token) + 2].encode(), f"{token}/".encode()):
+        return 404
+    if method == "POST" and not (origins and headers.get("content-type") == ["application/json"]):
+        return 403
+    return None
+
+
+async def _told(
+    request: Request, desk: Desk, read: Callable[[bytes], Callable[[Cancel, Tell], None]]
+) -> Response:
+    """Answer a question line by line, each a JSON object, until it is answered or nobody listens."""
+    body = b""
+    async for part in request.stream():
+        body += part
+        if len(body) > _LONGEST:
+            return PlainTextResponse("this question is too long", 413)
+    try:
+        answer = read(body)
+    except UserError as error:
+        return PlainTextResponse(str(error), 400)
+
+    async def lines() -> AsyncIterator[str]:
+        loop, queue, token = asyncio.get_running_loop(), asyncio.Queue[Json | None](), desk.next()
+
+        def tell(event: Json | None) -> None:
+            with contextlib.suppress(RuntimeError):  # the server has ended
+                loop.call_soon_threadsafe(queue.put_nowait, event)
+
+        def work() -> None:
+            try:
+                answer(token, tell)
+            finally:
+                tell(None)
+
+        threading.Thread(target=work, daemon=True, name="foon-asp answer").start()
+        try:
+            while (event := await queue.get()) is not None:
+                yield json_line(event) + "\n"
+        finally:
+            token.cancel()
+
+    return StreamingResponse(lines(), media_type="application/x-ndjson")
+
+
+def _asking_page(data: Json) -> tuple[str, str]:
+    """Give the page that asks, and its policy."""
+    style = "\n".join([web("light.css"), web("dark.css"), web("page.css"), web("ask.css", _WEB)])
+    script = '"use strict";\n(() => {\n' + web("element.js") + web("ask.js", _WEB) + "})();\n"
+    page = web("ask.html", _WEB).format(style=style, script=script, data=in_script(data))
+    policy = (
+        f"default-src 'none'; script-src {digest(script)}; style-src {digest(style)}; connect-src 'self'; "
+        "frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+    return page, policy

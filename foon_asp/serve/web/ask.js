@@ -1,0 +1,166 @@
+// The page that asks: what is asked stands on the left, and what was answered is a page of its own on the right.
+
+const { first } = data;
+const body = (value) => ({ method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(value) });
+
+// Hands each line of an answer to a function as it comes.
+async function told(where, question, tell) {
+  const response = await fetch(where, body(question));
+  if (!response.ok) return tell({ kind: "error", text: await response.text(), places: [] });
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  let rest = "";
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) return undefined;
+    const lines = (rest + value).split("\n");
+    rest = lines.pop();
+    for (const line of lines) tell(JSON.parse(line, (_, each) => typeof each === "string" ? each.replace(UNSEEN, "\ufffd") : each));
+  }
+}
+
+// A field in which names of object nodes are completed.
+let fields = 0;
+function nameField(label, taken, known = []) {
+  const list = el("datalist", { id: `names${fields++}` });
+  let asked = 0;
+  const input = el("input", { type: "search", list: list.id, "aria-label": label, placeholder: label, autocomplete: "off",
+    input: async () => {
+      const turn = ++asked;
+      const start = input.value;
+      const found = start ? await (await fetch(`names?start=${encodeURIComponent(start)}`)).json() : [];
+      const names = [...known.filter((name) => name.startsWith(start)), ...found];
+      if (turn === asked) list.replaceChildren(...[...new Set(names)].map((name) => el("option", { value: name })));
+    },
+    keydown: (event) => { if (event.key === "Enter") { event.preventDefault(); take(); } },
+    change: () => take() });
+  const take = () => {
+    const name = input.value.trim();
+    if (name) taken(name);
+    input.value = "";
+  };
+  list.append(...known.map((name) => el("option", { value: name })));
+  return { input, take, parts: [input, list] };
+}
+
+// A list of names, each with a button that takes it away.
+function chips(label, names) {
+  const list = el("ul", { class: "chips", "aria-label": label });
+  const show = () => list.replaceChildren(...names.map((name) => el("li", {}, el("span", {}, name),
+    el("button", { type: "button", title: "Remove", "aria-label": `Remove ${name}`, click: () => { names.splice(names.indexOf(name), 1); show(); } }, "✕"))));
+  show();
+  return { list, add: (name) => { if (!names.includes(name)) names.push(name); show(); } };
+}
+
+const select = (label, options, value) => {
+  const field = el("select", { "aria-label": label }, options.map(([name, text]) => el("option", { value: name, selected: name === value }, text ?? name)));
+  return field;
+};
+const group = (name, ...parts) => el("fieldset", {}, el("legend", {}, name), ...parts);
+const tick = (name, checked, change) => el("label", { class: "line" }, el("input", { type: "checkbox", value: name, checked, ...(change ? { change } : {}) }), el("span", {}, name));
+const ticked = (holder, on = true) => [...holder.querySelectorAll("input")].filter((each) => each.checked === on).map((each) => each.value);
+
+const goals = [...first.goals];
+const goalChips = chips("Goals", goals);
+const goalField = nameField("Name a goal", goalChips.add, data.goals);
+
+const objectives = [...first.objectives];
+const objectiveChips = chips("Objectives, the most important first", objectives);
+const more = select("Add an objective", [["", "add an objective …"], ...data.objectives.map((name) => [name])], "");
+more.addEventListener("change", () => { if (more.value) objectiveChips.add(more.value); more.value = ""; });
+
+const containers = select("Container rule", [["strict"], ["implied"]], first.containers);
+const items = select("Items", [["lasting"], ["used-up", "used up"]], first.items);
+
+const had = new Set(data.kitchen);
+const kitchen = el("div", { class: "many", role: "group", "aria-label": "What the kitchen has" }, data.kitchen.map((name) => tick(name, true)));
+const kitchenField = nameField("Find, or add to the kitchen", (name) => {
+  const line = [...kitchen.children].find((each) => each.textContent === name);
+  if (line) line.querySelector("input").checked = true;
+  else kitchen.prepend(tick(name, true));
+  find("");
+});
+const find = (start) => [...kitchen.children].forEach((each) => { each.hidden = !each.textContent.includes(start); });
+kitchenField.input.addEventListener("input", () => find(kitchenField.input.value));
+
+const wrong = el("ul", { class: "bad told", id: "wrong", role: "alert" });
+const rules = el("textarea", { "aria-label": "Rules", spellcheck: "false", "aria-describedby": "wrong", placeholder: ":- use(U), motion(U,\"fry\").", input: () => marked([]) });
+rules.value = first.rules;
+
+// Where in the rules something is wrong: in words under them, and chosen in them.
+function marked(places) {
+  wrong.replaceChildren(...places.map(({ line, column, text }) => el("li", {},
+    el("button", { type: "button", class: "item", click: () => goTo(line, column) }, `line ${line}, column ${column}: ${text}`))));
+  if (!places.length) return rules.removeAttribute("aria-invalid");
+  rules.setAttribute("aria-invalid", "true");
+  return goTo(places[0].line, places[0].column);
+}
+
+function goTo(line, column) {
+  const before = rules.value.split("\n").slice(0, line - 1).reduce((sum, each) => sum + each.length + 1, 0);
+  const at = before + [...rules.value.slice(before)].slice(0, column - 1).join("").length;
+  rules.focus();
+  rules.setSelectionRange(at, Math.min(at + 1, rules.value.length));
+}
+
+const beside = el("div", {}, data.beside.map((name) => tick(name, first.beside.includes(name))));
+const status = el("p", { class: "told", role: "status" });
+const asks = el("button", { type: "button", class: "tool main", click: () => ask() }, "Ask");
+const stops = el("button", { type: "button", class: "tool", disabled: true, click: () => fetch("cancel", body({})) }, "Cancel");
+const frame = el("iframe", { title: "The answer" });
+let shown = 0;
+let turn = 0;
+
+document.body.append(
+  el("main", { class: "form" }, el("h1", {}, "What is asked"),
+    group("Goals", goalChips.list, ...goalField.parts),
+    group("What is best", objectiveChips.list, more),
+    el("div", { class: "pair" }, group("Containers", containers), group("Items", items)),
+    group("Kitchen", ...kitchenField.parts, kitchen),
+    group("Rules", rules, wrong),
+    group("Beside the tree", beside),
+    el("div", { class: "acts" }, asks, stops), status),
+  frame);
+
+async function ask() {
+  const now = ++turn;
+  [goalField, kitchenField].forEach((field) => field.take());
+  marked([]);
+  status.textContent = "asking …";
+  status.className = "told";
+  stops.disabled = false;
+  let said = "";
+  const on = ticked(kitchen);
+  await told("ask", {
+    goals, objectives, containers: containers.value, items: items.value, rules: rules.value, beside: ticked(beside),
+    adding: on.filter((name) => !had.has(name)), without: ticked(kitchen, false).filter((name) => had.has(name)),
+  }, (event) => {
+    if (now !== turn) return;
+    if (event.kind === "page") {
+      if (matchMedia("(max-width: 760px)").matches) frame.scrollIntoView();
+      shown = event.number;
+      frame.src = `page/${shown}`;
+      said = event.text;
+      status.textContent = said;
+    } else if (event.kind === "error") {
+      status.className = "told bad";
+      status.textContent = event.places.length ? "the rules cannot be read" : event.text;
+      said = status.textContent;
+      marked(event.places);
+    } else status.textContent = event.text;
+  }).catch((error) => { said = `the server does not answer: ${error.message}`; });
+  if (now !== turn) return;
+  status.textContent = said;
+  stops.disabled = true;
+}
+
+// What was chosen in the answer is asked about: what is the best without it?
+frame.addEventListener("load", () => {
+  const page = shown;
+  frame.contentDocument?.addEventListener("picked", ({ detail: { say, ...what } }) => {
+    if (!stops.disabled) return;  // it would end what is being answered
+    say("Without it: …");
+    told("without", { page, ...what }, (event) => say(`Without it: ${event.text}`)).catch(() => say(""));
+  });
+});
+
+if (goals.length) ask();
