@@ -90,9 +90,7 @@ def load(
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
-    limited = time_limit is not None or cancel is not None
-    within = None if time_limit is None else seconds(time_limit)
-    with stoppable(within, cancel, "reading") if limited else contextlib.nullcontext():
+    with _limited(time_limit, cancel, "reading"):
         known = read_measures(measures)
         read = read_dataset(find_data(folder, () if folder else paths, *beside), lenient, level)
         dataset = read.measured(known)
@@ -101,6 +99,15 @@ def load(
     for remark in foon.warnings:
         warn(remark)
     return foon
+
+
+def _limited(
+    time_limit: float | None, cancel: Cancel | None, doing: str
+) -> contextlib.AbstractContextManager[object]:
+    """Stop what is in a ``with`` block in time or by a token, if there is one of them."""
+    if time_limit is None and cancel is None:
+        return contextlib.nullcontext()
+    return stoppable(None if time_limit is None else seconds(time_limit), cancel, doing)
 
 
 PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
@@ -116,6 +123,8 @@ def build(
     utensils: Iterable[str] = (),
     unit_prices: UnitPricesNamed | None = None,
     measures: Files = (),
+    time_limit: float | None = None,
+    cancel: Cancel | None = None,
 ) -> "Foon":
     """Make data of units written in Python, with a kitchen, goals, rates and the rest.
 
@@ -131,6 +140,8 @@ def build(
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
+        time_limit: Stop after this many seconds.
+        cancel: A token that ends it from another thread.
 
     Returns:
         The data, from which problems are made.
@@ -138,6 +149,7 @@ def build(
     Raises:
         UserError: for what is no unit, a name that means no object node or several, or a rate or price out
             of range.
+        StoppedError: if it was stopped.
 
     Example:
         >>> brew = ("brew", ["water; hot", "tea bag"], ["tea; hot"])
@@ -151,20 +163,21 @@ def build(
         >>> foon_asp.solve(foon.problem())
         <Answer: optimal by units (strict containers): 2 units, 3 inputs>
     """
-    network = units if isinstance(units, Network) else _network(units)
-    last = {len(network) - 1: Source("the units", len(network))} if len(network) else {}
-    entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
-    starting = kitchen is None or kitchen == str(STARTING)
-    at_hand = starting_nodes(network) if starting else frozenset[int]()
-    data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
-    data = data._replace(goals_from=LAST if goals is None else "")
-    dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(read_measures(measures))
-    if goals is not None:
-        nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
-        listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))
-        dataset = dataset.with_goals(tuple(listed))
-    kept = None if starting else kitchen
-    foon = Foon(dataset.vary(Changes(kept, rates=rates, unit_prices=unit_prices)), "a network")
+    with _limited(time_limit, cancel, "building"):
+        network = units if isinstance(units, Network) else _network(units)
+        last = {len(network) - 1: Source("the units", len(network))} if len(network) else {}
+        entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
+        starting = kitchen is None or kitchen == str(STARTING)
+        at_hand = starting_nodes(network) if starting else frozenset[int]()
+        data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
+        data = data._replace(goals_from=LAST if goals is None else "")
+        dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(read_measures(measures))
+        if goals is not None:
+            nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
+            listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))
+            dataset = dataset.with_goals(tuple(listed))
+        kept = None if starting else kitchen
+        foon = Foon(dataset.vary(Changes(kept, rates=rates, unit_prices=unit_prices)), "a network")
     for remark in foon.warnings:
         warn(remark)
     return foon

@@ -1,9 +1,10 @@
 """What somebody in a notebook tries first."""
 
+import gc
 import importlib.util
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -202,6 +203,22 @@ def test_a_token_ends_reading(foon: Foon) -> None:
     token.cancel()
     with pytest.raises(StoppedError, match="cancelled"):
         foon_asp.load(cancel=token)
+    with pytest.raises(StoppedError, match="cancelled"):
+        foon_asp.to_unified_planning(foon.problem("ice"), cancel=token)
+    with pytest.raises(StoppedError, match="cancelled"):
+        foon_asp.build([("boil", "water; cold", "water; hot")], cancel=token)
+
+    def endless() -> Iterator[tuple[str, str, str]]:
+        while True:  # makes no garbage, and so nothing that would be interrupted while it is collected
+            time.sleep(0.001)
+            yield "boil", "water; cold", "water; hot"
+
+    gc.collect()
+    token = Cancel()
+    stopped, seconds = ended_by(token, lambda: foon_asp.build(endless(), cancel=token))
+    assert (type(stopped), seconds < LATE) == (StoppedError, True)
+    with pytest.raises(StoppedError, match=r"the time limit of 0\.1 s"):
+        foon_asp.build(endless(), time_limit=0.1)
     with pytest.raises(StoppedError, match="the time limit of 0 s"):
         foon_asp.check(foon.problem("ice"), (), time_limit=0)
 

@@ -17,8 +17,8 @@ from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
 from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
-from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.in_hand import OnProgress
+from foon_asp.questions.contract import Kind, Option, Part, described, question
+from foon_asp.questions.in_hand import OnProgress, in_hand
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Result
@@ -233,12 +233,17 @@ def export(
         return Exported(planning_task(problem, chosen, every_unit, _merged(problem, items)))
 
 
+@described()
+@in_hand(takes_time=False)
 def to_unified_planning(
     problem: Problem,
     objectives: Objectives = "units",
     *,
     every_unit: bool = False,
     items: str | None = None,
+    time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
+    cancel: Cancel | None = None,
 ) -> Any:
     """Give the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
