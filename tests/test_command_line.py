@@ -294,6 +294,7 @@ def test_a_goal_in_the_kitchen_needs_nothing(cli: Cli, data: Path) -> None:
         (["--", "-"], "found '-' after --"),
         (["--format", "xml"], "is not one of 'text', 'json', 'csv', 'markdown', 'foon'"),
         (["--no-such-option"], "No such option"),
+        (["--objektive", "units"], "Did you mean"),
     ],
 )
 def test_bad_usage_exits_with_2(cli: Cli, data: Path, words: list[str], message: str) -> None:

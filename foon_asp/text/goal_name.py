@@ -110,8 +110,8 @@ def find_goal(
     count, labelled = names.labelled(node.label)
     if count:
         said = f"no object node{wording.where} is exactly {str(node)!r}; with that label there are"
-        raise _unclear(said, names, count, labelled, wording)
-    raise _unknown(f"no object node{wording.where} has the label {node.label!r}", node.label, names, wording)
+        raise _unclear(said, names, count, _likest(node, labelled, names), wording)
+    raise _unknown(f"no object node{wording.where} has the label {node.label!r}", node, names, wording)
 
 
 def nodes_beginning(start: str, names: NodeNames, most: int) -> list[int]:
@@ -150,7 +150,7 @@ def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
         said = f"{place}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
             raise _unclear(f"{said}; with that label there are", names, count, labelled, _GOAL)
-        raise _unknown(f"{said} of the network", entry.pattern.label, names, _GOAL)
+        raise _unknown(f"{said} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
     return found
 
 
@@ -161,15 +161,25 @@ def _only(name: str, names: NodeNames, count: int, found: Sequence[int], wording
     return found[0]
 
 
-def _unknown(said: str, label: str, names: NodeNames, wording: Wording) -> GoalError:
+def _likest(node: ObjectNode, found: Sequence[int], names: NodeNames) -> Sequence[int]:
+    """Order nodes by how like one that is not there they are written; a label alone says nothing."""
+    if node == ObjectNode(node.label):
+        return found
+    import difflib  # noqa: PLC0415 (for faults alone)
+
+    written = {str(names.node(o)): o for o in found}
+    return [written[each] for each in difflib.get_close_matches(str(node), written, len(written), cutoff=0)]
+
+
+def _unknown(said: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
     """Name nodes whose labels begin so or are near, a few of each label, if there are any."""
-    labels = dict.fromkeys((*names.beginning(label, _SHOWN), *names.near(label, _NEAR)))
+    labels = dict.fromkeys((*names.beginning(node.label, _SHOWN), *names.near(node.label, _NEAR)))
     found = [names.labelled(like) for like in labels]
     if not found:
         return GoalError(said)
     each = max(1, _SHOWN // len(found))
     total = sum(count for count, _ in found)
-    first = [o for _, some in found for o in some[:each]]
+    first = [o for _, some in found for o in _likest(node, some, names)[:each]]
     return _unclear(f"{said}; similar are", names, total, first, wording)
 
 

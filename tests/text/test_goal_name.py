@@ -197,7 +197,21 @@ def test_labels_that_differ_in_capitals_alone_are_all_near() -> None:
 def test_the_notation_of_no_node_lists_those_with_its_label(name: str) -> None:
     message = refused(name, NETWORK)
     assert message.startswith(f"no object node is exactly {name!r}; with that label there are\n")
-    assert [find_goal(candidate, NETWORK) for candidate in pasted(message)] == [1, 2, 3, 4]
+    assert sorted(find_goal(candidate, NETWORK) for candidate in pasted(message)) == [1, 2, 3, 4]
+
+
+@pytest.mark.parametrize(
+    ("slip", "wanted"),
+    [
+        ("milk; hit", "milk; hot"),
+        ("milk; in [pots]", "milk; in [pot]"),
+        ("milk; on [pots]", "milk; on [pot]"),
+        ("mlik; hot", "milk; hot"),
+        ("mlik; on [pot]", "milk; on [pot]"),
+    ],
+)
+def test_the_nearest_of_a_misspelt_notation_comes_first(slip: str, wanted: str) -> None:
+    assert pasted(refused(slip, NETWORK))[0] == wanted
 
 
 def test_a_node_that_is_only_a_label_is_missed_exactly() -> None:
