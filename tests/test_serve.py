@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import foon_asp
-from foon_asp import UserError
+from foon_asp import Cancel, UserError
 from foon_asp.serve.desk import Desk
 from foon_asp.serve.form import Form, read_form, read_without
 from tests.browser import CHROMIUM, browser
@@ -33,7 +33,12 @@ def desk() -> Desk:
 
 
 def request(
-    desk: Desk, path: str, body: object = None, headers: dict[str, str] = OURS, query: str = ""
+    desk: Desk,
+    path: str,
+    body: object = None,
+    headers: dict[str, str] = OURS,
+    query: str = "",
+    leaves: bool = False,
 ) -> tuple[int, dict[str, str], str]:
     """Ask the site as a server does."""
     from foon_asp.serve.site import site  # noqa: PLC0415 (starlette may be missing)
@@ -43,7 +48,8 @@ def request(
 
     async def receive() -> dict[str, Any]:
         if not coming:
-            await asyncio.Event().wait()
+            await (asyncio.sleep(0.1) if leaves else asyncio.Event().wait())
+            return {"type": "http.disconnect"}
         return coming.pop()
 
     async def send(message: dict[str, Any]) -> None:
@@ -239,6 +245,17 @@ def test_a_question_ends_when_it_is_told_to(how: str) -> None:
     assert ("limit" if how == "limit" else "cancel") in json.dumps(events)
 
 
+def test_who_leaves_ends_the_question() -> None:
+    desk = Desk(foon_asp.load(), Form())
+    request(desk, "/secret/ask", {"goals": ["ice"], "rules": ENDLESS}, leaves=True)
+    events: list[dict[str, Any]] = []
+    asking = threading.Thread(target=desk.ask, args=(Form(("ice",)), Cancel(), events.append), daemon=True)
+    asking.start()  # answered when it is its turn, which is when the other has ended
+    asking.join(15)
+    assert events
+    assert events[-1]["kind"] == "page"
+
+
 def test_a_command_cannot_serve_and_write(cli: Cli, tmp_path: Path) -> None:
     ran = cli("view", "--goal", "ice", "--serve", "-o", tmp_path / "ice.html")
     assert (ran.code, "found -o beside --serve" in ran.err) == (2, True)
@@ -280,6 +297,14 @@ def test_a_person_asks_again(address: str) -> None:
             ".some(each => /^Without it: (\\+|no tree)/.test(each.textContent))"
         )
 
+        page.run(
+            "const field = document.querySelectorAll('input[type=search]')[1]; field.value = 'drinking';"
+            "for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind))"
+        )
+        lines = "[...document.querySelectorAll('.many label')]"
+        assert page.run(f"{lines}.filter(each => !each.hidden).map(each => each.textContent)") == [
+            "drinking glass; empty"
+        ]
         page.run(
             "[...document.querySelectorAll('.many input')]"
             ".find(each => each.value === 'drinking glass; empty').click()"

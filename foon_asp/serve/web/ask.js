@@ -18,7 +18,8 @@ async function told(where, question, tell) {
   }
 }
 
-// A field in which names of object nodes are completed.
+// A field in which names of object nodes are completed. A name that was completed is taken at once, any other
+// one where Enter is pressed.
 let fields = 0;
 function nameField(label, taken, known = []) {
   const list = el("datalist", { id: `names${fields++}` });
@@ -32,7 +33,7 @@ function nameField(label, taken, known = []) {
       if (turn === asked) list.replaceChildren(...[...new Set(names)].map((name) => el("option", { value: name })));
     },
     keydown: (event) => { if (event.key === "Enter") { event.preventDefault(); take(); } },
-    change: () => take() });
+    change: () => { if ([...list.options].some((each) => each.value === input.value)) take(); } });
   const take = () => {
     const name = input.value.trim();
     if (name) taken(name);
@@ -51,10 +52,8 @@ function chips(label, names) {
   return { list, add: (name) => { if (!names.includes(name)) names.push(name); show(); } };
 }
 
-const select = (label, options, value) => {
-  const field = el("select", { "aria-label": label }, options.map(([name, text]) => el("option", { value: name, selected: name === value }, text ?? name)));
-  return field;
-};
+const select = (label, options, value) => el("select", { "aria-label": label }, options.map(([name, text]) =>
+  el("option", { value: name, selected: name === value }, text ?? name)));
 const group = (name, ...parts) => el("fieldset", {}, el("legend", {}, name), ...parts);
 const tick = (name, checked, change) => el("label", { class: "line" }, el("input", { type: "checkbox", value: name, checked, ...(change ? { change } : {}) }), el("span", {}, name));
 const ticked = (holder, on = true) => [...holder.querySelectorAll("input")].filter((each) => each.checked === on).map((each) => each.value);
@@ -107,7 +106,10 @@ const status = el("p", { class: "told", role: "status" });
 const asks = el("button", { type: "button", class: "tool main", click: () => ask() }, "Ask");
 const stops = el("button", { type: "button", class: "tool", disabled: true, click: () => fetch("cancel", body({})) }, "Cancel");
 const frame = el("iframe", { title: "The answer" });
+const newer = el("button", { type: "button", class: "tool", hidden: true, click: () => open(latest) }, "Show what came since");
+let latest = 0;
 let shown = 0;
+let touched = false;  // whether somebody is at work on the page that is shown
 let turn = 0;
 
 document.body.append(
@@ -118,16 +120,17 @@ document.body.append(
     group("Kitchen", ...kitchenField.parts, kitchen),
     group("Rules", rules, wrong),
     group("Beside the tree", beside),
-    el("div", { class: "acts" }, asks, stops), status),
+    el("div", { class: "acts" }, asks, stops), status, newer),
   frame);
 
 async function ask() {
   const now = ++turn;
-  [goalField, kitchenField].forEach((field) => field.take());
+  goalField.take();
   marked([]);
   status.textContent = "asking …";
   status.className = "told";
   stops.disabled = false;
+  touched = false;
   let said = "";
   const on = ticked(kitchen);
   await told("ask", {
@@ -136,9 +139,9 @@ async function ask() {
   }, (event) => {
     if (now !== turn) return;
     if (event.kind === "page") {
-      if (matchMedia("(max-width: 760px)").matches) frame.scrollIntoView();
-      shown = event.number;
-      frame.src = `page/${shown}`;
+      latest = event.number;
+      if (touched) newer.hidden = false;
+      else open(latest);
       said = event.text;
       status.textContent = said;
     } else if (event.kind === "error") {
@@ -153,9 +156,18 @@ async function ask() {
   stops.disabled = true;
 }
 
+function open(page) {
+  shown = page;
+  touched = false;
+  newer.hidden = true;
+  frame.src = `page/${page}`;
+  if (matchMedia("(max-width: 760px)").matches) frame.scrollIntoView();
+}
+
 // What was chosen in the answer is asked about: what is the best without it?
 frame.addEventListener("load", () => {
   const page = shown;
+  for (const act of ["pointerdown", "keydown"]) frame.contentDocument?.addEventListener(act, () => { touched = true; });
   frame.contentDocument?.addEventListener("picked", ({ detail: { say, ...what } }) => {
     if (!stops.disabled) return;  // it would end what is being answered
     say("Without it: …");
