@@ -101,6 +101,14 @@ def test_what_cannot_be_made_from_it_is_said(cli: Cli, tmp_path: Path) -> None:
         "the cause: starter; fresh can only be made from starter; old, and that only from starter; fresh\n"
         in ran.out
     )
+    assert "say what is at hand: --kitchen FILE" in ran.out
+    assert "by itself" not in ran.out  # it is one recipe
+    feed, wait = LOOP.split("//\n")[:2]
+    (tmp_path / "sourdough.txt").write_text(f"{feed}//\n", encoding="utf-8")
+    (tmp_path / "wait.txt").write_text(f"{wait}//\n", encoding="utf-8")
+    ran = cli("solve", tmp_path / "sourdough.txt", tmp_path / "wait.txt", "--goal", "starter; fresh")
+    assert f"asked about by itself, {tmp_path / 'sourdough.txt'} has more at hand\n" in ran.out
+    assert cli("solve", tmp_path / "sourdough.txt", "--goal", "starter; fresh").code == 0
 
 
 def test_an_empty_kitchen_is_empty(cli: Cli, recipe: Path) -> None:

@@ -281,3 +281,21 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
         yield f"the cause: {first} can only be made from {(*others, first)[0]}{circle}"
     if len(roots) > shown:
         yield f"  ... and {len(roots) - shown} more"
+    cycles = [root.cycle for root in roots if root.cycle is not None]
+    if problem.starting and cycles:
+        yield (
+            "some unit makes each of these, so the starting kitchen has none; say what is at hand: --kitchen "
+            "FILE (foon-asp init DIR --from RECIPE writes one to edit), or have NAME in foon-asp shell"
+        )
+        network = problem.network
+        within = [set.intersection(*(_files(network, unit) for _, unit in each.steps)) for each in cycles]
+        makers = (unit for goal in problem.goals for unit in network.producers[goal])
+        own = {file for unit in makers for file in _files(network, unit)}
+        without = sorted(own.difference(*within))
+        if without:
+            yield f"asked about by itself, {without[0]} has more at hand"
+
+
+def _files(network: Network, unit: int) -> set[str]:
+    """Give the files that have a unit."""
+    return {place.file for place in network.sources[unit]}
