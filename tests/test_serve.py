@@ -176,6 +176,7 @@ def test_errors_in_rules_have_their_places(desk: Desk) -> None:
         {"goals": ["/etc/passwd"]},
         {"goals": ["ice"], "adding": ["/etc/passwd"]},
         {"goals": ["ice"], "objectives": ["/etc/passwd"]},
+        {"goals": ["ice"], "objectives": []},
         {"goals": []},
     ],
 )

@@ -110,6 +110,8 @@ class Desk:
         def answer(deadline: Deadline, told: _Told) -> None:
             if not form.goals:
                 raise UserError("name a goal")
+            if not form.objectives:
+                raise UserError("name an objective: what is best")
             with deadline.watched("reading", late=True):
                 foon = self._foon.vary(adding=form.adding, without=form.without)
                 problem = foon.problem(*form.goals, containers=form.containers, items=form.items)
