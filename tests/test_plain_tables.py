@@ -10,6 +10,7 @@ from rich.console import Console
 import foon_asp
 from foon_asp.network.statistics import count
 from foon_asp.questions.result import Result
+from foon_asp.report.constraint_list import constraints_text
 from foon_asp.report.frame import csv_text, markdown_text
 from foon_asp.report.stacked import room
 from foon_asp.report.statistics_table import statistics_text
@@ -126,8 +127,11 @@ def test_a_narrow_terminal_shows_a_block_for_each_row() -> None:
     assert "beyond: above 0.8075 (+15.3 %): - twist, pound, pour  +" in shown(
         foon_asp.sensitivity(foon_asp.load().problem("ice")), 60
     )
+    helped = shown(foon_asp.assist(foon_asp.load().problem("ice")), 60)
+    assert "the person takes: + 27 crush" in helped
     network = foon_asp.load().network
     with room(60):
+        assert max(map(len, constraints_text(library_constraints()[:2]).splitlines()[1:4])) <= 60
         assert max(map(len, statistics_text(network, [count(network)], False).splitlines()[3:38])) <= 60
 
 

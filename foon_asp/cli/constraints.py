@@ -1,5 +1,7 @@
 """``foon-asp constraints``: the ready-made constraints and their parameters, and what any rules do."""
 
+from functools import partial
+
 import click
 
 from foon_asp.asp import Settings
@@ -8,6 +10,7 @@ from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.held import held
+from foon_asp.cli.output import fitted
 from foon_asp.errors import UserError
 from foon_asp.questions.contract import TABLES, Part
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, RULE
@@ -47,8 +50,10 @@ def command(
     if given:
         raise UserError("-c sets a constant of what is explained: name that with --explain")
     listed = library_constraints()
-    text = constraints_text(listed) if format_ == "text" else document_text(constraints_json(listed), format_)
-    click.echo(text, nl=False)
+    if format_ == "text":
+        click.echo(fitted(partial(constraints_text, listed)), nl=False)
+    else:
+        click.echo(document_text(constraints_json(listed), format_), nl=False)
     return ExitCode.DONE
 
 

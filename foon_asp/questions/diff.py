@@ -30,6 +30,7 @@ from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NoTreeError, Result
 from foon_asp.questions.tree import Tree, read_listed
 from foon_asp.report.answer import costs_text, headline
+from foon_asp.report.stacked import is_narrow
 from foon_asp.text.goal_name import find_goal
 
 Listed = Sequence[tuple[FunctionalUnit, Source]]
@@ -108,9 +109,10 @@ class Difference(Result):
     def text(self) -> str:
         """Give the costs of both, the units that only one has, and where they part."""
         left, right = self.left, self.right
-        width = max(len(left.name), len(right.name))
+        width = 0 if is_narrow() else max(len(left.name), len(right.name))
+        between = "\n" if is_narrow() else ""
         lines = [
-            f"{letter}: {tree.name:<{width}}    {costs_text(tree.costs)}"
+            f"{letter}: {tree.name:<{width}}{between}    {costs_text(tree.costs)}"
             for letter, tree in (("A", left), ("B", right))
         ]
         if not self.only_left and not self.only_right:

@@ -5,6 +5,7 @@ import textwrap
 from collections.abc import Sequence
 
 from foon_asp.document.json_document import document
+from foon_asp.report.stacked import columns
 from foon_asp.rules.constraint_library import LibraryConstraint
 from foon_asp.text.json_value import Json
 
@@ -18,7 +19,7 @@ def constraints_text(constraints: Sequence[LibraryConstraint]) -> str:
         call = f"--constraint {constraint.name}"
         for parameter in constraint.parameters:
             call += f" -c {parameter.name}={shlex.quote(parameter.example)}"
-        purpose = textwrap.wrap(constraint.purpose, _WIDTH - 4)
+        purpose = textwrap.wrap(constraint.purpose, columns(_WIDTH) - 4)
         blocks.append("\n".join([constraint.name, *(f"    {line}" for line in purpose), f"  {call}"]))
     return "\n\n".join(blocks) + "\n"
 

@@ -22,17 +22,22 @@ def room(columns: int | None) -> Iterator[None]:
 
 def is_narrow() -> bool:
     """Whether tables of text are to be stacked."""
-    columns = _room.get()
-    return columns is not None and columns < NARROW
+    return columns(NARROW) < NARROW
+
+
+def columns(most: int) -> int:
+    """Give how wide text may be, which would be so wide where there is room; never less than 20."""
+    there = _room.get()
+    return most if there is None else max(20, min(most, there))
 
 
 def stacked_lines(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
     """Give the lines of all rows, with an empty one between two; empty cells are left out."""
-    columns = max(20, _room.get() or NARROW)
+    width = columns(NARROW)
     for place, row in enumerate(rows):
         if place:
             yield ""
         for heading, cell in zip(headings, row, strict=True):
             if text := cell.strip():
                 text = f"{heading.strip()}: {text}"
-                yield from textwrap.wrap(text, columns, subsequent_indent="  ", break_on_hyphens=False)
+                yield from textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)

@@ -21,6 +21,7 @@ from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import costs_text, goal_lines, steps, success_text
+from foon_asp.report.stacked import is_narrow, stacked_lines
 from foon_asp.text.rate_table import read_rates
 
 
@@ -232,20 +233,28 @@ def _lines(found: Assistance) -> Iterator[str]:
 
 def _table(found: Assistance) -> Iterator[str]:
     """Give what every row adds to the one before: the whole would be most of a tree, again and again."""
-    yield "helped     success  units  the person takes"
+    headings = ["helped", "   success", "units", "the person takes"]
+    rows = [*_cells(found)]
+    if is_narrow():
+        yield from stacked_lines(headings, rows)
+    else:
+        yield from ("  ".join(cells).rstrip() for cells in (headings, *rows))
+
+
+def _cells(found: Assistance) -> Iterator[list[str]]:
     before: frozenset[int] = frozenset()
     for row in found.rows:
-        figures = f"{row.most:>6}  "
+        most = f"{row.most:>6}"
         if row.costs is None or row.success is None:
-            yield figures + ("no tree" if row.status is Status.INFEASIBLE else "no tree found yet")
+            yield [most, "no tree" if row.status is Status.INFEASIBLE else "no tree found yet", "", ""]
             continue
-        figures += f"{success_text(row.success):>10}  {row.costs.units:>5}"
         taken = [f"- {_name(found, unit)}" for unit in sorted(before - row.helped)]
         taken += [f"+ {_name(found, unit)}" for unit in sorted(row.helped - before)]
         if row.status is Status.FEASIBLE:
             known = "" if row.bound is None else f" (at most {success_text(row.bound)})"
             taken.append(f"not proved best{known}")
-        yield f"{figures}  {', '.join(taken)}".rstrip()
+        figures = [most, f"{success_text(row.success):>10}", f"{row.costs.units:>5}"]
+        yield [*figures, ", ".join(taken)]
         before = row.helped
 
 
