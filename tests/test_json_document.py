@@ -208,6 +208,31 @@ def test_goals_that_nobody_named_have_a_document_each(printed: Any, verb: str) -
         valid(document)
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--items", "used-up"),
+        ("--goal", "tea", "--objective", "success", "--level", "2"),
+        ("--containers", "implied"),
+    ],
+)
+def test_steps_are_what_their_schema_says(cli: Cli, words: tuple[str, ...]) -> None:
+    steps = cli("solve", "--goal", "ice", *words, "--format", "steps").json
+    assert steps["schema"] == schema_name("steps")
+    del steps["steps"][0]["motion"]
+    with pytest.raises(AssertionError, match="motion"):
+        valid(steps)
+
+
+def test_rows_and_maps_are_what_their_schemas_say(cli: Cli, tmp_path: Path) -> None:
+    rows = tmp_path / "rows.jsonl"
+    cli("compare", "--goal", "ice", "--goal", "apple pie", "--results", rows)
+    kinds = [valid(json.loads(line))["schema"] for line in rows.read_text(encoding="utf-8").splitlines()]
+    assert kinds == [schema_name("compare-row")] * 3
+    exported = cli("export", "--goal", "ice", "--format", "json").json
+    assert valid(exported["map"])["schema"] == schema_name("pddl-map")
+
+
 HEAD = ("goals", "containers", "items", "level", "objectives", "starting_kitchen")
 
 
