@@ -298,6 +298,10 @@ def test_a_person_asks_again(address: str) -> None:
             ".some(each => /^Without it: (\\+|no tree)/.test(each.textContent))"
         )
 
+        head = f"{frame}.querySelector('.picture .unit .head')"
+        page.run(f"{head}.dispatchEvent(new PointerEvent('pointerover', {{ bubbles: true }}))")
+        until(f"{head}.parentElement.querySelector(':scope > title').textContent.includes('\\nWithout it: ')")
+
         page.run(
             "const field = document.querySelectorAll('input[type=search]')[1]; field.value = 'drinking';"
             "for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind))"

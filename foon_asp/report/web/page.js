@@ -72,6 +72,11 @@ class TreePanel {
     this.side.append(el("div", { class: "legend" }, marks.map(([look, word]) => el("span", {}, el("i", { class: look }), word))));
     this.bar = this.controls();
     this.picture = new Picture(this.stage, this.plan, { label, picked: (what) => this.pick(what) });
+    this.picture.svg.addEventListener("pointerover", ({ target }) => {
+      clearTimeout(this.rest);
+      this.rest = setTimeout(() => this.hover(target), 250);
+    });
+    this.picture.svg.addEventListener("pointerleave", () => clearTimeout(this.rest));
     this.stage.append(this.bar);
     this.go(steps.length, false);
   }
@@ -219,11 +224,28 @@ class TreePanel {
   // Lets who shows this page say more about what was chosen.
   ask(what) {
     const said = el("p", {});
-    const say = (text) => { said.textContent = text; };
     this.chosen.children[0].after(said);
-    document.dispatchEvent(new CustomEvent("picked", { detail: { ...what, say } }));
+    askAbout(what, (text) => { said.textContent = text; });
+  }
+
+  // What the mouse rests on is asked about, too; what is said stands where its name is shown.
+  hover(target) {
+    const [box, row] = [target.closest(".box"), target.closest(".row")];
+    const unit = box && this.picture.boxes.get(box.dataset.id).node.step;
+    const item = row && this.fromKitchen().get(row.dataset.object);
+    const holder = row ?? box;
+    if (!unit || (row && !item) || holder.dataset.asked) return;
+    holder.dataset.asked = "yes";
+    const title = holder.querySelector(":scope > title");
+    const name = title.textContent;
+    askAbout(item ? { item: item.node } : { unit: unit.id }, (text) => {
+      title.textContent = text ? `${name}\n${text}` : name;
+      if (!text) delete holder.dataset.asked;
+    });
   }
 }
+
+const askAbout = (what, say) => document.dispatchEvent(new CustomEvent("picked", { detail: { ...what, say } }));
 
 function save(blob, name) {
   const link = el("a", { download: name });

@@ -169,9 +169,10 @@ frame.addEventListener("load", () => {
   const page = shown;
   for (const act of ["pointerdown", "keydown"]) frame.contentDocument?.addEventListener(act, () => { touched = true; });
   frame.contentDocument?.addEventListener("picked", ({ detail: { say, ...what } }) => {
-    if (!stops.disabled) return;  // it would end what is being answered
+    if (!stops.disabled) return say("");  // it would end what is being answered
     say("Without it: …");
-    told("without", { page, ...what }, (event) => say(`Without it: ${event.text}`)).catch(() => say(""));
+    const tell = ({ text }) => say(text === "cancelled" ? "" : `Without it: ${text}`);  // by the next one
+    return told("without", { page, ...what }, tell).catch(() => say(""));
   });
 });
 
