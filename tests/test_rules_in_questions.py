@@ -213,6 +213,7 @@ def test_check_and_draw_on_a_command_line(tmp_path: Path, cli: Cli) -> None:
     assert '"2. pound"' not in cli("draw", "--goal", "ice").out
     for words in (("--unit", "3"), ("--tree", tree, "--goal", "ice"), ()):
         assert "--rule is for the best tree for a --goal" in cli("draw", *words, *rule).err
+    assert "no encoding in use has the constant 'x'" in cli("check", tree, "--goal", "ice", "-c", "x=1").err
     ran = cli("check", tree, "--goal", "ice", *rule, "--items", "used-up")
     assert (ran.code, "check with constraints is not built for items" in ran.err) == (2, True)
     with pytest.raises(UserError, match="nothing is solved here"):

@@ -206,7 +206,7 @@ def check(
         raise UserError(f"{rules.replaced}: a tree is checked without encodings: leave them out")
     if rules.constraints and problem.items is not None:
         raise not_built("check with constraints")
-    breaking = _breaking(rules) if rules.constraints else None
+    breaking = _breaking(rules) if rules.constraints or rules.constants else None
     if breaking is not None and not breaking.local:
         problem = whole(problem)
     given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
