@@ -257,7 +257,7 @@ def test_a_recipe_follows_what_is_the_verbs_own(
     assert cli("verify", proof, "--network", recipe).code == 0
     for network in (recipe, recipe.parent):
         assert "data are named with --network or --data" in cli("shell", network).err
-    Path("lines.txt").write_text("# a session\n\nsolve\n", encoding="utf-8")
+    Path("lines.txt").write_text("# a session\n" + "\n" * 1000 + "solve\n", encoding="utf-8")
     assert EGG in cli("shell", "lines.txt", recipe).out
     ran = cli("search", "bfs", "egg")
     assert (ran.code, "a goal is named with --goal" in ran.err) == (2, True)

@@ -18,7 +18,7 @@ from foon_asp.problem import ContainerRule
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.rules.constraint import Constraint
 
-_NETWORK = re.compile(r"(\s*(#.*)?\n)*(//|O\d*\s|[\[{])")  # as FOON text and JSON begin, and no session
+_NETWORK = re.compile(r"([^\S\n]*(#.*)?\n)*(//|O\d*\s|[\[{])")  # as FOON text and JSON begin, and no session
 _DATA = "data are named with --network or --data"
 
 
