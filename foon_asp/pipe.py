@@ -1,9 +1,17 @@
 """Values through pipes between two processes of this program, each with its length before it."""
 
+import os
 import pickle
+import queue
+import signal
 import struct
-from io import RawIOBase
-from typing import Any
+import sys
+import threading
+from collections.abc import Callable
+from io import FileIO, RawIOBase
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 _LENGTH = struct.Struct("!Q")
 
@@ -35,6 +43,30 @@ def receive_packed(pipe: RawIOBase) -> bytes:
     """Wait for a value, and give it pickled; raises ``EOFError`` where nobody writes any more."""
     (length,) = _LENGTH.unpack(_exactly(pipe, _LENGTH.size))
     return _exactly(pipe, length)
+
+
+def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
+    """Take standard input for requests, which ``read`` reads one by one, and standard output for answers.
+
+    For a process that another one asks. Ctrl-C is for the other one, and whatever else this one prints goes
+    to standard error. A thread reads, so that this process ends with the other one, whatever it is at.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    incoming, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    asked: queue.SimpleQueue[T] = queue.SimpleQueue()
+
+    def listen() -> None:
+        while True:
+            try:
+                asked.put(read(incoming))
+            except EOFError:  # nobody asks any more
+                os._exit(0)
+
+    threading.Thread(target=listen, daemon=True).start()
+    return asked, answers
 
 
 def _exactly(pipe: RawIOBase, size: int) -> bytes:

@@ -102,21 +102,21 @@ def test_the_play_button_plays(page: Browser) -> None:
     assert 1 <= step <= 3
 
 
-def test_a_click_says_who_makes_and_needs_a_node_and_where_it_was_read(page: Browser) -> None:
+def _click(page: Browser, selector: str) -> None:
     x, y = page.run(
-        "(() => { const r = document.querySelector('.picture .goal').getBoundingClientRect();"
+        f"(() => {{ const r = document.querySelector('{selector}').getBoundingClientRect();"
         "return [r.left + r.width / 2, r.top + r.height / 2] })()"
     )
     page.click(x, y)
+
+
+def test_a_click_says_who_makes_and_needs_a_node_and_where_it_was_read(page: Browser) -> None:
+    _click(page, ".picture .goal")
     said = page.run("document.querySelector('aside section:nth-of-type(2)').innerText")
     assert "macaroni; cooked; in [pot]" in said
     assert "step 9: tilt" in said
     assert "it is the goal" in said
-    x, y = page.run(
-        "(() => { const r = document.querySelector('.picture .unit .head').getBoundingClientRect();"
-        "return [r.left + r.width / 2, r.top + r.height / 2] })()"
-    )
-    page.click(x, y)
+    _click(page, ".picture .unit .head")
     said = page.run("document.querySelector('aside section:nth-of-type(2)').innerText")
     assert "Unit 78: open" in said
     assert "rate" in said

@@ -1,37 +1,21 @@
-"""The other process: it calls functions of another package, until no more requests come.
-
-A thread reads the requests, so that the end of the parent is noticed while a function runs, and the process
-ends with it.
-"""
+"""The other process: it calls functions of another package, until no more requests come."""
 
 import json
-import os
 import pickle
-import queue
-import signal
-import sys
-import threading
 import traceback
 from collections.abc import Callable
 from importlib.metadata import EntryPoint
-from io import FileIO
 from typing import Any
 
 from foon_asp.offered.offer import Offer
-from foon_asp.pipe import receive_packed, write
+from foon_asp.pipe import receive_packed, requests, write
 
 _LONGEST = 1000  # letters of a message
 
 
 def serve() -> None:
     """Call what standard input asks for, and answer on what was standard output, which is now stderr."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    requests, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    os.dup2(2, 1)
-    sys.stdout = sys.stderr
-    asked: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-    threading.Thread(target=_read, args=(requests, asked), daemon=True).start()
+    asked, answers = requests(receive_packed)
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
         offer, arguments = pickle.loads(asked.get())
@@ -89,11 +73,3 @@ def _shown(value: object) -> str:
         return repr(value)[:_LONGEST]
     except Exception:
         return f"a {type(value).__name__}"
-
-
-def _read(requests: FileIO, asked: "queue.SimpleQueue[bytes]") -> None:
-    while True:
-        try:
-            asked.put(receive_packed(requests))
-        except EOFError:  # nobody asks any more
-            os._exit(0)

@@ -1,19 +1,14 @@
 """The other process: CP-SAT of OR-Tools, which cannot be in one process with HiGHS, looks for a schedule.
 
-It answers with what it finds on the way, and with how it ended. A thread reads the tasks, so that the end of
-the parent is noticed while one is worked on, and the process ends with it.
+It answers with what it finds on the way, and with how it ended.
 """
 
-import os
-import queue
-import signal
-import sys
 import threading
 from collections.abc import Mapping
 from io import FileIO
 from typing import Any
 
-from foon_asp.pipe import receive, send
+from foon_asp.pipe import receive, requests, send
 from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.proof.timetable import ToolName
 
@@ -22,31 +17,17 @@ _WORKERS = 1  # more find no schedule sooner for plans of some hundred steps, an
 
 def serve() -> None:
     """Read tasks from standard input, and write what is found to what was standard output."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    requests, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    os.dup2(2, 1)
-    sys.stdout = sys.stderr
-    asked: queue.SimpleQueue[ScheduleTask] = queue.SimpleQueue()
-    threading.Thread(target=_read, args=(requests, asked), daemon=True).start()
+    asked, answers = requests(receive)
     try:
         from ortools.sat.python import cp_model  # noqa: PLC0415 (this process alone may have it)
     except ImportError as error:
         send(answers, ("missing", str(error)))
         return
     while True:
-        task = asked.get()
+        task: ScheduleTask = asked.get()
         found = _Model(cp_model, task).shortest(answers)
         lacking = _Model(cp_model, task).lacking() if found == "infeasible" else {}
         send(answers, ("end", (found, lacking)))
-
-
-def _read(requests: FileIO, asked: "queue.SimpleQueue[ScheduleTask]") -> None:
-    while True:
-        try:
-            asked.put(receive(requests))
-        except EOFError:  # nobody asks any more
-            os._exit(0)
 
 
 class _Model:
