@@ -17,8 +17,6 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 CORES := -n auto --dist worksteal
 PAGE := --page docs/performance.md
-# pip compiles what it installs, but not what stays in a checkout: a third of a start where Python may not do so later
-COMPILE = $(BIN)/python -m compileall -q foon_asp
 
 .PHONY: demo docs man test test-slow test-lowest coverage mutants tables lint bench bench-full clean
 
@@ -86,12 +84,10 @@ $(VENV)/bin/python:
 
 $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[pictures]'
-	@$(COMPILE)
 	@touch $@
 
 $(VENV)/installed-dev: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,pictures]'
-	@$(COMPILE)
 	@touch $(VENV)/installed $@
 
 $(VENV)/installed-docs: pyproject.toml | $(VENV)/bin/python

@@ -156,6 +156,8 @@ def test_an_editable_install_runs_the_encodings_and_the_kitchen_of_the_checkout(
     shutil.copytree(unpacked, checkout)
     build = "import hatchling.build, sys; print(hatchling.build.build_editable(sys.argv[1]))"
     name = run("-c", build, tmp_path, cwd=checkout).split()[-1]
+    compiled = {path.name.partition(".")[0] for path in (checkout / "foon_asp").rglob("*.pyc")}
+    assert compiled >= {path.stem for path in (checkout / "foon_asp").rglob("*.py")}
     # an environment of its own: it finds dependencies where the running Python does, but no other foon-asp
     run("-m", "venv", "--without-pip", tmp_path / "venv", cwd=tmp_path)
     python = tmp_path / "venv" / ("Scripts" if os.name == "nt" else "bin") / "python"
