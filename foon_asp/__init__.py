@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from foon_asp.problem import Objective as Objective
     from foon_asp.problem import Problem as Problem
     from foon_asp.problem import UsedUp as UsedUp
+    from foon_asp.problem.progress import Progress as Progress
     from foon_asp.proof.replay import Copy as Copy
     from foon_asp.proof.simulation import Simulation as Simulation
     from foon_asp.proof.simulation import Verdict as Verdict
@@ -68,7 +69,6 @@ if TYPE_CHECKING:
     from foon_asp.questions.export import Exported as Exported
     from foon_asp.questions.export import export as export
     from foon_asp.questions.export import to_unified_planning as to_unified_planning
-    from foon_asp.questions.in_hand import Progress as Progress
     from foon_asp.questions.menu import Menu as Menu
     from foon_asp.questions.menu import menu as menu
     from foon_asp.questions.optima import Optima as Optima
@@ -120,11 +120,11 @@ _ROOMS = {
     "questions.tree": ("Tree",),
     "asp": ("Outcome", "Reporter", "Status"),
     "deadline": ("Cancel", "StoppedError"),
-    "questions.in_hand": ("Progress",),
     "errors": ("BugError", "FoonWarning", "UserError"),
     "network": ("FunctionalUnit", "Network", "NetworkBuilder", "ObjectNode", "Source", "TaskTree"),
     "planning.unified": ("register_engine",),
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
+    "problem.progress": ("Progress",),
     "proof.replay": ("Copy",),
     "proof.simulation": ("Simulation", "Verdict"),
     "proof.timetable": ("TimedStep", "Tool"),

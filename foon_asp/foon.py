@@ -1,7 +1,7 @@
 """Data that was loaded: a FOON, a kitchen and what stands beside them."""
 
 import contextlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
@@ -23,8 +23,10 @@ from foon_asp.network import (
     starting_nodes,
 )
 from foon_asp.problem import Changes, Names, Number, Problem, UnitPricesNamed
+from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.rules.measure import read_measures
 from foon_asp.text.assumed_goals import LAST, as_entry, last_goals
+from foon_asp.text.bytes_read import size_of, telling
 from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.goal_name import GoalError
 from foon_asp.text.line import LineError
@@ -46,6 +48,7 @@ def load(
     level: int = 3,
     lenient: bool = False,
     time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
 ) -> "Foon":
     """Load a FOON, a kitchen and the files that belong to them.
@@ -68,6 +71,7 @@ def load(
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
         time_limit: Stop reading after this many seconds.
+        on_progress: Is called with a :class:`Progress` now and then: bytes ``done`` of ``total``.
         cancel: A token that ends reading from another thread.
 
     Returns:
@@ -92,13 +96,30 @@ def load(
     beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
     with _limited(time_limit, cancel, "reading"):
         known = read_measures(measures)
-        read = read_dataset(find_data(folder, () if folder else paths, *beside), lenient, level)
-        dataset = read.measured(known)
+        named = find_data(folder, () if folder else paths, *beside)
+        with _counted(on_progress, size_of(named.network)) as tell, telling(tell):
+            dataset = read_dataset(named, lenient, level).measured(known)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
     foon = Foon(dataset, name)
     for remark in foon.warnings:
         warn(remark)
     return foon
+
+
+@contextlib.contextmanager
+def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
+    """Give what is called with how much more is done in a ``with`` block; at its end, all of it is."""
+    done = 0
+
+    def tell(more: int) -> None:
+        nonlocal done
+        done += more
+        if on_progress is not None:
+            on_progress(Progress(done=done, total=total))
+
+    yield tell
+    if done < total:
+        tell(total - done)
 
 
 def _limited(
@@ -124,6 +145,7 @@ def build(
     unit_prices: UnitPricesNamed | None = None,
     measures: Files = (),
     time_limit: float | None = None,
+    on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
 ) -> "Foon":
     """Make data of units written in Python, with a kitchen, goals, rates and the rest.
@@ -141,6 +163,8 @@ def build(
         unit_prices: Prices, from 0, by the name of a motion or of single units.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         time_limit: Stop after this many seconds.
+        on_progress: Is called with a :class:`Progress` now and then: units ``done``, of ``total`` where their
+            number is known.
         cancel: A token that ends it from another thread.
 
     Returns:
@@ -164,8 +188,11 @@ def build(
         <Answer: optimal by units (strict containers): 2 units, 3 inputs>
     """
     with _limited(time_limit, cancel, "building"):
-        network = units if isinstance(units, Network) else _network(units)
-        last = {len(network) - 1: Source("the units", len(network))} if len(network) else {}
+        total = len(units) if isinstance(units, Sized) else 0
+        with _counted(on_progress, total) as tell:
+            network = units if isinstance(units, Network) else _network(units, tell)
+        making = [unit for unit, outputs in enumerate(network.outputs) if outputs]
+        last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
         entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
         starting = kitchen is None or kitchen == str(STARTING)
         at_hand = starting_nodes(network) if starting else frozenset[int]()
@@ -183,9 +210,12 @@ def build(
     return foon
 
 
-def _network(units: Iterable[PlainUnit]) -> Network:
-    """Build a network of units as callers write them; their places are their numbers, from 1."""
-    builder = NetworkBuilder()
+def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network:
+    """Build a network of units as callers write them; their places are their numbers, from 1.
+
+    ``tell`` is called with the number of units that were added since it was called last.
+    """
+    builder, number = NetworkBuilder(), 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
         raise UserError(f"found units={units!r}, expected several units; {_UNIT}")
     for number, unit in enumerate(units, 1):
@@ -204,6 +234,10 @@ def _network(units: Iterable[PlainUnit]) -> Network:
             raise UserError(f"found the motion {motion!r} of unit {number}, expected {_UNIT}")
         place = Source("the units", number)
         builder.add(motion, [*_nodes(inputs, number)], [*_nodes(outputs, number)], place)
+        if number % _OFTEN == 0:
+            tell(_OFTEN)
+    if number % _OFTEN:
+        tell(number % _OFTEN)
     return builder.build()
 
 
@@ -225,6 +259,7 @@ def _nodes(side: object, number: int) -> Iterator[ObjectNode]:
             raise UserError(f"found {name!r} in unit {number}, expected an object node; {_UNIT}")
 
 
+_OFTEN = 100  # units, after which progress is told
 _UNIT = "a unit is its motion, its inputs and its outputs: ('pour', ['water; hot', 'tea bag'], ['tea; hot'])"
 
 

@@ -39,4 +39,4 @@ def test_what_is_no_recipe_is_refused(cli: Cli, tmp_path: Path) -> None:
     assert not (tmp_path / "new").exists()
     ran = cli("solve", tmp_path / "list.txt")
     assert ran.code == 2
-    assert "there is no functional unit, so nothing to make" in ran.err
+    assert "no functional unit makes anything, so there is no goal" in ran.err

@@ -83,6 +83,21 @@ def test_without_marks_each_output_of_the_last_unit_has_its_tree(cli: Cli, recip
     assert "name one (--goal)" in ran.err
 
 
+def test_a_last_unit_that_makes_nothing_has_no_goals(cli: Cli, recipe: Path) -> None:
+    recipe.write_text(f"{RECIPE}O\tegg\nS\tfried\nM\teat\n", encoding="utf-8")
+    store = recipe.with_name("egg.foon")
+    assert cli("import", recipe, "--store", store).code == 0
+    for named in (recipe, store):
+        ran = cli("solve", named)
+        assert f"what the last unit makes, each by itself:\n  {EGG}\n  {PAN}\n" in ran.err
+    units = [("fry", "egg; raw", "egg; fried"), ("eat", "egg; fried", [])]
+    with pytest.warns(FoonWarning):
+        assert [str(node) for node in foon_asp.build(units).goals] == ["egg; fried"]
+    recipe.write_text("O\tegg\nM\teat\n//\n", encoding="utf-8")
+    ran = cli("solve", recipe)
+    assert (ran.code, "no functional unit makes anything" in ran.err) == (2, True)
+
+
 @pytest.mark.parametrize("level", [1, 2, 3])
 def test_a_store_and_every_level_answer_the_same(cli: Cli, recipe: Path, level: int) -> None:
     store = recipe.with_name("egg.foon")
@@ -253,8 +268,9 @@ def test_a_recipe_follows_what_is_the_verbs_own(
     assert "tofu; fried" in cli("diff", "solve", f"solve {other} --goal 'tofu; fried; in [pan]'", recipe).out
 
     proof.write_text(cli("certify", recipe).out, encoding="utf-8")
-    assert "other data are named with --network or --data" in cli("verify", proof, recipe).err
-    assert cli("verify", proof, "--network", recipe).code == 0
+    verified = cli("verify", proof, recipe)
+    assert (verified.code, verified.out) == (0, cli("verify", proof, "--network", recipe).out)
+    assert cli("verify", proof, other).code == 1
     for network in (recipe, recipe.parent):
         assert "data are named with --network or --data" in cli("shell", network).err
     Path("lines.txt").write_text("# a session\n" + "\n" * 1000 + "solve\n", encoding="utf-8")

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -149,6 +150,25 @@ def test_progress_is_told(foon: Foon) -> None:
     heard.clear()
     foon_asp.compare_searches(foon.problem("ice", "tea"), ["bfs"], on_progress=heard.append)
     assert (heard[0].done, heard[-1].done, heard[-1].total) == (0, 2, 2)
+
+
+def test_reading_and_building_tell_how_far_they_are(tmp_path: Path) -> None:
+    file = tmp_path / "many.txt"
+    file.write_text("".join(f"O\twater {n}\r\nM\tpour\r\nO\tcup {n}\r\n//\r\n" for n in range(5_000)))
+    heard: list[foon_asp.Progress] = []
+    foon_asp.load(file, kitchen="@starting", on_progress=heard.append)
+    size = file.stat().st_size
+    assert len(heard) > 2
+    assert {each.total for each in heard} == {size}
+    assert [each.done for each in heard] == sorted({each.done for each in heard})
+    assert heard[-1].done == size
+    heard.clear()
+    units = [("pour", f"water {n}", f"cup {n}") for n in range(250)]
+    foon_asp.build(units, kitchen=(), on_progress=heard.append)
+    assert [(each.done, each.total) for each in heard] == [(100, 250), (200, 250), (250, 250)]
+    heard.clear()
+    foon_asp.build(iter(units), kitchen=(), on_progress=heard.append)
+    assert [(each.done, each.total) for each in heard] == [(100, 0), (200, 0), (250, 0)]
 
 
 def ended_by(token: Cancel, ask: Callable[[], object], after: float = 0.7) -> tuple[object, float]:

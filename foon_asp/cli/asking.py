@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import click
@@ -120,6 +121,11 @@ class _Command:
     def given(self, option: str) -> bool:
         """Whether an option was given in the command itself, and not by the session or by default."""
         return _is_given(self._context, option)
+
+    def add_sources(self, sources: Sequence[Path]) -> None:
+        """Add networks that are named without an option, before the data are read."""
+        if sources:
+            self._data["sources"] = (*self._data.get("sources", ()), *sources)
 
     def reading(self) -> AbstractContextManager[object]:
         """Stop what is read in a ``with`` block at the limits of the command."""

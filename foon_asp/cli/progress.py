@@ -15,7 +15,7 @@ from foon_asp.asp import Reporter
 from foon_asp.cli.output import console
 from foon_asp.problem import Costs, Objective
 from foon_asp.report.answer import bound_text, costs_text
-from foon_asp.text.bytes_read import telling
+from foon_asp.text.bytes_read import size_of, telling
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn
@@ -99,7 +99,7 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
     if not sys.stderr.isatty() or click.get_current_context(silent=True) is None:
         yield
         return
-    total = sum(file.stat().st_size for file in files if file.is_file())
+    total = size_of(files)
     began, done = time.monotonic(), 0
     advance: Callable[[int], None] | None = None
     with contextlib.ExitStack() as bars:

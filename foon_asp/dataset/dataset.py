@@ -127,7 +127,9 @@ class Dataset:
         Without a file, they are all that were assumed.
         """
         if not names and self.goals_from and not self.listed:
-            raise UserError("there is no functional unit, so nothing to make: expected a recipe or a network")
+            raise UserError(
+                "no functional unit makes anything, so there is no goal: expected a recipe or a network"
+            )
         if not names and self.goals_from:
             return tuple(dict.fromkeys(self.each_goal(())))
         if not names and len(self.listed) == 1:

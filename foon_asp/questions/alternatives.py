@@ -18,6 +18,7 @@ from foon_asp.encoding.search import run
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
@@ -28,7 +29,6 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, not_built, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree

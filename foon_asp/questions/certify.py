@@ -15,6 +15,7 @@ from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels
+from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.answer_and_more import AnswerAndMore
@@ -28,7 +29,6 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import read_listed

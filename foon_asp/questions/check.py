@@ -11,11 +11,11 @@ from foon_asp.document.json_document import costs_json, document
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.problem import Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.replay import Replay, replay_for
 from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
 from foon_asp.questions.arguments import Constants, settings, whole
 from foon_asp.questions.contract import Kind, Option, not_built, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree

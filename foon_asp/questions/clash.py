@@ -17,6 +17,7 @@ from foon_asp.encoding.search import run
 from foon_asp.errors import BugError, UserError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import (
     Constants,
@@ -28,7 +29,6 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import goal_lines, headline

@@ -15,10 +15,10 @@ from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import document, goals_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import Constants, asked_with, at_least, limits, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, Part, not_built, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS, RULES
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result

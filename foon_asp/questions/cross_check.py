@@ -10,6 +10,7 @@ from foon_asp.engines import Asked, Check, DisagreementError, Engine, find_engin
 from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
 from foon_asp.problem import Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.answer_and_more import AnswerAndMore
 from foon_asp.questions.arguments import (
@@ -23,7 +24,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.certify import Certified
 from foon_asp.questions.contract import described
-from foon_asp.questions.in_hand import OnProgress, in_hand
+from foon_asp.questions.in_hand import in_hand
 from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.solve_soft import SoftAnswer, softly_answered
 from foon_asp.report.disagreement import write_disagreement

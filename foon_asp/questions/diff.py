@@ -21,10 +21,10 @@ from foon_asp.problem import (
     needed_inputs,
     tree_costs,
 )
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.contract import TABLES, Option, Part, question
 from foon_asp.questions.each import Each
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NoTreeError, Result

@@ -12,11 +12,11 @@ from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
 from foon_asp.problem import ContainerRule, Problem, container_rule
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import Constants, Objectives, chosen_objectives, settings
 from foon_asp.questions.caller import is_python
 from foon_asp.questions.contract import Kind, Option, Part, question, question_of
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result

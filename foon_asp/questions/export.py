@@ -16,9 +16,10 @@ from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import Objectives, chosen_objectives, reading, whole
 from foon_asp.questions.contract import Kind, Option, Part, described, question
-from foon_asp.questions.in_hand import OnProgress, in_hand
+from foon_asp.questions.in_hand import in_hand
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.result import Result

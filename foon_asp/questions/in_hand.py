@@ -3,11 +3,12 @@
 import functools
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Any, NamedTuple, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from foon_asp.asp import Reporter
 from foon_asp.deadline import Deadline, seconds, stoppable
 from foon_asp.problem import Costs, Objective
+from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.questions.caller import asked_by, caller, is_python
 from foon_asp.typed import checker
 
@@ -19,27 +20,6 @@ HELP = {
     "on_progress": "Is called with a :class:`Progress` whenever something is found.",
     "cancel": "A token that ends the question from another thread, with what was found by then.",
 }
-
-
-class Progress(NamedTuple):
-    """How far a question is: the ``costs`` of the best tree so far, and the proved ``bounds`` by objective.
-
-    Where several answers are asked for, ``done`` of ``total`` are found; ``total`` is 0 elsewhere.
-
-    Example:
-        >>> heard = []
-        >>> answer = foon_asp.solve(foon_asp.load().problem("ice"), on_progress=heard.append)
-        >>> heard[-1].costs.units
-        2
-    """
-
-    costs: Costs | None = None
-    bounds: dict[Objective, int | Fraction] = {}  # noqa: RUF012 (never changed)
-    done: int = 0
-    total: int = 0
-
-
-OnProgress = Callable[[Progress], object]
 
 
 class _Listener(Reporter):

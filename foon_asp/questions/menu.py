@@ -12,11 +12,11 @@ from foon_asp.document.json_document import document, figure_json, nodes_json
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, levels, multiplies
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import headline, steps, success_text

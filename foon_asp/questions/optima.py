@@ -8,6 +8,7 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel, Deadline
 from foon_asp.document.json_document import document
 from foon_asp.problem import Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.arguments import (
     Constants,
@@ -19,7 +20,6 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES, RULES
 from foon_asp.questions.posing import each_goal
 from foon_asp.questions.result import Ending, Result

@@ -17,6 +17,7 @@ from foon_asp.document.json_document import costs_json, document, figures_json, 
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
@@ -27,7 +28,6 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from foon_asp.dataset import Dataset
@@ -31,6 +32,9 @@ class Command(Protocol):
 
     def given(self, option: str) -> bool:
         """Whether an option, by name, stands in its own words."""
+
+    def add_sources(self, sources: Sequence[Path]) -> None:
+        """Add networks that are named without an option, before the data are read."""
 
     def reading(self) -> AbstractContextManager[object]:
         """Stop what is read in a ``with`` block at the limits of the command."""

@@ -13,12 +13,12 @@ from foon_asp.planning.name_map import map_of, read_name_map
 from foon_asp.planning.plan_file import PlanStep, read_plan_text
 from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import ITEMS, Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import reading, whole
 from foon_asp.questions.check import Checked
 from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree

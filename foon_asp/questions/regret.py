@@ -19,11 +19,11 @@ from foon_asp.document.json_document import costs_json, document, figures_json, 
 from foon_asp.errors import UserError
 from foon_asp.network.spelling import near_labels
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, ITEMS, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import costs_text, goal_lines, headline, success_text

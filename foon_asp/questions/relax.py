@@ -15,11 +15,11 @@ from foon_asp.network import counted
 from foon_asp.planning.strips_task import REACHED, StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import LIMITS
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.result import Ending, Result

@@ -16,6 +16,7 @@ from foon_asp.network import FunctionalUnit, ObjectNode, counted
 from foon_asp.planning.schedule_task import schedule_task
 from foon_asp.planning.scheduling import Found, shortest, timed_steps
 from foon_asp.problem import Number, Problem, exact
+from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.replay import replay_for, waits
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.timetable import Means, TimedStep, ToolName, timetable_fault
@@ -23,7 +24,6 @@ from foon_asp.questions.answer import of_status
 from foon_asp.questions.arguments import at_least, begin
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, nodes_json, steps_json
 from foon_asp.problem import Costs, Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import SEARCHING, search_settings, searched

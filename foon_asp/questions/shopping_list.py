@@ -22,12 +22,12 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
 from foon_asp.problem.dead_ends import Cause, dead_ends
+from foon_asp.problem.progress import OnProgress
 from foon_asp.problem.shop import Shop
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, Objectives, at_least, chosen_objectives, settings, whole
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import HOW, TREE
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import answer_json, costs_text, goal_lines, headline, steps

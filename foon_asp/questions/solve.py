@@ -8,6 +8,7 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import (
     Constants,
@@ -18,7 +19,6 @@ from foon_asp.questions.arguments import (
     whole,
 )
 from foon_asp.questions.contract import TABLES, Kind, Option, not_built, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Result
 from foon_asp.reduce import Reduction, parse_reductions

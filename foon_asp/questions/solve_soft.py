@@ -10,6 +10,7 @@ from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import (
     Constants,
@@ -21,7 +22,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import described
-from foon_asp.questions.in_hand import OnProgress, in_hand
+from foon_asp.questions.in_hand import in_hand
 from foon_asp.questions.options import LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.result import Ending
 from foon_asp.report.answer import headline, outcome_text

@@ -12,11 +12,11 @@ from foon_asp.document.json_document import document, listed_unit_json, named_js
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem, UsedUp
+from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.replay import Copy, Replay, replay_for
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Objectives, chosen_objectives, settings
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree

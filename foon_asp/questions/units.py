@@ -9,8 +9,8 @@ from foon_asp.document.json_document import document, unit_json
 from foon_asp.foon import Foon
 from foon_asp.network import Network, ObjectNode
 from foon_asp.problem import ContainerRule, UsedUp, container_rule, needed_inputs
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.result import Result

@@ -1,5 +1,6 @@
 """Is a certificate right? Without any solver."""
 
+from codecs import BOM_UTF8
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -12,14 +13,14 @@ from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import Network
 from foon_asp.problem import Problem, kitchen_needed
+from foon_asp.problem.progress import OnProgress
 from foon_asp.proof import verify as proof
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, Part, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.certified import verified_json, verified_text
-from foon_asp.text.plain_file import read_plain_text
+from foon_asp.text.plain_file import read_beginning
 
 if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
     from foon_asp.certificate import Certificate
@@ -78,21 +79,25 @@ class Refused(Result):
         return document("verify", verified=False, reason=self.reason)
 
 
-def _posed(command: Command, task: Sequence[Path]) -> tuple[Foon | Problem]:
+def _posed(command: Command, more: Sequence[Path]) -> tuple[Foon | Problem]:
     """Pose the data that are named, or the relaxation of a planning task."""
-    if not task:
+    if not any(map(_is_task, more)):
+        command.add_sources(more)
         return the_data(command)
     if any(map(command.given, DATA)):
         raise UserError("found options for data beside a planning task: a certificate is about one of them")
-    from foon_asp.planning.task_files import is_translated, read_task  # noqa: PLC0415 (it loads clingo)
+    from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)
 
-    if len(task) == 1 and (task[0].is_dir() or not is_translated(read_plain_text(task[0]))):
-        raise UserError(
-            f"{task[0]}: found no planning task, which may follow a certificate; other data are named with "
-            "--network or --data"
-        )
     with command.reading():
-        return (read_task(task, begin(None, None)).problem(),)
+        return (read_task(more, begin(None, None)).problem(),)
+
+
+def _is_task(file: Path) -> bool:
+    """Whether a file is of a planning task; FOON and JSON begin otherwise."""
+    from foon_asp.planning.sas_reader import BEGINNING  # noqa: PLC0415 (for few certificates)
+
+    begins = read_beginning(file, 100).removeprefix(BOM_UTF8).lstrip()
+    return begins.startswith((b"(", b";", BEGINNING.encode()))
 
 
 def verify_or_refuse(
@@ -115,13 +120,14 @@ def verify_or_refuse(
         Kind.FLAG,
     ),
     Option(
-        "task",
-        "The planning task that `foon-asp relax` was asked about: DOMAIN.pddl PROBLEM.pddl, or TASK.sas.",
+        "more",
+        "The data: recipes, a folder or a store; or the planning task that `foon-asp relax` was asked about, "
+        "DOMAIN.pddl PROBLEM.pddl or TASK.sas.",
         Kind.FILE,
         Part.PROBLEM,
         default=(),
         many=True,
-        metavar="[TASK...]",
+        metavar="[RECIPE|DIR|STORE|TASK]...",
         positional=True,
     ),
     pose=_posed,
@@ -130,6 +136,7 @@ def verify_or_refuse(
     \b
     foon-asp solve --goal 'greek salad' --certificate proof.json
     foon-asp verify proof.json
+    foon-asp verify proof.json recipe.txt
     foon-asp verify proof.json domain.pddl problem.pddl
 
     The data has to be the same: --data and the other options name it as they do for solve. What units cost by

@@ -13,12 +13,12 @@ from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.certify import Certified, certified
 from foon_asp.questions.contract import Option, Part, not_built, question, question_of
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.posing import Command, one_problem, the_data

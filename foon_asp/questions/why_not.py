@@ -12,9 +12,9 @@ from foon_asp.network import Network, ObjectNode, counted, pattern_at_level
 from foon_asp.network.near_nodes import nearest, slip_between
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Blocked, Cause, NearName, Root, dead_ends
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import Constants, settings, whole
 from foon_asp.questions.contract import question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import goal_lines

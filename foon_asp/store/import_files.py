@@ -66,7 +66,8 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                     raise UserError(f"{file}: is a store already; import the files that it was made from")
                 last: tuple[int, Source] | None = None
                 for motion, inputs, outputs, sources in reader.units(reader.text(file), str(file)):
-                    last = builder.add(motion, inputs, outputs, sources), sources[0]
+                    added = builder.add(motion, inputs, outputs, sources)
+                    last = (added, sources[0]) if outputs else last
                 if last:
                     last_units.setdefault(*last)
             reader.raise_errors(earlier)

@@ -1,8 +1,9 @@
 """How far the reading of networks has come, for whoever shows it."""
 
 import contextlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextvars import ContextVar
+from pathlib import Path
 
 Tell = Callable[[int], None]
 """Is called with the number of bytes that were read since it was called last."""
@@ -23,3 +24,8 @@ def telling(tell: Tell) -> Iterator[None]:
 def told() -> Tell | None:
     """Give the function to call, if there is one."""
     return _tell.get()
+
+
+def size_of(files: Iterable[Path]) -> int:
+    """Give how many bytes there are to read."""
+    return sum(file.stat().st_size for file in files if file.is_file())

@@ -44,7 +44,7 @@ class FoonReader:
     ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that are in no
     unit because they were not understood or make none; ``prices`` are those that copies of units state.
     ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``last_units`` are the last
-    unit of each file by id, with its place, for a network read in one go.
+    unit of each file that makes anything, by id and with its place, for a network read in one go.
 
     Example:
         >>> from pathlib import Path
@@ -93,7 +93,8 @@ class FoonReader:
         for file in files:
             last: tuple[int, Source] | None = None
             for motion, inputs, outputs, sources in self.units(self.text(file), str(file)):
-                last = builder.add(motion, inputs, outputs, *sources), sources[0]
+                unit = builder.add(motion, inputs, outputs, *sources)
+                last = (unit, sources[0]) if outputs else last
             if last:
                 self.last_units.setdefault(*last)
         self.raise_errors(earlier)

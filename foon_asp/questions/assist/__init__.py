@@ -12,11 +12,11 @@ from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, fraction_json, steps_json
 from foon_asp.network import counted
 from foon_asp.problem import Number, Objective, Problem, success_rate
+from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import Constants, asked_with, at_least, settings
 from foon_asp.questions.assist.assistant import Assistant, Assisted
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree

@@ -14,12 +14,12 @@ from foon_asp.document.json_document import costs_json, document, fraction_json,
 from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, success_rate
+from foon_asp.problem.progress import OnProgress
 from foon_asp.problem.root import Root
 from foon_asp.questions.answer import Answer, WithOutcome
 from foon_asp.questions.arguments import Constants, asked_with, settings
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, question
-from foon_asp.questions.in_hand import OnProgress
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW
 from foon_asp.questions.result import Ending
 from foon_asp.questions.sensitivity.envelope import Envelope
