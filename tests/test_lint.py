@@ -458,6 +458,7 @@ def test_json_has_all(tmp_path: Path, cli: Cli) -> None:
         "text": "S\tin [c]",
         "fix": "S\tin\t[c]",
         "mendable": True,
+        "unsafe": False,
     }
 
 

@@ -38,6 +38,7 @@ _RULES = (
     Rule("motion-flag", WARNING, "a motion flag that is not 0 or 1"),
     Rule("unknown-field", WARNING, "something after a motion flag that is neither a category nor !"),
     Rule("time", WARNING, "something that is not a valid time"),
+    Rule("noqa", WARNING, "a noqa comment that silences nothing"),
     # Object nodes.
     Rule("missing-flag", NOTE, "no motion flag on an object line, in a file where most have one"),
     Rule("second-contents", NOTE, "two { } lines under one object"),

@@ -1,8 +1,9 @@
 """The files that are linted together, read as far as they can be read."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 from foon_asp.lint.catalog import CATALOG
@@ -34,10 +35,12 @@ class LintedFiles:
     """All sheets, the network that their units make up, and what the reader remarked on.
 
     ``copies[u]`` are the places where unit ``u`` of the network stands, in the order read. Files are read
-    independently of errors in them: what cannot be understood is left out.
+    independently of errors in them: what cannot be understood is left out. ``contents`` are the bytes of
+    files that are not to be read from disk.
     """
 
-    def __init__(self, files: Iterable[Path]) -> None:
+    def __init__(self, files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> None:
+        self._contents = contents
         self.reader = FoonReader()
         self.sheets: list[Sheet] = []
         self.copies: list[list[Copy]] = []
@@ -66,7 +69,7 @@ class LintedFiles:
         return remark.fix if remark.message not in left else None
 
     def _read(self, file: Path) -> None:
-        text = self.reader.text(file)
+        text = self.reader.text(file, self._contents.get(file))
         if is_json(text):
             self._read_json(text, file)
             return

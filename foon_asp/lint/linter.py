@@ -1,7 +1,8 @@
 """All findings about files that belong together."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from foon_asp.lint.block_rules import block_findings
 from foon_asp.lint.cycle_rules import cycle_findings
@@ -11,21 +12,26 @@ from foon_asp.lint.id_rules import id_findings
 from foon_asp.lint.linted_files import LintedFiles
 from foon_asp.lint.name_rules import name_findings
 from foon_asp.lint.names import Names
+from foon_asp.lint.noqa import unsilenced
 from foon_asp.lint.unit_rules import unit_findings
 from foon_asp.text.diagnostics import Diagnostic
 
 
-def lint(files: Iterable[Path]) -> list[Diagnostic]:
+def lint(files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> list[Diagnostic]:
     """Lint networks, kitchens and lists of goals together; findings by file, line and column.
+
+    ``contents`` are the bytes of files that are not to be read from disk. What ``# noqa`` comments silence is
+    left out.
 
     Names are compared over all files, and the units of all are one network. The severity of a finding is that
     of its code in the catalog; ``fix`` is the mended line where mending changes nothing of what is
     understood. Raises :class:`foon_asp.errors.UserError` for a file that cannot be opened.
     """
-    linted = LintedFiles(files)
+    linted = LintedFiles(files, contents)
     findings = linted.remarks()
     for rule in _RULES:
         findings += rule(linted)
+    findings = list(unsilenced(findings, linted.sheets))
     order = {sheet.file: number for number, sheet in enumerate(linted.sheets)}
     return sorted(
         findings, key=lambda f: (order.get(f.source.file, 0), f.source.line, f.source.column, f.code)

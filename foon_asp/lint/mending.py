@@ -4,13 +4,24 @@ import re
 from codecs import BOM_UTF8
 from collections.abc import Iterable
 
-from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic, Rename
+from foon_asp.text.renaming import Renaming
 
 _LINE = re.compile(rb"([^\r\n]*)(\r\n|\r|\n|\Z)")
 
 
-def mended(content: bytes, findings: Iterable[Diagnostic]) -> bytes:
+def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
+    """Whether a finding has a fix: a safe one, which changes nothing of what is read, or any."""
+    if finding.rename is not None:
+        return unsafe
+    return finding.fix is not None and (unsafe or not finding.unsafe)
+
+
+def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
     """Give the bytes of a file with the lines of findings as their ``fix`` has them.
+
+    Only with ``unsafe`` are there fixes that change what is read; names to be written otherwise are so
+    everywhere in the file.
 
     All other bytes stay: line ends, a byte order mark, lines without a fix, and lines that are not what they
     were when they were linted. A ``//`` that is missing behind the last unit gets the line end of that line,
@@ -18,11 +29,16 @@ def mended(content: bytes, findings: Iterable[Diagnostic]) -> bytes:
     """
     fixes: dict[int, tuple[bytes, bytes]] = {}
     separated: set[int] = set()
+    renames: list[Rename] = []
     for finding in findings:
-        if finding.code == "missing-separator":
+        if not is_mendable(finding, unsafe):
+            continue
+        if finding.rename is not None:
+            renames.append(finding.rename)
+        elif finding.code == "missing-separator":
             separated.add(finding.source.line)
-        elif finding.fix is not None:
-            fixes[finding.source.line] = finding.excerpt.encode(), finding.fix.encode()
+        else:
+            fixes[finding.source.line] = finding.excerpt.encode(), (finding.fix or "").encode()
     parts: list[bytes] = []
     for number, match in enumerate(_LINE.finditer(content), 1):
         text, end = match.groups()
@@ -32,4 +48,13 @@ def mended(content: bytes, findings: Iterable[Diagnostic]) -> bytes:
         if number in separated:
             usual = end or parts[1] or b"\n"
             parts += (b"" if end else usual, b"//", usual)
-    return b"".join(parts)
+    content = b"".join(parts)
+    if not renames:
+        return content
+    mark = BOM_UTF8 if content.startswith(BOM_UTF8) else b""
+    text = content.removeprefix(mark).decode()
+    for rename in renames:
+        renaming = Renaming(rename)
+        renaming.learn(text, "")
+        text = renaming.renamed(text, "")
+    return mark + text.encode()

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from foon_asp.lint.names import Kind, Names, times
 from foon_asp.lint.near_names import near_names
 from foon_asp.network import Contents, Relation
-from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.diagnostics import Diagnostic, Rename
 from foon_asp.text.line import StateLine
 
 
@@ -34,7 +34,8 @@ def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnosti
             f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
             f"{roles}: if they mean the same, write one of them everywhere"
         )
-        yield names.sheets[sheet].finding("near-name", message, index, name)
+        rename = Rename(kind, name, meant) if counts[meant] > counts[name] else None  # which one is wrong?
+        yield names.sheets[sheet].finding("near-name", message, index, name)._replace(rename=rename)
 
 
 def _unknown(names: Names, name: str) -> Iterator[Diagnostic]:

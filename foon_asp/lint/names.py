@@ -1,25 +1,18 @@
 """The names in the files that are linted together, and where each stands."""
 
 from collections.abc import Iterator
-from enum import StrEnum
 from functools import cached_property
 from typing import NamedTuple
 
 from foon_asp.lint.linted_files import LintedFiles
-from foon_asp.network import Contents, Relation
-from foon_asp.text.line import Line, MotionLine, ObjectLine
+from foon_asp.text.line import Line, ObjectLine
+from foon_asp.text.renaming import NameKind, line_names
 
 _ALIKE = 3  # labels that are named where another may be meant
 _WORDS = 4  # of their ends are compared
 
 
-class Kind(StrEnum):
-    """What a name is for; an object is named by its label, as a container and as an ingredient."""
-
-    OBJECT = "object"
-    STATE = "state"
-    WORD = "relation"
-    MOTION = "motion"
+Kind = NameKind
 
 
 class Mention(NamedTuple):
@@ -41,7 +34,7 @@ class Names:
         for number, sheet in enumerate(files.sheets):
             for line, index, count in sheet.distinct_lines:
                 mention = Mention(number, line, index, count)
-                for kind, name in _names(line):
+                for kind, name, _ in dict.fromkeys(line_names(line)):
                     self.mentions[kind].setdefault(name, []).append(mention)
         self.counts: dict[Kind, dict[str, int]] = {
             kind: {name: sum(m.often for m in mentions) for name, mentions in names.items()}
@@ -95,19 +88,3 @@ def times(count: int) -> str:
 
 def _singular(name: str) -> str:
     return name[:-1] if name[-1:] == "s" and name[-2:] != "ss" else name
-
-
-def _names(line: Line) -> Iterator[tuple[Kind, str]]:
-    if isinstance(line, ObjectLine):
-        yield Kind.OBJECT, line.label
-    elif isinstance(line, MotionLine):
-        yield Kind.MOTION, line.motion
-    elif isinstance(line.attribute, Relation):
-        yield Kind.WORD, line.attribute.word
-        yield Kind.OBJECT, line.attribute.object
-    elif isinstance(line.attribute, Contents):
-        yield Kind.WORD, line.attribute.word
-        for ingredient in dict.fromkeys(line.attribute.ingredients):
-            yield Kind.OBJECT, ingredient
-    else:
-        yield Kind.STATE, line.attribute

@@ -5,7 +5,10 @@ from collections.abc import Sequence
 
 from foon_asp.document.json_document import document
 from foon_asp.escapes import UNSAFE, escaped
+from foon_asp.lint.catalog import CATALOG
+from foon_asp.lint.mending import is_mendable
 from foon_asp.network import counted
+from foon_asp.report.stacked import is_narrow, stacked_lines
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.json_value import Json
 
@@ -45,9 +48,41 @@ def lint_summary(findings: Sequence[Diagnostic], files: int, mended: int) -> str
     text = f"{counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"
     if mended:
         text += f"; {mended} mended"
-    elif mendable := sum(1 for finding in findings if finding.fix is not None):
-        text += f"; --fix would mend {mendable}"
+        return text
+    safe = sum(is_mendable(finding) for finding in findings)
+    unsafe = sum(is_mendable(finding, unsafe=True) for finding in findings) - safe
+    if safe:
+        text += f"; --fix would mend {safe}"
+    if unsafe:
+        text += f"; --unsafe-fixes {unsafe}{' more' if safe else ''}"
     return text
+
+
+def lint_statistics(findings: Sequence[Diagnostic]) -> str:
+    """Count the findings of each code, most of them first, and those that can be mended."""
+    rows: list[tuple[str, ...]] = []
+    for code, count in Counter(finding.code for finding in findings).most_common():
+        of_code = [finding for finding in findings if finding.code == code]
+        safe = sum(is_mendable(finding) for finding in of_code)
+        unsafe = sum(is_mendable(finding, unsafe=True) for finding in of_code) - safe
+        mends = [f"{safe} safely"] * bool(safe) + [f"{unsafe} unsafely"] * bool(unsafe)
+        rows.append((str(count), str(of_code[0].severity), code, ", ".join(mends), CATALOG[code].meaning))
+    headings = ("count", "severity", "code", "mends", "meaning")
+    if is_narrow():
+        return "".join(f"{line}\n" for line in stacked_lines(headings, rows)) + "\n" * bool(rows)
+    widths = [max(len(row[place]) for row in (headings, *rows)) for place in range(len(headings) - 1)]
+    lines = [
+        "  ".join(
+            [
+                row[0].rjust(widths[0]),
+                *(cell.ljust(w) for cell, w in zip(row[1:], widths[1:], strict=False)),
+                row[-1],
+            ]
+        )
+        for row in (headings, *rows)
+        if rows
+    ]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _folded(others: Sequence[Diagnostic]) -> str:
@@ -61,7 +96,8 @@ def lint_json(findings: Sequence[Diagnostic], files: int, mended: int) -> Json:
     """Give every finding, and the counts.
 
     ``text`` is the line and ``fix`` the line as it should be, where it can be mended. Both are ``null`` where
-    the line is longer than a thousand letters; ``mendable`` says in any case whether there is a fix.
+    the line is longer than a thousand letters; ``mendable`` says in any case whether --fix mends the
+    finding, and ``unsafe`` whether only --unsafe-fixes does.
     """
     severities = Counter(finding.severity for finding in findings)
     return document(
@@ -80,7 +116,8 @@ def lint_json(findings: Sequence[Diagnostic], files: int, mended: int) -> Json:
                 "message": finding.message,
                 "text": _short(finding.excerpt),
                 "fix": _short(finding.fix),
-                "mendable": finding.fix is not None,
+                "mendable": is_mendable(finding),
+                "unsafe": is_mendable(finding, unsafe=True) and not is_mendable(finding),
             }
             for finding in findings
         ],

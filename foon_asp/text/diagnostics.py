@@ -25,12 +25,21 @@ class Severity(StrEnum):
     NOTE = "note"
 
 
+class Rename(NamedTuple):
+    """A name of a kind (object, state, relation, motion), and how to write it everywhere in a file."""
+
+    kind: str
+    old: str
+    new: str
+
+
 class Diagnostic(NamedTuple):
     """One remark about one place in an input file.
 
     ``code`` names the kind of remark in a few words and is the same for all remarks of that kind;
     ``excerpt`` is the line of the file that it is about, without its end, or empty; ``fix`` is how that
-    line would be written without what is remarked on, where this changes nothing of what it says.
+    line would be written without what is remarked on, where this changes nothing of what it says. Where
+    the fix is ``unsafe``, it changes what is read; so does the ``rename`` that would mend it.
     """
 
     severity: Severity
@@ -39,6 +48,8 @@ class Diagnostic(NamedTuple):
     source: Source
     excerpt: str = ""
     fix: str | None = None
+    unsafe: bool = False
+    rename: Rename | None = None
 
     def __str__(self) -> str:
         """Give ``file:line:column: severity: message`` and, where known, the line with a caret."""

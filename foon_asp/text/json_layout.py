@@ -8,7 +8,8 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_fault import json_fault
 
 STEP = "    "
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
+TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
+"""Strings, brackets and everything else that is no blank."""
 
 
 def lay_out(text: str, level: int = 0) -> str:
@@ -19,7 +20,7 @@ def lay_out(text: str, level: int = 0) -> str:
     """
     parts: list[str] = []
     before = ""
-    for token in _TOKEN.findall(text):
+    for token in TOKEN.findall(text):
         if token in {"]", "}"}:
             level -= 1
             if before not in {"[", "{"}:

@@ -53,7 +53,11 @@ def read_plain_text(file: Path) -> str:
     Raises :class:`UserError` when it cannot be opened and :class:`InputError` with line and column of
     the first byte that is not UTF-8.
     """
-    data = read_content(file)
+    return plain_text(read_content(file), file)
+
+
+def plain_text(data: bytes, file: Path) -> str:
+    """Give the text of the bytes of a file, as :func:`read_plain_text` does."""
     if data.startswith(STORE_MAGIC):
         raise UserError(f"{file}: is a store, expected text; name a store only with --network")
     data = data.removeprefix(BOM_UTF8)

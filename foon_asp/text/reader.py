@@ -10,7 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import parse_line, parse_lines
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, node_of
-from foon_asp.text.plain_file import is_json, read_plain_text
+from foon_asp.text.plain_file import is_json, plain_text, read_plain_text
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.writer import write_line
@@ -118,14 +118,15 @@ class FoonReader:
         self.raise_errors(earlier)
         return units
 
-    def text(self, file: Path) -> str:
+    def text(self, file: Path, content: bytes | None = None) -> str:
         """Give the text of a file; it is empty, and an error is noted, if the file is not text.
 
         Parameters:
             file: The path of the file.
+            content: Its bytes, if they are known and the file is not to be read.
         """
         try:
-            return read_plain_text(file)
+            return read_plain_text(file) if content is None else plain_text(content, file)
         except InputError as error:
             self.diagnostics += error.diagnostics
             return ""
