@@ -51,10 +51,11 @@ def ask(
     """
     own = {option.name for option in question.options}
     command = _Command({name: value for name, value in given.items() if name not in own}, command_of)
-    with Progress() as progress:
+    with Progress(deadline) as progress:
         who = Caller(progress, session_here(), deadline, lenient=bool(given.get("lenient")))
         with asked_by(who):
             posed = _posed(question, command, given)
+        progress.begin()
         with asked_by(who._replace(read_seconds=command.read_seconds)):
             how = parameters(question, given, Part.QUESTION | Part.COMMAND)
             found = [question.command(*about, **how) for about in posed]

@@ -22,7 +22,7 @@ from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output_file import check_outputs
-from foon_asp.cli.progress import bar
+from foon_asp.cli.progress import Progress
 from foon_asp.document.json_document import document
 from foon_asp.network import counted
 from foon_asp.questions.options import EACH_LIMITS, JOBS, RULES
@@ -102,12 +102,16 @@ def command(
     with open_results(results_file, common) as results:
         left = [one for one in asked if one.key not in results.done]
         tally = Tally(results.done[one.key] for one in asked if one.key in results.done)
-        with bar("answering", len(asked), len(asked) - len(left)) as advance:
+        before = len(asked) - len(left)
+        with Progress() as progress:
+            progress.step("answering", before, len(asked))
+            progress.begin()
             try:
-                for one, row in _rows(Work(opening, memory_limit, how=how), left, jobs, scheduler):
+                rows = _rows(Work(opening, memory_limit, how=how), left, jobs, scheduler)
+                for number, (one, row) in enumerate(rows, 1):
                     results.add(one, row)
                     tally.add(row)
-                    advance()
+                    progress.step("answering", before + number, len(asked))
             except KeyboardInterrupt:
                 interrupted = True
     seconds = round(time.monotonic() - began, 3)

@@ -1,7 +1,8 @@
-"""Progress on stderr during a search: the best tree and the bound, only at a terminal."""
+"""Progress on stderr, only at a terminal: how much was read, the best tree and the bound, the time left."""
 
 import contextlib
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
@@ -13,28 +14,36 @@ import click
 
 from foon_asp.asp import Reporter
 from foon_asp.cli.output import console
+from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
 from foon_asp.report.answer import bound_text, costs_text
 from foon_asp.text.bytes_read import size_of, telling
 
 if TYPE_CHECKING:
-    from rich.progress import ProgressColumn
     from rich.status import Status
+    from rich.text import Text
 
-_PATIENCE = 0.3  # seconds before anything is shown: most answers are there by then
-_LONG = 1.0  # seconds of reading before a bar is shown
+_LONG = 1.0  # seconds before anything is shown: most answers are there by then
 
 
 class Progress(Reporter):
-    """Shows the best tree so far and the proved bound in one line, which is updated."""
+    """Shows one line while a question takes long: the best tree and the proved bound, or how many are done.
 
-    def __init__(self) -> None:
+    After them come the seconds so far, and those that are left: at most, where there is a ``deadline``; by
+    what was done so far, where that can be counted or the gap between tree and bound has become smaller.
+    """
+
+    def __init__(self, deadline: Deadline | None = None) -> None:
+        self._deadline = deadline
         self._began = time.monotonic()
+        self._over = threading.Event()
+        self._shown = threading.Lock()
         self._live: Status | None = None
-        self._tree = "no tree yet"
-        self._bound = "no bound yet"
-        self._bar = contextlib.ExitStack()
-        self._advance: Callable[[], None] | None = None
+        self._costs: Costs | None = None
+        self._bound: tuple[Objective, int | Fraction] | None = None
+        self._first: tuple[int | Fraction, float] | None = None
+        self._step: tuple[str, int, int] | None = None
+        self._steps_before = 0
 
     def __enter__(self) -> Self:
         return self
@@ -42,9 +51,24 @@ class Progress(Reporter):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._live:
-            self._live.stop()
-        self._bar.close()
+        self._over.set()
+        with self._shown:
+            if self._live:
+                self._live.stop()
+
+    def begin(self) -> None:
+        """Note that everything is read, and show the line where the answer takes long."""
+        self._began = time.monotonic()
+        if sys.stderr.isatty():
+            threading.Thread(target=self._wait, daemon=True, name="foon-asp progress").start()
+
+    def _wait(self) -> None:
+        if self._over.wait(_LONG):
+            return
+        with self._shown:
+            if not self._over.is_set():
+                self._live = console(err=True).status(self)
+                self._live.start()
 
     def warning(self, message: str) -> None:
         """Print a warning at once."""
@@ -52,42 +76,52 @@ class Progress(Reporter):
 
     def tree(self, costs: Costs) -> None:
         """Note the best tree."""
-        self._tree = f"best tree: {costs_text(costs)}"
-        self._show()
+        self._costs = costs
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Note the bound."""
-        self._bound = f"proved: {bound_text(objective, bound)}"
-        self._show()
+        """Note the bound, and when the first one of this objective came."""
+        if self._bound is None or self._bound[0] != objective:
+            self._first = (bound, time.monotonic())
+        self._bound = (objective, bound)
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Show a bar, and advance it."""
-        if self._advance is None:
-            self._advance = self._bar.enter_context(bar(word, total, done))
-        else:
-            self._advance()
+        """Note how many are done."""
+        if self._step is None:
+            self._steps_before = done
+        self._step = (word, done, total)
 
-    def _show(self) -> None:
-        if not sys.stderr.isatty() or time.monotonic() - self._began < _PATIENCE:
-            return
-        text = f"{self._tree}  |  {self._bound}  |  ctrl-C stops with the best"
-        if self._live:
-            self._live.update(text)
-            return
-        self._live = console(err=True).status(text)
-        self._live.start()
+    def line(self, now: float) -> str:
+        """Say how far it is at a time."""
+        seconds = f"{now - self._began:.0f} s"
+        limit = None if self._deadline is None else self._deadline.left
+        left = self._left(now)
+        if left is not None and (limit is None or left < limit):
+            seconds += f", about {left:.0f} s left at this pace"
+        elif limit is not None:
+            seconds += f", at most {limit:.0f} s left"
+        if self._step is not None:
+            word, done, total = self._step
+            return f"{word}: {done} of {total}  |  {seconds}"
+        tree = "no tree yet" if self._costs is None else f"best tree: {costs_text(self._costs)}"
+        bound = "no bound yet" if self._bound is None else f"proved: {bound_text(*self._bound)}"
+        return f"{tree}  |  {bound}  |  {seconds}  |  ctrl-C stops with the best"
 
+    def _left(self, now: float) -> float | None:
+        """Guess how many seconds are left, by the pace so far; ``None`` where nothing tells."""
+        if self._step is not None:
+            _, done, total = self._step
+            new = done - self._steps_before
+            return (now - self._began) / new * (total - done) if new else None
+        if self._costs is None or self._bound is None or self._first is None:
+            return None
+        (objective, bound), (first, since) = self._bound, self._first
+        closed, gap = abs(Fraction(bound - first)), abs(Fraction(self._costs.measure(objective) - bound))
+        return float(gap / closed) * (now - since) if closed and gap else None
 
-@contextlib.contextmanager
-def bar(word: str, total: int, completed: int) -> Iterator[Callable[[], None]]:
-    """Show a bar at a terminal if there are more than a few steps; call the function given after each."""
-    if total < 20 or not sys.stderr.isatty():
-        yield lambda: None
-        return
-    from rich.progress import MofNCompleteColumn
+    def __rich__(self) -> "Text":
+        from rich.text import Text
 
-    with _bar(word, MofNCompleteColumn(), total, completed) as advance:
-        yield lambda: advance(1)
+        return Text(self.line(time.monotonic()))
 
 
 @contextlib.contextmanager
@@ -110,21 +144,18 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
             if advance is not None:
                 advance(read)
             elif time.monotonic() - began >= _LONG:
-                from rich.progress import DownloadColumn
-
-                advance = bars.enter_context(_bar(word, DownloadColumn(), total, done))
+                advance = bars.enter_context(_bar(word, total, done))
 
         with telling(tell):
             yield
 
 
 @contextlib.contextmanager
-def _bar(word: str, count: "ProgressColumn", total: int, completed: int) -> Iterator[Callable[[int], None]]:
-    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+def _bar(word: str, total: int, completed: int) -> Iterator[Callable[[int], None]]:
+    from rich.progress import BarColumn, DownloadColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
-    with Bar(
-        TextColumn(word), BarColumn(), count, TimeRemainingColumn(), console=console(err=True)
-    ) as progress:
+    columns = TextColumn(word), BarColumn(), DownloadColumn(), TimeRemainingColumn()
+    with Bar(*columns, console=console(err=True)) as progress:
         task = progress.add_task("", total=total, completed=completed)
         yield lambda steps: progress.advance(task, steps)
