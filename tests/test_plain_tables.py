@@ -12,7 +12,7 @@ from foon_asp.network.statistics import count
 from foon_asp.questions.result import Result
 from foon_asp.report.constraint_list import constraints_text
 from foon_asp.report.frame import csv_text, markdown_text
-from foon_asp.report.stacked import room
+from foon_asp.report.stacked import folded, room
 from foon_asp.report.statistics_table import statistics_text
 from foon_asp.rules.constraint_library import library_constraints
 from tests.conftest import Cli
@@ -133,6 +133,25 @@ def test_a_narrow_terminal_shows_a_block_for_each_row() -> None:
     with room(60):
         assert max(map(len, constraints_text(library_constraints()[:2]).splitlines()[1:4])) <= 60
         assert max(map(len, statistics_text(network, [count(network)], False).splitlines()[3:38])) <= 60
+
+
+def test_lists_are_folded_to_the_terminal() -> None:
+    foon = foon_asp.load()
+    results = [
+        foon_asp.regret(foon.problem("macaroni"), "success", motions="pour", pairs=True),
+        foon_asp.menu(foon.problem("ice", "tea")),
+        foon_asp.retrieve(foon.problem("macaroni"), "bfs"),
+    ]
+    for result in results:
+        text = result.text()
+        with room(40):
+            lines = folded(text).splitlines()
+        assert len(lines) > len(text.splitlines())
+        assert [line for line in lines if len(line) > 40 and " " in line.strip()] == []  # a path may be long
+        assert " ".join("\n".join(lines).split()) == " ".join(text.split())
+        assert folded(text) == text  # where there is no terminal
+    with room(30):
+        assert folded(" 10  simmer    [data/FOON.txt:20] x") == " 10  simmer\n       [data/FOON.txt:20] x"
 
 
 def test_at_75_columns_tables_are_tables() -> None:

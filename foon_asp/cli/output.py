@@ -128,10 +128,10 @@ def fitted(text: Callable[[], str]) -> str:
     """Give a text as wide as the terminal that it is printed on; anywhere else, its width is free."""
     if not sys.stdout.isatty():
         return text()
-    from foon_asp.report.stacked import room
+    from foon_asp.report.stacked import folded, room
 
     with room(shutil.get_terminal_size().columns):
-        return text()
+        return folded(text())
 
 
 def drop_output() -> None:

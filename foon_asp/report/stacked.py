@@ -1,10 +1,15 @@
-"""Tables of text where there is little room: a block for each row, a line ``name: value`` for each cell."""
+"""Text where there is little room: a block for each row of a table, and long lines folded.
+
+In a block, each cell is a line ``name: value``.
+"""
 
 import contextlib
+import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from contextvars import ContextVar
 
+_BEGINS = re.compile(r" *(?:\d+  )?")  # how far in a line stands, behind its number if it has one
 NARROW = 75  # columns: with fewer, a table is stacked
 
 _room: ContextVar[int | None] = ContextVar("_room", default=None)
@@ -41,3 +46,20 @@ def stacked_lines(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Ite
             if text := cell.strip():
                 text = f"{heading.strip()}: {text}"
                 yield from textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
+
+
+def folded(text: str) -> str:
+    """Fold lines that are longer than the terminal between words; what follows stands further in."""
+    width = _room.get()
+    return "\n".join(line for each in text.split("\n") for line in _folded(each, width))
+
+
+def _folded(line: str, width: int | None) -> list[str]:
+    if width is None or len(line) <= width:
+        return [line]
+    begins = _BEGINS.match(line)
+    assert begins
+    inner = " " * min(begins.end() + 2, width // 2)
+    return textwrap.wrap(
+        line, max(20, width), subsequent_indent=inner, break_on_hyphens=False, break_long_words=False
+    )
