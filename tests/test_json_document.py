@@ -116,6 +116,7 @@ OTHERS = {
     "fmt",
     "convert",
     "merge",
+    "rename",
     "import",
 }
 CASES = [

@@ -187,6 +187,10 @@ VERBS: list[tuple[str, ...]] = [
 BARE: list[tuple[str, ...]] = [
     ("lint", "FOLDER"),
     ("lint", "FOLDER", "--format", "json"),
+    ("lint", "FOLDER", "--statistics"),
+    ("lint", "FOLDER", "--format", "sarif"),
+    ("lint", "FOLDER", "--baseline", "\n::error::x"),
+    ("rename", "\n::error::x", "x", "FOLDER"),
     ("fmt", "--check", "FOLDER"),
     ("fmt", "FOLDER"),
     ("convert", "FOLDER/FOON.json", "--to", "plain", "-o", "\n::error::x.txt"),

@@ -132,6 +132,7 @@ def test_a_file_on_a_full_disk(cli: Cli, tmp_path: Path, words: tuple[str, ...])
         ("shopping-list", "--goal", "ice", "--prices", "PLACE"),
         ("lint", "PLACE"),
         ("fmt", "PLACE"),
+        ("rename", "a", "b", "PLACE"),
         ("merge", "PLACE"),
         ("convert", "PLACE", "--to", "json"),
         ("import", "PLACE", "--store", "x.foon"),

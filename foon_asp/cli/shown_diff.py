@@ -5,13 +5,14 @@ import sys
 import click
 
 from foon_asp.cli.output import write_data
+from foon_asp.escapes import escaped
 from foon_asp.report.line_diff import line_diff
 from foon_asp.report.whole_file import utf_8
 
 
 def show_diff(file: str, before: str, after: str) -> None:
     """Print a diff: for a program as it is, and on a terminal safely."""
-    text = line_diff(file, before, after)
+    text = line_diff(escaped(file), before, after)
     if sys.stdout.isatty():
         click.echo(text, nl=False)
     else:

@@ -21,6 +21,7 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "init": Entry("Data", "Write a data folder to start from, of a recipe of yours or a small one of ours."),
     "lint": Entry("Data", "Find what is wrong with networks, kitchens and lists of objects."),
     "fmt": Entry("Data", "Bring FOON files into canonical form."),
+    "rename": Entry("Data", "Rename an object, a state or a motion everywhere, and show the change first."),
     "convert": Entry("Data", "Write FOON files in another dialect."),
     "merge": Entry("Data", "Merge FOONs into a universal FOON."),
     "import": Entry("Data", "Merge networks into a store, for networks too large to read."),

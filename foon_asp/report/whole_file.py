@@ -1,7 +1,9 @@
 """Files that are written completely or not at all."""
 
+import contextlib
 import os
 import stat
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from foon_asp.errors import UserError
@@ -26,6 +28,29 @@ def write_whole(file: Path, content: bytes) -> None:
         raise UserError(f"{file}: cannot be written: {error.strerror or error}") from None
 
 
+def write_all_whole(contents: Mapping[Path, bytes]) -> None:
+    """Replace several files, all of them or none: all is written beside them before the first is replaced.
+
+    Raises :class:`UserError` when one of them cannot be written; all of them are then as they were.
+    """
+    replaced: dict[Path, bytes] = {}
+    try:
+        with contextlib.ExitStack() as stack:
+            staged = []
+            for file, content in contents.items():
+                target = Path(os.path.realpath(file))
+                staged.append((target, stack.enter_context(_staged(target, content))))
+            for target, partial in staged:
+                before = target.read_bytes()
+                partial.replace(target)
+                replaced[target] = before
+    except OSError as error:
+        for target, before in replaced.items():
+            _replace(target, before)
+        name = os.fsdecode(error.filename) if error.filename else file
+        raise UserError(f"{name}: cannot be written: {error.strerror or error}; no file is changed") from None
+
+
 def utf_8(text: str) -> bytes:
     """Give the bytes of a text; raises :class:`UserError` for half a character, which has none."""
     try:
@@ -40,6 +65,13 @@ def utf_8(text: str) -> bytes:
 
 
 def _replace(target: Path, content: bytes) -> None:
+    with _staged(target, content) as partial:
+        partial.replace(target)
+
+
+@contextlib.contextmanager
+def _staged(target: Path, content: bytes) -> Iterator[Path]:
+    """Write beside a file what will replace it, if it may be replaced; if it has not, it is removed."""
     # A name that nobody has: no other file of the user's is written over on the way.
     partial = target.with_name(f".foon-asp.{os.urandom(8).hex()}")
     mode = None
@@ -53,6 +85,6 @@ def _replace(target: Path, content: bytes) -> None:
             os.fsync(written.fileno())
         if mode is not None:
             partial.chmod(mode)
-        partial.replace(target)
+        yield partial
     finally:
         partial.unlink(missing_ok=True)

@@ -13,7 +13,7 @@ from foon_asp.text.diagnostics import Diagnostic, Rename, Severity
 from foon_asp.text.json_layout import TOKEN, check_json
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine, name_of
-from foon_asp.text.line_parser import parse_node
+from foon_asp.text.line_parser import parse_line, parse_node
 from foon_asp.text.plain_file import is_json
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
@@ -89,6 +89,17 @@ class Renaming:
         if is_json(text):
             return self._json(text)
         return _each_line(text, self.line)
+
+    def rows_of_new_name(self, text: str, file: str) -> list[str]:
+        """Give the different rows that a renamed table has for the new name, where it may have only one."""
+        if PurePath(file).name not in TABLES:
+            return []
+        rows = (line.split("\t") for line in _lines(text))
+        return list(
+            dict.fromkeys(
+                "\t".join(row) for row in rows if len(row) == 2 and row[0].strip() == self.rename.new
+            )
+        )
 
     def line(self, line: str) -> str:
         """Give a line of FOON text with the new name."""
@@ -208,6 +219,22 @@ def mentioned(text: str, file: str, reader: FoonReader) -> Iterator[tuple[NameKi
     for written in lines:
         if written[:1] in {"O", "S", "M"} and not isinstance(parsed := reader.parse(written), LineError):
             yield from line_names(parsed)
+
+
+def is_name(kind: str, name: str) -> bool:
+    """Whether a text can be a name of a kind, wherever names of that kind stand in FOON text."""
+    if not name or any(letter in name for letter in "\r\n"):
+        return False
+    letter, brackets = {"object": ("O", ("[", "]", "{", "}")), "motion": ("M", ())}.get(kind, ("S", ()))
+    written = f"{letter}\t{name}" + "\t[x]" * (kind == NameKind.WORD)
+    lines = [written, *(f"S\tin\t{o}{name}{c}" for o, c in zip(brackets[::2], brackets[1::2], strict=True))]
+    try:
+        said = [
+            name_ for line in map(parse_line, lines) if not line.remarks for _, name_, _ in line_names(line)
+        ]
+    except LineError:
+        return False
+    return said == ([name, "in", name, "in", name] if brackets else [name, "x"] if len(said) == 2 else [name])
 
 
 def line_names(line: Line) -> Iterator[tuple[NameKind, str, str]]:

@@ -1,0 +1,129 @@
+"""``foon-asp rename``: one name written otherwise, everywhere in all files."""
+
+import difflib
+from codecs import BOM_UTF8
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import click
+
+from foon_asp.cli import options
+from foon_asp.cli.exit_code import ExitCode
+from foon_asp.cli.shown_diff import show_diff
+from foon_asp.errors import UserError
+from foon_asp.network import counted
+from foon_asp.report.whole_file import utf_8, write_all_whole
+from foon_asp.text.diagnostics import InputError, Rename
+from foon_asp.text.folder_files import foon_files
+from foon_asp.text.plain_file import read_content, read_plain_text
+from foon_asp.text.reader import FoonReader
+from foon_asp.text.renaming import TABLES, NameKind, Renaming, is_name, mentioned
+
+_A = {NameKind.OBJECT: "an object", NameKind.WORD: "a word of relations"}
+
+
+@click.command("rename")
+@click.argument("old")
+@click.argument("new")
+@options.files_argument(required=True)
+@click.option(
+    "--kind",
+    type=click.Choice([str(kind) for kind in NameKind]),
+    help="What is renamed, if the name is that of several things.",
+)
+@click.option("-y", "--write", is_flag=True, help="Write the change; without it, it is only shown.")
+@options.debug_option
+def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write: bool) -> ExitCode:
+    """Rename an object, a state or a motion everywhere, and show the change first.
+
+    \b
+    foon-asp rename cinammon cinnamon recipes/          show what would change
+    foon-asp rename cinammon cinnamon recipes/ -y       change it
+    foon-asp rename cut chopped a.txt --kind state      where cut is a motion, too
+
+    An object is renamed on object lines, in relations ([bowl]) and in contents ({salt}); a state, a motion
+    and the word of a relation where they stand. Where NEW has an id already, the lines of OLD get it. Of a
+    folder, networks, kitchens, goals and the tables (motion.txt, utensils.txt, unit_prices.txt, tools.txt,
+    durations.txt) are changed together. Everything else in the files stays as it is, comments included.
+
+    All files are written, or none. Exits with 0, or with 2, and nothing written, if there is no such name, if
+    it is that of several kinds of things, or if a line with it is not understood.
+    """
+    texts = {file: read_plain_text(file) for file in _files(paths)}
+    renaming = Renaming(Rename(_kind(old, kind, texts), old, new))
+    if old == new:
+        raise UserError("the new name is the old one")
+    if not is_name(renaming.rename.kind, new):
+        raise UserError(f"{new!r} cannot be the name of {_a(renaming.rename.kind)} in FOON text")
+    errors = []
+    for file, text in texts.items():
+        renaming.learn(text, str(file))
+        errors += renaming.not_understood(text, str(file))
+    if errors:
+        raise InputError(errors)
+    changed = {}
+    for file, text in texts.items():
+        after = renaming.renamed(text, str(file))
+        rows = renaming.rows_of_new_name(after, str(file))
+        if len(rows) > 1:
+            raise UserError(f"{file} would have two different rows for {new!r}; take one of them out before")
+        if after != text:
+            changed[file] = text, after
+    for file, (before, after) in changed.items():
+        show_diff(str(file), before, after)
+    if write:
+        write_all_whole({file: _mark(file) + utf_8(after) for file, (_, after) in changed.items()})
+    click.echo(_summary(renaming, len(changed), write), err=True)
+    return ExitCode.DONE
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    """Give the files, and of folders the tables, too."""
+    files = [file for file, _ in foon_files(paths)]
+    for folder in (path for path in paths if path.is_dir()):
+        files += sorted(file for name in TABLES for file in folder.rglob(name) if file.is_file())
+    return list(dict.fromkeys(files))
+
+
+def _mark(file: Path) -> bytes:
+    """Give the byte order mark of a file, which is no part of its text and stays."""
+    return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
+
+
+def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
+    """Say of what kind the old name is; raises :class:`UserError` if it is of none, or of several."""
+    reader = FoonReader()
+    counts: Counter[tuple[str, str]] = Counter()
+    for file, text in texts.items():
+        counts.update((str(kind), name) for kind, name, _ in mentioned(text, str(file), reader))
+    kinds = [each for each in NameKind if counts[each, old]]
+    if kind is not None and kind in kinds:
+        return kind
+    if kinds and kind is not None:
+        raise UserError(f"{old!r} is no {kind}; it is {_a(kinds[0])}")
+    if len(kinds) > 1:
+        of = " and ".join(f"{_a(each)} ({counts[each, old]} times)" for each in kinds)
+        raise UserError(f"{old!r} is {of}: choose one with --kind")
+    if not kinds:
+        near = difflib.get_close_matches(old, sorted({name for _, name in counts}), n=3, cutoff=0.7)
+        hint = f"; there is {', '.join(map(repr, near))}" if near else ""
+        raise UserError(
+            f"no object, state, relation or motion is called {old!r} in {counted(len(texts), 'file')}{hint}"
+        )
+    return kinds[0]
+
+
+def _a(kind: str) -> str:
+    return _A.get(NameKind(kind), f"a {kind}")
+
+
+def _summary(renaming: Renaming, files: int, written: bool) -> str:
+    kind, old, new = renaming.rename
+    where = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
+    text = f"the {kind} {old!r} becomes {new!r}: {where}"
+    if renaming.already:
+        text += (
+            f"; {new!r} stood there {counted(renaming.already, 'time')} already, and both are one name now"
+        )
+    return f"{text}; written" if written else f"{text}; -y writes it"
