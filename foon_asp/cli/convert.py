@@ -14,7 +14,7 @@ from foon_asp.errors import UserError
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.conversion import Converted, Converter
 from foon_asp.text.diagnostics import Diagnostic, InputError, summarize
-from foon_asp.text.dialect import Dialect
+from foon_asp.text.dialect import Dialect, is_object_list
 from foon_asp.text.folder_files import FolderFile, foon_files
 from foon_asp.text.plain_file import read_plain_text
 
@@ -53,6 +53,7 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
     ids         O294→onion→1      M12→chop→0:14→0:20     ids, flags and times in two fields
     json        {"functional_units": [{"input_nodes": [{"object_id": 294, "object_label": "onion", ...
     json-list   [{"input_nodes": [{"label": "onion", "states": [], ...}], "motion_node": "chop", ...
+    neutral     {"id": "chop", "inputs": ["onion"], "outputs": ["onion; chopped"]}       a unit a line
 
     The dialect of the input is detected. From text to text, comments, blank lines and the order of lines
     stay. ids keeps the ids that are there and numbers what has none: objects by label, states by word,
@@ -116,12 +117,13 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
         file = files[0].file
         if output is None or str(output) == "-":
             return [_Task(file, None)]
-        return [_Task(file, output / file.with_suffix(target.suffix).name if output.is_dir() else output)]
+        name = file.with_suffix(_suffix(file, target)).name
+        return [_Task(file, output / name if output.is_dir() else output)]
     if output is None or str(output) == "-":
         raise UserError(f"{len(files)} files need a folder: name one with -o")
     if output.exists() and not output.is_dir():
         raise UserError(f"{output}: expected a folder for {len(files)} files, found a file")
-    tasks = [_Task(file, output / within.with_suffix(target.suffix)) for file, within in files]
+    tasks = [_Task(file, output / within.with_suffix(_suffix(file, target))) for file, within in files]
     seen: dict[Path | None, Path] = {}
     for file, to in tasks:
         place = None if to is None else to.resolve()
@@ -131,6 +133,13 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
             raise UserError(f"{to} would be overwritten: name another folder with -o")
         seen[place] = file
     return tasks
+
+
+def _suffix(file: Path, target: Dialect) -> str:
+    """Give the ending for what a file becomes; beside a neutral network, lists are a JSON list of names."""
+    if target is Dialect.NEUTRAL and is_object_list(read_plain_text(file)):
+        return Dialect.JSON_LIST.suffix
+    return target.suffix
 
 
 def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:

@@ -67,7 +67,7 @@ def command(
     builder = NetworkBuilder()
     copies = 0
     for file in files:
-        for motion, inputs, outputs, sources in reader.units(reader.text(file), str(file)):
+        for motion, inputs, outputs, sources in reader.file_units(file):
             builder.add(motion, inputs, outputs, *sources)
             copies += 1
     for warning in summarize(reader.diagnostics):

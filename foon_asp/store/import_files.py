@@ -65,7 +65,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; import the files that it was made from")
                 last: tuple[int, Source] | None = None
-                for motion, inputs, outputs, sources in reader.units(reader.text(file), str(file)):
+                for motion, inputs, outputs, sources in reader.file_units(file):
                     added = builder.add(motion, inputs, outputs, sources)
                     last = (added, sources[0]) if outputs else last
                 if last:

@@ -1,9 +1,10 @@
 """Taking FOON files from one dialect to another, and keeping count of what is lost on the way."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.network import Relation, Source
+from foon_asp.network import ObjectNode, Relation, Source
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line, lost_in_states
 from foon_asp.text.conversion_times import in_one_field, in_two_fields
@@ -14,6 +15,7 @@ from foon_asp.text.json_layout import lay_out
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.json_object import read_objects
 from foon_asp.text.json_units import read_json_units
+from foon_asp.text.json_value import json_line
 from foon_asp.text.json_writer import (
     json_motion,
     json_object,
@@ -26,6 +28,7 @@ from foon_asp.text.json_writer import (
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import MotionFields
+from foon_asp.text.neutral_units import write_neutral_unit
 from foon_asp.text.plain_file import is_json, split_lines
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.reader import FoonReader
@@ -62,6 +65,7 @@ class Converter:
         self._reader = FoonReader(lenient)
         self._numbering = Numbering()
         self._parts: dict[object, _Part] = {}
+        self._names: dict[str, ObjectNode] = {}  # of the neutral form
         self._is_list = False
 
     @property
@@ -105,7 +109,7 @@ class Converter:
         """
         earlier = len(self.diagnostics)
         lost = _Tally(file)
-        dialect = dialect_of(text, self._reader)
+        dialect = dialect_of(text, self._reader, file)
         self._is_list = is_object_list(text)
         if dialect is self.target and dialect.is_json:
             converted = format_text(text, file, self.lenient).text
@@ -142,7 +146,10 @@ class Converter:
         parts: list[str] = []
         for block in blocks:
             try:
-                parts += _counted([(self._block(block, 1), block.source)], lost)
+                if self.target is Dialect.NEUTRAL:
+                    parts.append(f'{{"label": {json_line(self._name(block, lost))}}}')
+                else:
+                    parts += _counted([(self._block(block, 1), block.source)], lost)
             except CannotHoldError as problem:
                 self._cannot_hold(problem, block.source)
         return written_list(parts, 0) + "\n" if self.target.is_json else "".join(parts)
@@ -150,10 +157,14 @@ class Converter:
     def _units(self, text: str, file: str, lost: "_Tally") -> str:
         level = 2 if self.target is Dialect.JSON else 1
         units: list[str] = []
+        if self.target is Dialect.NEUTRAL:
+            return "".join(self._neutral_unit(unit, lost) for unit in self._neutral_listed(text, file, lost))
         listed = list(self._reader.listed_units(text, file))
         videos = self._videos(text, listed, lost)
         for unit in listed:
             try:
+                if not unit.inputs:
+                    raise CannotHoldError(f"the unit {unit.motion.motion!r} has no input objects")
                 motion = _counted([(self._motion(unit.motion, level + 1), unit.motion_source)], lost)
                 inputs, outputs = (
                     _counted([(self._block(block, level + 2), block.source) for block in side], lost)
@@ -173,6 +184,41 @@ class Converter:
             return written_list(units, 0) + "\n"
         header = "".join(f"# Source:\t{video}\n" for video in videos) + "//\n" if videos else ""
         return header + "".join(units)
+
+    def _neutral_listed(self, text: str, file: str, lost: "_Tally") -> Iterator[ListedUnit]:
+        if not is_json(text):
+            lost.comments(text, ())
+        for number, unit in enumerate(self._reader.listed_units(text, file)):
+            if is_json(text) and not number:
+                lost.add([Loss.VIDEOS] * len(unit.sources[0].videos), Source(file, 1))
+            yield unit
+
+    def _neutral_unit(self, unit: ListedUnit, lost: "_Tally") -> str:
+        """Write a unit with the motion as its id, and each object node as one name, in one-line notation."""
+        try:
+            inputs, outputs = (
+                [self._name(block, lost) for block in side] for side in (unit.inputs, unit.outputs)
+            )
+            lost.add(lost_in_line(unit.motion, MotionLine(unit.motion.motion)), unit.motion_source)
+        except CannotHoldError as problem:
+            self._cannot_hold(problem, unit.motion_source)
+            return ""
+        return write_neutral_unit(unit.motion.motion, inputs, outputs, unit.price)
+
+    def _name(self, block: ObjectBlock, lost: "_Tally") -> str:
+        """Give the plain name of an object node, which no other node has."""
+        states = tuple(map(_with_word, block.states))
+        node = block._replace(states=states).node
+        name = str(node) if states else node.label
+        if not name or name != name.strip(" "):
+            raise CannotHoldError(f"{name!r} is no name, or has blanks around it")
+        if self._names.setdefault(name, node) != node:
+            raise CannotHoldError(f"{name!r} would be the name of two object nodes")
+        losses = lost_in_line(block.object, ObjectLine(block.object.label))
+        losses += [Loss.IDS] * sum(bool(state.id) for state in states) + [Loss.PARTS] * bool(states)
+        losses += [Loss.CONTAINERS] * (states != block.states)
+        lost.add(losses, block.source)
+        return name
 
     def _videos(self, text: str, units: list[ListedUnit], lost: "_Tally") -> tuple[str, ...]:
         """Give the videos that the result can name: those of the whole file, in lines or under one key."""
@@ -234,8 +280,7 @@ class Converter:
     def _held(self, line: Line) -> Line:
         """Give the line as a dialect of text has it."""
         line = line._replace(remarks=())
-        if isinstance(line, StateLine) and isinstance(line.attribute, Relation) and not line.attribute.word:
-            line = line._replace(attribute=line.attribute._replace(word="in"))
+        line = _with_word(line) if isinstance(line, StateLine) else line
         line = self._numbering.number(line) if self.target is Dialect.IDS else line._replace(id="")
         if self.target is Dialect.PLAIN:
             if isinstance(line, ObjectLine):
@@ -266,6 +311,13 @@ class Converter:
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message = f"{self.target} cannot hold this: {problem}" + ("; left out" if self.lenient else "")
         self.diagnostics.append(Diagnostic(severity, "cannot-hold", message, source))
+
+
+def _with_word(line: StateLine) -> StateLine:
+    """Give a container without a word as one that the object is in."""
+    if isinstance(line.attribute, Relation) and not line.attribute.word:
+        return line._replace(attribute=line.attribute._replace(word="in"))
+    return line
 
 
 def _counted(parts: list[tuple[_Part, Source]], lost: "_Tally") -> list[str]:

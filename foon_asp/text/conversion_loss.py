@@ -28,6 +28,7 @@ class Loss(StrEnum):
     CONTENTS_WORDS = "words of contents: read back as contains {...}"
     CONTENTS_LISTS = "contents in several lists: joined"
     NO_CONTENTS = "empty contents {}"
+    PARTS = "states, relations and contents: in the name of their object, which is all one"
     ORDER = "the order of state lines"
     COMMENTS = "comments"
     VIDEOS = "source videos"

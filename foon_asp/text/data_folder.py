@@ -21,7 +21,7 @@ from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.plain_file import read_content
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, begins_neutral, read_content
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.stated_prices import StatedPrices
@@ -86,9 +86,10 @@ def find_data(
 
     Without folder and network it is the bundled kitchen. A network of its own does not get the bundled
     kitchen and rates, which are made for another one.
-    A folder has its network in ``FOON.txt`` or else in its other ``*.txt`` and ``*.json`` files, and may
-    have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``, ``unit_prices.txt``, and
-    ``goal_nodes.json`` or ``goal_nodes.txt``. Raises :class:`UserError` where something named does not exist.
+    A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
+    files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
+    ``unit_prices.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``. Raises :class:`UserError` where
+    something named does not exist.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
@@ -132,7 +133,7 @@ def network_files(path: Path) -> list[Path]:
         return [path / "FOON.txt"]
     files = sorted(file for file in path.iterdir() if file.name not in _SIDE_TABLES and _may_be_network(file))
     if not files:
-        expected = "a folder with FOON.txt or other networks (*.txt, *.json)"
+        expected = "a folder with FOON.txt or other networks (*.txt, *.json, *.jsonl)"
         raise UserError(f"{path}: expected {expected}, found none")
     return files
 
@@ -143,6 +144,8 @@ def _may_be_network(file: Path) -> bool:
         return False
     if file.suffix == ".json":
         return _OBJECT_KEY.search(read_content(file)) is not None
+    if file.name.endswith(NEUTRAL_SUFFIXES):
+        return begins_neutral(file)
     return file.suffix == ".txt"
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from foon_asp.text.json_list import JsonList
 from foon_asp.text.line import MotionLine, ObjectLine
-from foon_asp.text.plain_file import is_json, split_lines
+from foon_asp.text.plain_file import is_json, is_neutral, split_lines
 from foon_asp.text.reader import FoonReader
 
 
@@ -24,22 +24,29 @@ class Dialect(StrEnum):
     JSON_LIST = "json-list"
     """A list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``."""
 
+    NEUTRAL = "neutral"
+    """``{"id": "chop", "inputs": ["onion"], "outputs": ["chopped onion"]}``: a unit a line, plain names."""
+
     @property
     def is_json(self) -> bool:
         """Whether it is JSON and not lines of text."""
-        return self in {Dialect.JSON, Dialect.JSON_LIST}
+        return self in {Dialect.JSON, Dialect.JSON_LIST, Dialect.NEUTRAL}
 
     @property
     def suffix(self) -> str:
         """The ending of the names of its files."""
+        if self is Dialect.NEUTRAL:
+            return ".jsonl"
         return ".json" if self.is_json else ".txt"
 
 
-def dialect_of(text: str, reader: FoonReader) -> Dialect:
+def dialect_of(text: str, reader: FoonReader, file: str = "") -> Dialect:
     """Tell the dialect of a text; one line with an id, flag or time is enough.
 
     What cannot be understood says nothing; a text without anything that does is plain.
     """
+    if is_neutral(text, file):
+        return Dialect.NEUTRAL
     if is_json(text):
         by_its_name = any("object_label" in value for value in _first_objects(text))
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.text.plain_file import read_content
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, begins_neutral, read_content
 
 _LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
@@ -23,8 +23,8 @@ class FolderFile(NamedTuple):
 def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
     """Give the files that are named, and those of folders, sub-folders included, in order of name.
 
-    Of a folder these are the ``*.txt`` and ``*.json`` in which there is anything of FOON, networks and lists
-    of objects alike. Raises :class:`UserError` where nothing is found.
+    Of a folder these are the ``*.txt``, ``*.json`` and ``*.jsonl`` in which there is anything of FOON,
+    networks and lists of objects alike. Raises :class:`UserError` where nothing is found.
     """
     found: dict[Path, FolderFile] = {}
     for path in paths:
@@ -36,7 +36,7 @@ def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
         files = [FolderFile(file, file.relative_to(path)) for file in sorted(path.rglob("*"))]
         files = [file for file in files if _is_foon(*file)]
         if not files:
-            raise UserError(f"{path}: expected a folder with FOON files (*.txt, *.json), found none")
+            raise UserError(f"{path}: expected a folder with FOON files (*.txt, *.json, *.jsonl), found none")
         for file in files:
             found.setdefault(file.file, file)
     return list(found.values())
@@ -45,6 +45,8 @@ def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
 def _is_foon(file: Path, within: Path) -> bool:
     if any(part[:1] == "." for part in within.parts) or not file.is_file():
         return False
+    if file.name.endswith(NEUTRAL_SUFFIXES):
+        return begins_neutral(file)
     sign = {".txt": _LINE, ".json": _KEY}.get(file.suffix)
     content = read_content(file) if sign else b""
     # one in UTF-16 is not read, but whoever reads the folder has to be told

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
-from foon_asp.text.json_layout import check_json, lay_out
+from foon_asp.text.json_layout import check_json, lay_out, on_one_line
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine
-from foon_asp.text.plain_file import is_json, split_lines
+from foon_asp.text.plain_file import is_json, is_neutral, split_lines
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 
@@ -64,6 +64,8 @@ def format_text(
     ``lenient`` those stay as they are. ``rewrite`` says what becomes of the others; ``reader`` remembers
     lines from one text to the next.
     """
+    if is_neutral(text, file):
+        return _format_neutral(text, file, lenient)
     if is_json(text):
         return _format_json(text, file, lenient)
     ends = _LINE_END.findall(text)
@@ -150,6 +152,28 @@ def _format_json(text: str, file: str, lenient: bool) -> Formatted:
         for index, old in enumerate(before)
         if min(same, len(before) - 1) <= index < last
     ]
+    return Formatted(new_text, tuple(changes))
+
+
+def _format_neutral(text: str, file: str, lenient: bool) -> Formatted:
+    """Lay out each line of the neutral form anew; a line that cannot be understood stays if ``lenient``."""
+    from foon_asp.text.neutral_units import read_neutral_units  # noqa: PLC0415 (most files are none)
+
+    lines = split_lines(text.removeprefix(_MARK))
+    diagnostics: list[Diagnostic] = []
+    understood = {unit.source.line for unit in read_neutral_units(lines, file, diagnostics, lenient)}
+    errors = [found for found in diagnostics if found.severity is Severity.ERROR]
+    if errors:
+        raise InputError(errors)
+    new = [on_one_line(line) if number in understood else line for number, line in enumerate(lines, 1)]
+    if new[-1]:
+        new.append("")
+    end = _usual(_LINE_END.findall(text))
+    pairs = enumerate(zip(lines, new, strict=False), 1)
+    changes = [Change(number, before, after) for number, (before, after) in pairs if before != after]
+    new_text = end.join(new)
+    if new_text != text and not changes:
+        changes = [Change(len(lines), lines[-1], lines[-1])]
     return Formatted(new_text, tuple(changes))
 
 

@@ -33,6 +33,11 @@ def lay_out(text: str, level: int = 0) -> str:
     return "".join(parts)
 
 
+def on_one_line(text: str) -> str:
+    """Give a JSON text on one line, with a blank behind each comma and colon; strings and numbers stay."""
+    return "".join(token + " " if token in {",", ":"} else token for token in TOKEN.findall(text))
+
+
 def check_json(text: str, file: str) -> None:
     """Raise :class:`InputError` with the place where a text is not JSON."""
     try:

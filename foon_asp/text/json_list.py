@@ -4,7 +4,7 @@ import json
 import re
 from collections.abc import Generator, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, Severity
@@ -42,7 +42,7 @@ class JsonList:
         except json.JSONDecodeError as problem:
             found = json_fault(problem)
             self.error(self.place(found.offset), found.message)
-        except _FaultError as fault:
+        except JsonFaultError as fault:
             self.error(self.place(fault.position), str(fault))
         except RecursionError:
             self.error(self.place(0), "found lists nested too deeply, expected a list of objects")
@@ -109,8 +109,8 @@ class JsonList:
 
     def _value(self, position: int) -> tuple[object, int]:
         try:
-            return _DECODER.raw_decode(self._text, position)
-        except _FaultError as fault:
+            return DECODER.raw_decode(self._text, position)
+        except JsonFaultError as fault:
             fault.position = position
             raise
 
@@ -124,11 +124,11 @@ class JsonList:
         if rest != len(self._text):
             raise self._unexpected("the end of the file after the list", rest)
 
-    def _unexpected(self, expected: str, position: int) -> "_FaultError":
+    def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
         found = self._text[position:].split("\n", 1)[0].rstrip("\r")
         found = found if len(found) <= 24 else found[:24] + "..."
         shown = repr(found) if found else "the end of the line"
-        return _FaultError(f"found {shown}, expected {expected}", position)
+        return JsonFaultError(f"found {shown}, expected {expected}", position)
 
     def _skip(self, position: int) -> int:
         match = _SPACE.match(self._text, position)
@@ -142,14 +142,16 @@ class JsonNumber:
         self.text = text
 
 
-class _FaultError(Exception):
+class JsonFaultError(Exception):
+    """What is wrong with a JSON text that is well-formed, and the offset where."""
+
     def __init__(self, message: str, position: int) -> None:
         super().__init__(message)
         self.position = position
 
 
-def _repeated(key: str, position: int) -> _FaultError:
-    return _FaultError(f"found the key {key!r} twice in one object", position)
+def _repeated(key: str, position: int) -> JsonFaultError:
+    return JsonFaultError(f"found the key {key!r} twice in one object", position)
 
 
 def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -160,6 +162,6 @@ def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
     return value
 
 
-_DECODER = json.JSONDecoder(
+DECODER: Final = json.JSONDecoder(
     object_pairs_hook=_object, parse_int=JsonNumber, parse_float=JsonNumber, parse_constant=JsonNumber
 )

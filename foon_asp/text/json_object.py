@@ -40,12 +40,12 @@ def read_object(value: object) -> JsonObject:
     null, empty or ``"None"`` is none. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
-        raise ValueError(f'found {_shown(value)}, expected an object {{"label": ..., "states": [...]}}')
+        raise ValueError(f'found {shown(value)}, expected an object {{"label": ..., "states": [...]}}')
     check_keys(value, KEYS)
     key, found = first_of(value, _LABEL)
     label = _name(found, key).strip(" ")
     if not label:
-        raise ValueError(f'found {_shown(found)} as "{key}", expected a name')
+        raise ValueError(f'found {shown(found)} as "{key}", expected a name')
     states = [_state(state) for state in _list(value, *first_of(value, _STATES))]
     listed = _list(value, "ingredients", value.get("ingredients"))
     ingredients = tuple(item for item in map(_ingredient, listed) if item)
@@ -105,7 +105,7 @@ def number(value: dict[str, object], key: str) -> str:
     written = found.text if isinstance(found, JsonNumber) else found
     if isinstance(written, str) and is_number(written):
         return written
-    raise ValueError(f'found {_shown(found)} as "{key}", expected a number')
+    raise ValueError(f'found {shown(found)} as "{key}", expected a number')
 
 
 def _state(value: object) -> StateLine:
@@ -116,14 +116,14 @@ def _state(value: object) -> StateLine:
         related = optional_name(first_of(value, _RELATED)[1], _RELATED[0])
         if related:
             if not isinstance(state.attribute, str):
-                raise ValueError(f"found the related object {related!r} besides the one in {_shown(found)}")
+                raise ValueError(f"found the related object {related!r} besides the one in {shown(found)}")
             state = state._replace(attribute=Relation(state.attribute, related))
         return state._replace(id=number(value, "state_id"))
     name = _name(value, "states", "a name").strip(" ")
     try:
         return read_state(name)
     except LineError as error:
-        raise ValueError(f"found the state {_shown(name)}: at its column {error.column}, {error}") from None
+        raise ValueError(f"found the state {shown(name)}: at its column {error.column}, {error}") from None
 
 
 def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
@@ -158,18 +158,19 @@ def _list(value: dict[str, object], key: str, found: object) -> list[object]:
     if found is None:
         return []
     if not isinstance(found, list):
-        raise ValueError(f'found {_shown(found)} as "{key}", expected a list of names')
+        raise ValueError(f'found {shown(found)} as "{key}", expected a list of names')
     return found
 
 
 def _name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
-        raise ValueError(f'found {_shown(value)} as "{key}", expected {expected}')
+        raise ValueError(f'found {shown(value)} as "{key}", expected {expected}')
     note_line_end(value.strip(" "))
     return value
 
 
-def _shown(value: object) -> str:
+def shown(value: object) -> str:
+    """Give a value as it is written, for a message; a long one is cut."""
     if isinstance(value, JsonNumber):
         return value.text[:40]
     return json_line(value, _plain_number)[:40]

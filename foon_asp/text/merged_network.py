@@ -18,7 +18,7 @@ def merged_text(network: Network, comment: str) -> Iterator[str]:
     Above each unit stands a line ``# From:`` for every copy of it, with file, line and videos; a copy that
     is known twice, from a file and from what that was merged into, stands there once. Reading the text gives
     the same network and the same sources, except that columns are not written. Raises :class:`UserError`
-    for a name that a line of text cannot hold.
+    for a name that a line of text cannot hold, and for a unit without inputs.
     """
     blocks = list(map(write_node, network.objects))
     motions = {motion: f"M\t{motion}\n" for motion in dict.fromkeys(network.motions)}
@@ -28,6 +28,8 @@ def merged_text(network: Network, comment: str) -> Iterator[str]:
     for motion, inputs, outputs, sources in zip(
         network.motions, network.inputs, network.outputs, network.sources, strict=True
     ):
+        if not inputs:
+            raise UserError(f"the unit {motion!r} has no inputs, which FOON text cannot hold; a store can")
         for source in dict.fromkeys(source._replace(column=1) for source in sources):
             yield known.get(source) or known.setdefault(source, _copy(source))
         yield from (blocks[node] for node in inputs)

@@ -1,13 +1,17 @@
 """Text files as they come, UTF-8 with or without a byte order mark; and what is none."""
 
+import json
 from codecs import BOM_UTF8
 from pathlib import Path
+from typing import BinaryIO
 
 from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 STORE_SUFFIX = ".foon"
+NEUTRAL_SUFFIXES = (".jsonl", ".ndjson")
+_FIRST_LINE = 1_000_000  # bytes of it looked at
 STORE_MAGIC = b"SQLite format 3\0"  # how every database begins
 
 
@@ -29,12 +33,50 @@ def read_beginning(file: Path, length: int) -> bytes:
         return b""
 
 
+def opened(file: Path) -> BinaryIO:
+    """Open a file to read its bytes; raises :class:`UserError` when it cannot be."""
+    try:
+        return file.open("rb")
+    except OSError as error:
+        raise _unreadable(file, error) from None
+
+
 def read_content(file: Path) -> bytes:
     """Read a whole file; raises :class:`UserError` when it cannot be opened."""
     try:
         return file.read_bytes()
     except OSError as error:
-        raise UserError(f"{file}: cannot be read: {error.strerror or error}") from None
+        raise _unreadable(file, error) from None
+
+
+def _unreadable(file: Path, error: OSError) -> UserError:
+    return UserError(f"{file}: cannot be read: {error.strerror or error}")
+
+
+def is_neutral(text: str, file: str = "") -> bool:
+    """Whether a text is in the neutral form: named as it, or its first line is one of its units as JSON."""
+    if file.endswith(NEUTRAL_SUFFIXES):
+        return True
+    start = len(text[:1_000]) - len(text[:1_000].lstrip("\ufeff \t\r\n"))
+    line = text[start:].split("\n", 1)[0] if text[start : start + 1] == "{" else ""
+    if '"outputs"' not in line:
+        return False
+    try:
+        unit = json.loads(line, parse_int=str, parse_float=str)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(unit, dict) and unit.keys() >= {"inputs", "outputs"} and "schema" not in unit
+
+
+def begins_neutral(file: Path) -> bool:
+    """Whether the first line of a file is a unit of the neutral form."""
+    with opened(file) as lines:
+        return is_neutral(lines.readline(_FIRST_LINE).decode(errors="replace"))
+
+
+def is_neutral_file(file: Path) -> bool:
+    """Whether a file is in the neutral form, by the ending of its name or by its first line."""
+    return file.is_file() and (file.name.endswith(NEUTRAL_SUFFIXES) or begins_neutral(file))
 
 
 def is_json(text: str) -> bool:
@@ -64,9 +106,14 @@ def plain_text(data: bytes, file: Path) -> str:
     try:
         return data.decode()
     except UnicodeDecodeError as error:
-        before = data[: error.start]
-        start = before.rfind(b"\n") + 1
-        column = len(before[start:].decode()) + 1
-        message = f"found the byte 0x{data[error.start]:02x}, expected UTF-8 text; save the file as UTF-8"
-        source = Source(str(file), before.count(b"\n") + 1, column)
-        raise InputError([Diagnostic(Severity.ERROR, "encoding", message, source)]) from None
+        raise not_utf_8(data, error, file) from None
+
+
+def not_utf_8(data: bytes, error: UnicodeDecodeError, file: Path, line: int = 1) -> InputError:
+    """Give the error of bytes that are no UTF-8; ``line`` is the number of their first line."""
+    before = data[: error.start]
+    start = before.rfind(b"\n") + 1
+    column = len(before[start:].decode("utf-8-sig")) + 1
+    message = f"found the byte 0x{data[error.start]:02x}, expected UTF-8 text; save the file as UTF-8"
+    source = Source(str(file), line + before.count(b"\n"), column)
+    return InputError([Diagnostic(Severity.ERROR, "encoding", message, source)])

@@ -1,6 +1,7 @@
 """Reading FOON files into a network: FOON text of every dialect, and JSON."""
 
 from collections.abc import Iterable, Iterator
+from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple, cast
 
@@ -10,7 +11,14 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import parse_line, parse_lines
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, node_of
-from foon_asp.text.plain_file import is_json, plain_text, read_plain_text
+from foon_asp.text.plain_file import (
+    is_json,
+    is_neutral,
+    is_neutral_file,
+    plain_text,
+    read_plain_text,
+    split_lines,
+)
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.writer import write_line
@@ -51,6 +59,8 @@ class FoonReader:
         >>> reader = foon_asp.FoonReader()
         >>> reader.read_network([Path("data/kitchen/FOON.txt")])
         <Network: 220 units, 418 object nodes, level 3>
+        >>> next(reader.file_units(Path("data/kitchen/FOON.txt"))).motion
+        'turn on'
         >>> text = reader.text(Path("data/kitchen/FOON.txt"))
         >>> next(reader.units(text, "FOON.txt")).motion, next(reader.listed_units(text, "FOON.txt")).motion.id
         ('turn on', '')
@@ -92,7 +102,7 @@ class FoonReader:
         earlier = len(self.diagnostics)
         for file in files:
             last: tuple[int, Source] | None = None
-            for motion, inputs, outputs, sources in self.units(self.text(file), str(file)):
+            for motion, inputs, outputs, sources in self.file_units(file):
                 unit = builder.add(motion, inputs, outputs, *sources)
                 last = (unit, sources[0]) if outputs else last
             if last:
@@ -117,6 +127,22 @@ class FoonReader:
         ]
         self.raise_errors(earlier)
         return units
+
+    def file_units(self, file: Path) -> Iterator[ReadUnit]:
+        """Give the units of a file in order; one in the neutral form is read line by line.
+
+        Parameters:
+            file: The path of the file.
+        """
+        if not is_neutral_file(file):
+            yield from self.units(self.text(file), str(file))
+            return
+        from foon_asp.text.neutral_units import lines_of  # noqa: PLC0415 (most networks are none)
+
+        try:
+            yield from self._neutral_units(lines_of(file), str(file))
+        except InputError as error:
+            self.diagnostics += error.diagnostics
 
     def text(self, file: Path, content: bytes | None = None) -> str:
         """Give the text of a file; it is empty, and an error is noted, if the file is not text.
@@ -151,6 +177,8 @@ class FoonReader:
             text: The FOON text.
             file: The name of the file, for messages and sources.
         """
+        if is_neutral(text, file):
+            return self._neutral_units(split_lines(text), file)
         if is_json(text):
             return map(_identity, self._json_units(text, file))
         return _FileReading(self, text, file).units()
@@ -162,6 +190,8 @@ class FoonReader:
             text: The FOON text.
             file: The name of the file, for messages and sources.
         """
+        if is_neutral(text, file):
+            return self._neutral_listed(text, file)
         if is_json(text):
             return self._json_units(text, file)
         return _FileReading(self, text, file).listed_units()
@@ -185,6 +215,33 @@ class FoonReader:
                 copy = FunctionalUnit.of(unit.motion.motion, *unit.sides)
                 self.prices.add(copy, read_price(unit.price), unit.motion_source)
             yield unit
+
+    def _neutral_units(self, lines: Iterable[str], file: str) -> Iterator[ReadUnit]:
+        from foon_asp.text.exact_price import read_price  # noqa: PLC0415 (most networks are none)
+        from foon_asp.text.neutral_units import read_neutral_units  # noqa: PLC0415
+
+        nodes: dict[str, ObjectNode] = {}
+        prices: dict[str, Fraction] = {}
+        for id_, *sides, price, source in read_neutral_units(lines, file, self.diagnostics, self.lenient):
+            inputs, outputs = (
+                [nodes.get(name) or nodes.setdefault(name, ObjectNode(name)) for name in side]
+                for side in sides
+            )
+            if price:
+                if price not in prices:
+                    prices[price] = read_price(price)
+                self.prices.add_least(FunctionalUnit.of(id_, inputs, outputs), prices[price])
+            yield ReadUnit(id_, inputs, outputs, (source,))
+
+    def _neutral_listed(self, text: str, file: str) -> Iterator[ListedUnit]:
+        from foon_asp.text.neutral_units import read_neutral_units  # noqa: PLC0415
+
+        lines = split_lines(text)
+        for id_, *sides, price, source in read_neutral_units(lines, file, self.diagnostics, self.lenient):
+            inputs, outputs = (
+                tuple(ObjectBlock(ObjectLine(name), (), source) for name in side) for side in sides
+            )
+            yield ListedUnit(MotionLine(id_), inputs, outputs, (source,), source, price)
 
     def parse_new(self, lines: Iterable[str]) -> None:
         """Parse all lines not met before, together, which is faster than one by one.

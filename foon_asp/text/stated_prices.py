@@ -12,23 +12,34 @@ class StatedPrices:
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Fraction, Source]] = {}
+        self._least: dict[FunctionalUnit, Fraction] = {}
 
     def __len__(self) -> int:
-        return len(self._copies)
+        return len(self._copies.keys() | self._least.keys()) if self._copies else len(self._least)
 
     def add(self, unit: FunctionalUnit, price: Fraction, source: Source) -> None:
         """Note the price of one copy, and where it is stated."""
         self._copies.setdefault(unit, {}).setdefault(price, source)
 
+    def add_least(self, unit: FunctionalUnit, price: Fraction) -> None:
+        """Note the price of one copy, of which the cheapest counts."""
+        if self._least.setdefault(unit, price) > price:
+            self._least[unit] = price
+
     def settled(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
         """Give the one price of each unit; where copies disagree, it is the ``chosen`` one.
+
+        Of a unit with a copy of which the cheapest counts, it is the least.
 
         Raises :class:`InputError` for copies that disagree where none is chosen.
         """
         errors: list[Diagnostic] = []
-        found: dict[FunctionalUnit, Fraction] = {}
+        found = dict(self._least)
         for unit, prices in self._copies.items():
             (price, first), *others = prices.items()
+            if unit in found:
+                found[unit] = min(found[unit], *prices)
+                continue
             found[unit] = chosen.get(unit, price) if others else price
             if others and unit not in chosen:
                 _, second = others[0]

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable
 
+from foon_asp.errors import UserError
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
 from foon_asp.text.line import Line, MotionLine, ObjectLine
 
@@ -34,7 +35,12 @@ def write_node(node: ObjectNode) -> str:
 
 
 def write_unit(unit: FunctionalUnit) -> str:
-    """Give the lines of a unit, the closing ``//`` included."""
+    """Give the lines of a unit, the closing ``//`` included.
+
+    Raises :class:`UserError` for a unit without inputs, which nobody could read back.
+    """
+    if not unit.inputs:
+        raise UserError(f"the unit {unit.motion!r} has no inputs, which FOON text cannot hold; JSON can")
     inputs = "".join(map(write_node, unit.inputs))
     outputs = "".join(map(write_node, unit.outputs))
     return f"{inputs}M\t{unit.motion}\n{outputs}//\n"
@@ -49,6 +55,9 @@ def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -
 
     Returns:
         The FOON text.
+
+    Raises:
+        UserError: for a unit without inputs, which FOON text cannot hold.
 
     Example:
         >>> tree = foon_asp.solve(foon_asp.load().problem("ice")).tree
