@@ -172,7 +172,7 @@ def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, spare: boo
         if not spare:  # then rules that leave a tree leave what is left of it without spare units
             found = [one for one in found if not any(other.units < one.units for other in found)]
         names = LISTS[seed % len(LISTS)]
-        reduced = reduce(problem, levels(tuple(map(Objective, names))), spare=spare)
+        reduced = reduce(problem, levels(tuple(map(Objective, names))), spare=spare, rest=True)
         wide = reduced.wide
         if wide is None:
             continue

@@ -38,7 +38,7 @@ LIBRARY = {
     "require_motion": ([Kind.REQUIRING], [Kind.FACT]),
     "require_object": ([Kind.REQUIRING], [Kind.FACT]),
 }
-ONE_OF = {"require_ingredient", "require_motion", "require_object"}
+ONE_OF = {"require_ingredient", "require_intermediate", "require_motion", "require_object"}
 
 
 # Rules with what is claimed of the last one of each: its kind, and whether it sees no further than the tree.

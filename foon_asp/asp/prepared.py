@@ -14,7 +14,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, Restriction, first_tree, levels, reach, relevant
-from foon_asp.reduce import NONE, ExactCosts, Listener, Reduced, Reduction, reduce
+from foon_asp.reduce import NONE, Bounds, Listener, Reduced, Reduction, reduce
 
 if TYPE_CHECKING:  # often there is nothing left to ask clingo
     from foon_asp.encoding.scales import Scales
@@ -181,9 +181,10 @@ def prepare(
                 asked,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
-                _Bounds(listener) if first.rest else listener,
+                Bounds(listener) if first.rest else listener,
                 lambda: deadline.watched("cutting the network", late=True),
                 spare,
+                first.rest,
             )
             if reduced.interrupted:
                 deadline.interrupt()
@@ -226,13 +227,3 @@ def _applied(first: Prepared, rules: "Rules") -> tuple[Prepared, bool]:
 def _limits_rest(first: Prepared) -> bool:
     """Whether the rest of the user's rules is kept to by limits on costs."""
     return first.rest and not first.program.bounded and Reduction.DEAR in first.settings.reductions
-
-
-class _Bounds(Listener):
-    """Passes on bounds alone: trees found on the way may not keep to all rules."""
-
-    def __init__(self, listener: Listener) -> None:
-        self._listener = listener
-
-    def bound(self, costs: ExactCosts, bound: int) -> None:
-        self._listener.bound(costs, bound)

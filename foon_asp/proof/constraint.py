@@ -173,14 +173,13 @@ def _require_ingredient(question: Question, required_ingredient: str) -> Meaning
 
 
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
-    """Of one of the nodes, a tree has a unit that makes and does not have it, and one that needs it."""
+    """Of one of the nodes, a tree has a unit that makes and does not need it, and one that needs it."""
     network = question.network
     wanted = []
     for o in question.labelled(required_intermediate):
         if o not in question.kitchen:
-            makers = frozenset(network.producers[o]).difference(network.consumers[o])
             takers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
-            wanted.append([makers, takers])
+            wanted.append([frozenset(network.producers[o]) - takers, takers])
     return Meaning(wanted=[wanted])
 
 

@@ -1,6 +1,7 @@
 """A question made small before it is searched, with a tree in hand and a bound on all others."""
 
 from foon_asp.reduce.exact_costs import ExactCosts as ExactCosts
+from foon_asp.reduce.reduction import Bounds as Bounds
 from foon_asp.reduce.reduction import Listener as Listener
 from foon_asp.reduce.reduction import Reduced as Reduced
 from foon_asp.reduce.reduction import reduce as reduce

@@ -1,7 +1,8 @@
 """A question as plain arrays: actions that need and give objects, towards some goals."""
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
+from heapq import nsmallest
 
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.problem import Left, Objective, Problem, backwards
@@ -15,12 +16,13 @@ class Graph(Hypergraph):
     taking item ``o`` is the action ``units + o``, which needs nothing and gives ``o``, and ``start`` is
     empty; elsewhere ``start`` is the kitchen. Actions may give what is there from the start, to no effect.
     ``goals`` are those not there from the start. A set of units of which a restriction requires one is one
-    more object, which each of its units gives, and a goal.
+    more object, which each of its units gives, and a goal; ``required`` are these objects.
     """
 
     units: int
     goals: tuple[int, ...]
     start: frozenset[int]
+    required: range = range(0)
 
     def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
         """Go backwards from the goals through all (allowed) actions, and stop at the start.
@@ -29,12 +31,29 @@ class Graph(Hypergraph):
         """
         return backwards(self.goals, self.makers, self.needs, self.start, allowed)
 
+    def thin(self, most: int, cost: Callable[[int], int]) -> "Graph":
+        """Give a graph in which required sets have few units each, for estimates.
+
+        Most units of a large set are far from the goals, and one at random is enough to see that it costs no
+        more. Those stay that lack least, the cheapest first; what the others give is not told.
+        """
+
+        def lacking(action: int) -> tuple[int, int, int]:
+            return sum(o not in self.start for o in self.needs[action]), cost(action), action
+
+        few = {o: tuple(nsmallest(most, self.makers[o], lacking)) for o in self.required}
+        if not few:
+            return self
+        assert isinstance(self.makers, Left)
+        return replace(self, known_makers=self.makers.instead(few))
+
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
     """Give the graph of a problem under a list of objectives."""
     network, kitchen, restriction = problem.network, problem.kitchen, problem.restriction
     units, size = len(network), len(network.objects)
     goals = tuple(o for o in dict.fromkeys(problem.targets) if o not in kitchen)
+    required = range(size, size + (len(restriction.required) if restriction else 0))
     gives: Sequence[Sequence[int]] = problem.gives
     if restriction and restriction.required:
         gives = more = list(problem.gives)
@@ -42,13 +61,14 @@ def graph_of(problem: Problem, objectives: Iterable[Objective]) -> Graph:
             for unit in able:
                 more[unit] = (*more[unit], o)
     graph = Graph(
-        size + (len(restriction.required) if restriction else 0),
+        size + len(required),
         problem.needs,
         gives,
         start=kitchen,
         known_makers=problem.makers,
         units=units,
         goals=goals,
+        required=required,
     )
     if not any(objective.row.item for objective in objectives):
         return graph

@@ -4,6 +4,7 @@ import gc
 import sys
 from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
+from dataclasses import replace
 from typing import NamedTuple
 
 from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
@@ -11,6 +12,7 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.dominance import undominated
 from foon_asp.reduce.exact_costs import CoarseCosts, ExactCosts, TooFineError
+from foon_asp.reduce.extension import extended, extensions
 from foon_asp.reduce.forced import beside_forced
 from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.narrow import narrow
@@ -21,6 +23,7 @@ from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 _LARGE = 40_000  # actions from which on it pays not to look at all of them
 _FIRST = 4000  # actions nearest to the goals, among which a tree is looked for before all others count
+_ABLE = 50  # units of a required set that count while trees are looked for
 _MANY = 2000  # actions among which better trees are looked for
 _EASY = 600  # actions that clingo chooses from faster than better trees are looked for here
 _ROUNDS = 24  # of cuts, trees and what they leave
@@ -57,6 +60,17 @@ class Listener:
         """Receive a lower bound on all trees."""
 
 
+class Bounds(Listener):
+    """Passes on bounds alone: trees found on the way may not keep to all rules."""
+
+    def __init__(self, listener: Listener) -> None:
+        self._listener = listener
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        """Receive a lower bound on all trees."""
+        self._listener.bound(costs, bound)
+
+
 def reduce(
     problem: Problem,
     objectives: Sequence[Objective],
@@ -65,20 +79,28 @@ def reduce(
     listener: Listener | None = None,
     guard: Callable[[], AbstractContextManager[object]] = nullcontext,
     spare: bool = False,
+    rest: bool = False,
 ) -> Reduced:
     """Leave of a problem what a search for the best tree still has to look at.
 
     ``objectives`` is the list as it is optimized, ``units`` being in it, so that every unit costs
     something. Without reductions that is what can be made from the kitchen and the goals can need.
     ``expired`` is asked now and then; what takes longer is interrupted, as by ctrl-C, by the ``guard``.
-    ``spare`` says that the trees to be asked about may have units that lead to no goal.
+    ``rest`` says that trees have to keep to more than is known here, which ``wide`` is needed for; ``spare``
+    that those may have units that lead to no goal.
     """
     collecting = gc.isenabled()
     gc.disable()  # nothing here is circular, and a collection walks over the whole network
     try:
         with guard():
             reducer = _Reducer(
-                problem, tuple(objectives), frozenset(reductions), expired, listener or Listener(), spare
+                problem,
+                tuple(objectives),
+                frozenset(reductions),
+                expired,
+                listener or Listener(),
+                spare,
+                rest,
             )
         return reducer.reduce(guard)
     finally:
@@ -95,11 +117,16 @@ class _Reducer:
         expired: Callable[[], bool],
         listener: Listener,
         spare: bool = False,
+        rest: bool = False,
+        extended: bool = False,
     ) -> None:
         self.problem, self.objectives, self.reductions = problem, objectives, reductions
-        self.expired, self.listener, self.spare = expired, listener, spare
+        self.expired, self.listener, self.spare, self.rest = expired, listener, spare, rest
+        self.extended = extended  # so costs of all actions are asked for later
+        self.extending = False  # some trees were left out before there were cuts
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse = CoarseCosts(problem, objectives[0])
+        self.thin = self.graph.thin(_ABLE, self.coarse)
         self.left: Collection[int]  # there before a tree is
         self.tree: set[int] = set()
         self.costs: ExactCosts | None = None
@@ -110,8 +137,9 @@ class _Reducer:
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
         ended = settled = hopeless = False
         try:
+            guide = self._by_extending(guard)
             with guard():
-                guide = self._near_goals() or self._whole()
+                guide = guide or self._near_goals() or self._whole()
                 hopeless = guide is None
                 if guide is not None and self.reductions:
                     self._take(without_spare(self.graph, self.tree, self.coarse))
@@ -125,6 +153,46 @@ class _Reducer:
         result = self._result(settled)
         return result if ended else result._replace(interrupted=True)
 
+    def _by_extending(self, guard: Callable[[], AbstractContextManager[object]]) -> dict[int, int] | None:
+        """Leave what cheap trees for the goals alone can have, and what else leads to required sets.
+
+        Of a tree, some units are one for the goals alone. These cost no more than it does, and the others no
+        more than what is then left of its cost. Gives how dear objects are, or ``None`` where nothing is
+        required, or that does not help.
+        """
+        graph, restriction, limits = self.graph, self.problem.restriction, Reduction.DEAR in self.reductions
+        if self.rest or restriction is None or not restriction.required or not limits:
+            return None
+        alone = _Reducer(
+            replace(self.problem, restriction=replace(restriction, required=())),
+            self.objectives,
+            self.reductions,
+            self.expired,
+            Bounds(self.listener),
+            extended=True,
+        )
+        found = alone.reduce(guard)
+        costs, wide = alone.costs, alone.wide
+        if costs is None or wide is None:
+            return None
+        with guard():
+            tree = extended(self.thin, alone.tree, costs, len(graph.needs) // 4)
+            if tree is None:
+                return None
+            self.left = range(len(graph.needs))
+            self._take(without_spare(graph, tree, costs))
+            if found.interrupted:
+                raise KeyboardInterrupt
+            limit = self._total(costs) - (Reduction.BOUNDS in self.reductions)
+            least = alone._total(costs) if found.settled else found.bound
+            among = {*wide.actions_within(limit, self.expired), *self.tree}
+            among |= extensions(graph, among, costs, limit - least + costs.doubt, self.expired)
+            if self.expired():
+                raise KeyboardInterrupt
+            made = derive(graph, among, self.coarse, added=False)
+            self.left, self.extending = graph.cone(made.before)[0], True
+        return made.cost
+
     def _near_goals(self) -> dict[int, int] | None:
         """Find a tree among the actions nearest to the goals, with all others still to be counted in.
 
@@ -136,8 +204,8 @@ class _Reducer:
         if not self.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= _LARGE:
             return None
         everything = range(size)
-        few = near(graph, everything, self.coarse, sys.maxsize, most=_FIRST)
-        found = narrow(graph, few, self.coarse, size // 4) if len(few) >= _FIRST else None
+        few = near(self.thin, everything, self.coarse, sys.maxsize, most=_FIRST)
+        found = narrow(self.thin, few, self.coarse, size // 4) if len(few) >= _FIRST else None
         if found is None:
             return None
         self.left = everything
@@ -165,7 +233,7 @@ class _Reducer:
         """Go around until nothing changes; whether the tree is proved optimal."""
         costs: ExactCosts | None = None
         with suppress(TooFineError):
-            all_costs = range(len(self.graph.needs)) if self.spare else self.left
+            all_costs = range(len(self.graph.needs)) if self.spare or self.extended else self.left
             self.costs = costs = ExactCosts(self.problem, self.objectives, all_costs)
         if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
             self._follow_added(costs)
@@ -217,7 +285,7 @@ class _Reducer:
             self.expired,
             None if lazy else lambda rest: derive(self.graph, self.left, rest, added=False).cost,
         )
-        if self.wide is None and not cuts.interrupted:  # nothing was left out so far
+        if self.wide is None and not cuts.interrupted and not self.extending:  # nothing was left out so far
             self.wide = Wide(self.problem, self.graph, self.left, costs, cuts, self.spare)
         if self.cuts is None or cuts.bound > self.cuts.bound:
             self.cuts = cuts
@@ -236,7 +304,7 @@ class _Reducer:
     def _improve(self, costs: ExactCosts, cuts: Cuts, thorough: bool) -> None:
         """Look for better trees near what cuts leave."""
         rest = rests(costs, cuts)
-        few = near(self.graph, self.left, rest, self._total(costs) - cuts.bound, most=_MANY)
+        few = near(self.thin, self.left, rest, self._total(costs) - cuts.bound, most=_MANY)
         better = improved(self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough)
         if better is not self.tree:
             self._take(better)

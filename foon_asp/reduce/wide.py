@@ -86,7 +86,11 @@ class Wide:
         return self._units(graph.cone(made.before)[0])
 
     def within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
-        """Give the units that a tree of costs up to a limit can have, and maybe more where time is up.
+        """Give the units that a tree of costs up to a limit can have, and maybe more where time is up."""
+        return self._units(self.actions_within(limit, expired))
+
+    def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
+        """Give the actions that a tree of costs up to a limit can have, and maybe more where time is up.
 
         What the cuts leave of the costs of a tree is at most its cost less their bound. Where no unit is
         spare, it is on a way from each unit to a goal; else it is at least in what the unit itself takes.
@@ -97,7 +101,7 @@ class Wide:
         for _ in range(_ROUNDS):
             gap = limit - cuts.bound + costs.doubt
             if gap < 0:
-                return frozenset()
+                return ()
             rest = rests(costs, cuts)
             before = len(left)
             if self.spare:
@@ -120,8 +124,8 @@ class Wide:
             if cuts.interrupted:
                 raise KeyboardInterrupt
             if cuts.hopeless:
-                return frozenset()
-        return self._units(left)
+                return ()
+        return left
 
     def _all(self) -> list[int]:
         """Give all actions that a tree may have."""

@@ -127,12 +127,13 @@ class FlatAnswers:
     def _likely(self, variable: Variable, items: Sequence[Item]) -> Iterable[int]:
         """Give some object nodes, among them all of which items hold: by a label or ingredient they name."""
         network = self._problem.network
-        indexes = {"label": network.by_label, "ingredient": network.by_ingredient}
         for item in items:
-            if isinstance(item, Fact) and item.signature[0] in indexes and item.terms[0] == variable:
-                match item.terms[1]:
-                    case Constant(str(name)):
-                        return indexes[item.signature[0]].get(name, ())
+            if isinstance(item, Fact) and item.terms[0] == variable:
+                match item.signature[0], item.terms[-1]:
+                    case "label", Constant(str(name)):
+                        return network.by_label.get(name, ())
+                    case "ingredient", Constant(str(name)):
+                        return network.by_ingredient.get(name, ())
         return range(len(network.objects))
 
     def _true_of(
