@@ -55,12 +55,20 @@ def cut(objects: set[int], members: tuple[int, ...], cheapest: int, weight: int)
             [2, 3, 4],
             {3: 9, 2: 1000},
             8,
+            {5: 0, 3: 0, 4: 0, 0: 0, 1: 0},
+            [cut({4}, (5,), 5, 1), cut({2}, (3, 4), 3, 5), cut({3}, (0, 1), 0, 2)],
+        ),
+        (  # each target in turn has a cut, the one thought to be dearest before the others
+            [2, 2, 1, 5, 5, 1],
+            [3, 4],
+            {3: 9, 2: 1000},
+            8,
             {5: 0, 0: 0, 1: 0, 3: 0, 4: 0, 2: 0},
             [
                 cut({4}, (5,), 5, 1),
-                cut({3, 4}, (0, 1), 0, 2),
+                cut({3}, (0, 1), 0, 2),
                 cut({1, 2, 3, 4}, (3, 4, 2), 2, 1),  # action 0 lacks 1 rather than 2, action 1 lacks 2
-                cut({2, 3, 4}, (3, 4), 3, 4),
+                cut({2, 3}, (3, 4), 3, 4),
             ],
         ),
         (  # the target that is thought to be dearest is tried first
@@ -172,3 +180,19 @@ def test_random_cuts_hold_and_leave_the_targets_for_nothing(seed: int) -> None:
     assert found.hopeless != all(graph.reach(dear)[target] for target in targets)
     lost = not all(graph.reach(frozenset(range(actions)) - allowed)[target] for target in targets)
     assert found.hopeless == lost
+
+
+def test_targets_far_away_leave_those_on_the_way_their_own_cuts() -> None:
+    # places of a grid, each reached from its neighbours; that each is visited is a target of its own
+    side, places = 5, range(25)
+    moves = [
+        (here, there)
+        for here in places
+        for there in places
+        if abs(here // side - there // side) + abs(here % side - there % side) == 1
+    ]
+    needs, gives = [[here] for here, _ in moves], [[there, 25 + there] for _, there in moves]
+    graph = Hypergraph(50, needs, gives, [0, 25])
+    dear = {25 + place: place // side + place % side for place in places}
+    found = landmark_cuts(graph, range(26, 50), range(len(moves)), lambda _: 1, dear, lambda: False)
+    assert found.bound == len(found.cuts) == 24

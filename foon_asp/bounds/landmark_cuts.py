@@ -6,6 +6,7 @@ Domshlak 2009): each takes from all of its members what the cheapest has left.
 """
 
 import math
+from collections import deque
 from collections.abc import Callable, Container, Iterable, Mapping
 from typing import NamedTuple
 
@@ -51,9 +52,10 @@ def landmark_cuts(
 
     Only ``allowed`` actions count, and all costs are above zero. ``dear`` says how dear each object is
     thought to be, those not in it dearer than all: a cut passes through the dearest object that an action
-    needs. ``guide`` tells the same from the costs of actions, and is asked now and then by what the cuts
-    leave of them. What is made for nothing only grows, so that the time goes with what the cuts touch and not
-    with the size of the graph.
+    needs. Each target in turn has a cut, the dearest first: more cuts of the dearest alone would take what
+    others have cuts of their own for. ``guide`` tells how dear objects are from the costs of actions, and is
+    asked now and then by what the cuts leave of them. What is made for nothing only grows, so that the time
+    goes with what the cuts touch and not with the size of the graph.
     """
     needs, makers = graph.needs, graph.makers
     left: dict[int, int] = {}
@@ -67,16 +69,17 @@ def landmark_cuts(
     def dearness(o: int) -> tuple[float, int]:
         return dear.get(o, math.inf), o
 
-    remaining = sorted(targets, key=dearness)
+    remaining = deque(sorted(targets, key=dearness, reverse=True))
     try:
         while remaining and not expired():
-            if remaining[-1] in free.objects:
-                remaining.pop()
+            target = remaining.popleft()
+            if target in free.objects:
                 continue
+            remaining.append(target)
             if guide is not None and found and len(found) % _FRESH == 0:
                 dear = guide(rest_of)
-            zone = {remaining[-1]}
-            stack = [remaining[-1]]
+            zone = {target}
+            stack = [target]
             edge: dict[int, None] = {}
             while stack:
                 for action in makers[stack.pop()]:
