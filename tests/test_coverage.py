@@ -154,6 +154,27 @@ def test_replaced_encodings_may_say_anything() -> None:
     ]
 
 
+def test_a_value_is_set_for_the_uses_that_read_it() -> None:
+    """A constant that is set for all is not one of a use with values of its own."""
+    egg = given_constraint("forbid_ingredient:forbidden_ingredient=egg")
+    found = coverage(
+        Settings(
+            (egg, Path("forbid_motion")), constants=("forbidden_motion=pour", "forbidden_ingredient=milk")
+        )
+    )
+    assert found == Coverage(
+        ({"rule": "forbid_ingredient", "allergen": ["egg"]}, POUR), ("forbidden_ingredient=milk",)
+    )
+
+
+def test_a_use_that_is_not_covered_is_named_with_its_file() -> None:
+    use = given_constraint("at_most_motion:limited_motion=pour,max_uses=1")
+    digest = hashlib.sha256((encodings_folder() / "constraints/at_most_motion.lp").read_bytes()).hexdigest()
+    found = coverage(Settings((use,), encodings=encodings_folder()))
+    assert found.rules == ()
+    assert found.not_covered == (f"{use.name} {digest}", "encodings encodings")
+
+
 def test_what_cannot_be_printed_is_escaped() -> None:
     found = coverage(Settings(constants=("a=\u00e9\n\u2028\x1b b",)))
     assert found == Coverage((), ("a=\u00e9\\n\\u2028\\x1b b",))

@@ -9,10 +9,11 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.settings import Bounded, Settings
 from foon_asp.deadline import Deadline
-from foon_asp.errors import BugError
-from foon_asp.problem import Objective
+from foon_asp.errors import BugError, UserError
+from foon_asp.problem import Objective, Problem, UsedUp
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduction
 from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.measure import read_measures
 from tests.test_constraint_meanings import small
 
 PROBLEM = small("cut: start > a", "mix: a > end", "boil: start > end", "junk: start > x")
@@ -103,7 +104,10 @@ def test_which_rules_are_applied_and_what_is_left(
         if listener is not None and named == {}:
             # a tree that may break a rule is passed on to nobody
             assert listener.trees == ([] if expected.rest else [expected.tree])
-            assert listener.bounds == [1 if expected.tree == [2] else 2]
+            assert listener.bounds == {"": [1], ASKED: [1, 2], SETTLED: [2]}.get(rule, [1])
+        assert first.spare == (rule == SPARE)
+        if first.reduced is not None and first.reduced.wide is not None:
+            assert first.reduced.wide.spare == first.spare
     untouched = asked(rule, Heard(), reductions=NONE)
     assert (untouched.kept, untouched.rest, untouched.asked) == (None, False, None)
     assert untouched.units == (ALL if rule else NEEDED)
@@ -155,14 +159,35 @@ def test_a_tree_is_held_against_all_rules() -> None:
                 first.require_kept(broken)
     plain = asked("", Heard())
     plain.require_kept([2])
+    # where that is not known in time, it is no fault
+    late = replace(asked(SETTLED, Heard()), deadline=Deadline(0.0))
+    assert late.keeps([2]) is None
+    late.require_kept([2])
+
+
+def test_items_that_are_used_up_are_refused() -> None:
+    with pytest.raises(UserError, match="not built for items that are used up"):
+        prepare(replace(PROBLEM, items=UsedUp()), (Objective.UNITS,), Settings(), assemble(Settings(), print))
+
+
+def test_measures_are_worked_out_within_the_limits(monkeypatch: pytest.MonkeyPatch) -> None:
+    within: list[Deadline | None] = []
+    monkeypatch.setattr(Problem, "apply_measures", lambda _, deadline=None: within.append(deadline))
+    problem = replace(PROBLEM, measures=read_measures("cost(mine,U,1) :- unit(U)."))
+    settings = Settings(deadline=Deadline())
+    prepare(problem, (Objective.UNITS,), settings, assemble(settings, print))
+    assert within[0] is settings.deadline
+    late = Settings(deadline=Deadline(0.0))
+    prepare(problem, (Objective.UNITS,), late, assemble(late, print))
+    assert late.begun.stopped == "the time limit of 0 s while measuring units"
 
 
 def test_sets_of_which_one_is_asked_for_are_facts_of_the_units_that_are_left() -> None:
     def required(first: Prepared) -> list[str]:
-        return [line for line in first.facts.splitlines() if "required" in line]
+        return [line for line in first.facts.splitlines() if line.startswith(("_required", "_one_of"))]
 
     assert required(asked("", Heard())) == []
-    assert len(required(asked(ASKED, Heard()))) == 1
+    assert required(asked(ASKED, Heard())) == ["_required(0).", "_one_of(0,3)."]
     assert required(asked(SETTLED, Heard())) == []
 
 

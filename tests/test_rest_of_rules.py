@@ -2,20 +2,33 @@
 
 import random
 from collections import Counter
+from collections.abc import Collection
 from dataclasses import replace
+from fractions import Fraction
+from typing import Any
 
 import pytest
 
-from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp import Outcome, Proof, Settings, Status, solve
+from foon_asp.asp import prepared as prepared_module
 from foon_asp.asp import solver as solver_module
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import prepare
+from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.solver import Reporter, _Heard, _Solver
-from foon_asp.problem import ContainerRule, Objective
+from foon_asp.deadline import Deadline
+from foon_asp.errors import BugError
+from foon_asp.grounding.grounded import Grounded
+from foon_asp.grounding.run import Run
+from foon_asp.network import UnitPrices
+from foon_asp.problem import ContainerRule, Objective, Problem, Restriction
+from foon_asp.reduce import Reduced, Wide, reduce
 from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.rules import Rules
 from tests import oracle
 from tests.random_problems import MOTIONS, random_problem
 from tests.test_constraint_meanings import small
+from tests.test_solver import Answer, Searches
 
 OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS, Objective.KITCHEN)
 
@@ -69,7 +82,7 @@ def test_what_was_found_among_few_units_is_held_against_all_that_may_be_better(
         assert first.rest
         return _Solver(first, (Objective.UNITS,), heard, {})
 
-    def found(solver: _Solver, among: set[int]) -> Outcome:
+    def found(solver: _Solver, among: set[int], late: bool = False) -> Outcome:
         reduced = solver.first.reduced
         assert reduced is not None
         wide = reduced.wide
@@ -79,10 +92,245 @@ def test_what_was_found_among_few_units_is_held_against_all_that_may_be_better(
         ended = solver._run(solver.levels)
         assert ended.units is not None
         solver.heard.tree(ended.units)
+        if late:
+            solver.deadline = Deadline(0.0)
         return solver._up_to(wide, solver._in_hand(ended.units), ended)
 
     few = found(begun(), {0, 1, 2})
     assert (few.status, few.units) == (Status.OPTIMAL, (3, 4))
     monkeypatch.setattr(_Solver, "_search", None)  # what was found among all of them is the best
-    every = found(begun(), {0, 1, 2, 3, 4})
-    assert (every.status, every.units) == (Status.OPTIMAL, (3, 4))
+    for among in ({0, 1, 2, 3, 4}, {0, 3, 4}):  # trees of two units have no others than these
+        every = found(begun(), among)
+        assert (every.status, every.units) == (Status.OPTIMAL, (3, 4))
+    # what was proved when time was up is not lost
+    assert found(begun(), {0, 1, 2, 3, 4}, late=True).status is Status.OPTIMAL
+
+
+# --- Step by step: the best tree heats and boils, which the rule does not allow together.
+
+APART = ':- use(U), use(V), motion(U,"heat"), motion(V,"boil").'
+BANNED = ("heat: start > x", "boil: x > end")
+# 2 needs y: of 3, which looks near and is far, or of 4
+LOOSE = small(
+    *(*BANNED, "mix: y > end", "cut: z > y", "chop: w, k > y", "rinse: s > z", "steam: s > z", "dry: r > s"),
+    *("air: r > s", "hang: q > r", "pour: v > w", "fill: v > w", "knead: start > k", "grind: u > v"),
+    *("peel: start > u", "soak: t > q", "wring: start > t", "junk: start > o"),
+)
+
+
+class Looks:
+    """Notes among which units is searched."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.units: list[set[int]] = []
+        look_at = _Solver._look_at
+
+        def instead(solver: _Solver, units: Collection[int]) -> None:
+            self.units.append({*units})
+            look_at(solver, units)
+
+        monkeypatch.setattr(_Solver, "_look_at", instead)
+
+
+def asked(problem: Problem, rule: str = APART, *objectives: Objective, **named: Any) -> Outcome:
+    settings = Settings((given_constraint(rule),))._replace(**named)
+    return solve(problem, objectives or (Objective.UNITS,), settings)
+
+
+def says(outcome: Outcome) -> tuple[Status, set[int]]:
+    return outcome.status, {*(outcome.units or ())}
+
+
+def test_a_best_tree_that_keeps_to_the_rules_is_the_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    searches = Searches(monkeypatch)
+    outcome = asked(small(*BANNED, "fry: start > end", "mix: y > end"))
+    assert (*says(outcome), outcome.proof) == (Status.OPTIMAL, {2}, Proof.CUTS)
+    assert searches.modes == ["ignore"]  # whether it does
+
+
+@pytest.mark.parametrize("tree", [(0, 1), (2,)])
+def test_a_tree_that_cuts_do_not_prove_best_is_held_against_others(
+    tree: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = small("cut: start > a", "mix: a > end", "fry: start > end")
+
+    def unsettled(*given: Any) -> Reduced:
+        return reduce(*given)._replace(settled=False, tree=frozenset(tree), units=(0, 1, 2))
+
+    monkeypatch.setattr(prepared_module, "reduce", unsettled)
+    outcome = asked(problem)
+    assert (*says(outcome), outcome.proof) == (Status.OPTIMAL, {2}, Proof.SOLVER)
+
+    def pressed(*_: Any) -> frozenset[int]:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Wide, "within", pressed)
+    deadline = Deadline()
+    outcome = asked(problem, deadline=deadline)
+    assert says(outcome) == (Status.FEASIBLE, {*tree})
+    assert outcome.bounds[Objective.UNITS] == 1
+    assert deadline.interrupted
+
+
+def test_loose_ends_are_tied_until_none_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks = Looks(monkeypatch)
+    monkeypatch.setattr(_Solver, "_near", None)  # there is no need to look at everything
+    outcome = asked(LOOSE)
+    assert outcome.status is Status.OPTIMAL
+    assert {*(outcome.units or ())} - {10, 11} == {2, 4, 12, 13, 14}
+    first = {*range(7), 10, 11, 12}
+    assert looks.units == [first, first | {7, 8, 9, 15, 16}, {*range(17)}]
+    # a landmark of three units, and those beyond, are not there from the beginning
+    looks.units.clear()
+    monkeypatch.setattr(solver_module, "_NEAR", 2)
+    assert asked(LOOSE).costs == outcome.costs
+    assert looks.units[0] == {0, 1, 2, 3, 4}
+    looks.units.clear()
+    monkeypatch.setattr(solver_module, "_NEAR", 3)
+    assert asked(LOOSE).costs == outcome.costs
+    assert looks.units[0] == first
+
+
+@pytest.mark.parametrize(("name", "number"), [("_LOOSE", 2), ("_MANY", 4), ("_MANY", 9)])
+def test_where_loose_ends_take_too_long_all_units_are_looked_at(
+    name: str, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks = Looks(monkeypatch)
+    monkeypatch.setattr(solver_module, name, number)
+    outcome = asked(LOOSE)
+    assert outcome.costs is not None
+    assert (outcome.status, outcome.costs.units) == (Status.OPTIMAL, 6)
+    assert looks.units[-1] == {*range(17)}
+    assert len(looks.units) == (2 if number == 4 else 3)
+
+
+def test_what_each_tree_has_counts_from_the_beginning(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However far it is from the goals."""
+    looks = Looks(monkeypatch)
+    monkeypatch.setattr(solver_module, "_NEAR", 1)
+    problem = small(
+        *("heat: x > end", "boil: y > end", "cut: z > x", "chop: v > x", "mix: z > y", "fry: v > y"),
+        *("wash: s > z", "rinse: t > z", "steam: s > v", "soak: t > v", "dry: g > s", "hang: g > s"),
+        *("air: g > t", "sun: g > t", "grow: start > g"),
+    )
+    rules = (f':- use(U), use(V), motion(U,"grow"), motion(V,"{motion}").' for motion in ("heat", "boil"))
+    assert asked(problem, "\n".join(rules)).status is Status.INFEASIBLE
+    assert len(looks.units) == 1
+
+
+@pytest.mark.parametrize("found", [None, {2}, {2, 3, 4}])
+def test_loose_ends_that_a_limit_leaves_settle_nothing(
+    found: set[int] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = small(*BANNED, "mix: a, b > end", "cut: start > a", "chop: start > b", "fry: start > end")
+    monkeypatch.setattr(solver_module, "_NEAR", 1)
+    at_limit = Run() if found is None else Run(frozenset(map(problem.network.unit_number, found)))
+    Searches(monkeypatch, None, Answer(at_limit))
+    assert says(asked(problem, f'{APART}\n:- use(U), use(V), motion(U,"fry"), V < U.')) == (
+        Status.OPTIMAL,
+        {5},
+    )
+
+
+def test_what_is_best_by_rounded_costs_is_held_against_what_was_not_looked_at(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two prices that clingo cannot tell apart: the better tree is not yet whole when the other is found."""
+    prices = {**dict.fromkeys(("heat", "boil", "cut", "chop", "wash", "rinse"), Fraction(0))}
+    prices |= {"mix": Fraction("1.0000001"), "fry": Fraction(1), "burn": Fraction(10**9)}
+    problem = small(
+        *(*BANNED, "mix: start > end", "fry: y > end", "cut: z > y", "chop: z > y", "wash: start > z"),
+        *("rinse: start > z", "burn: start > end"),
+    )
+    problem = replace(problem, unit_prices=UnitPrices(prices, {}))
+    looks = Looks(monkeypatch)
+    outcome = asked(problem, APART, Objective.PRICE)
+    assert outcome.status is Status.OPTIMAL
+    assert outcome.costs is not None
+    assert outcome.costs.measure(Objective.PRICE) == 1
+    assert looks.units[0].isdisjoint({6, 7})
+
+
+def test_rates_that_are_too_fine_for_the_reductions_are_left_to_the_search() -> None:
+    """These know of one tree only, which does not keep to the rule."""
+    rates = {**dict.fromkeys(("heat", "boil", "cut"), Fraction(1)), "mix": Fraction("0.9")}
+    problem = small(*BANNED, "mix: start > end", "fry: y > end", "cut: start > y")
+    problem = replace(problem, rates={**rates, "fry": Fraction("0.9000000001")})
+    assert says(asked(problem, APART, Objective.SUCCESS)) == (Status.OPTIMAL, {3, 4})
+
+
+def test_rules_that_were_applied_wrongly_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tree that is given is held against the rules as the user wrote them."""
+    monkeypatch.setattr(Rules, "applied", lambda *_: Restriction(lambda _: False))
+    settings = Settings((given_constraint(':- use(U), motion(U,"boil").'),))
+    problem = small(*BANNED, "mix: y > end", "cut: start > y", "fry: x > y")
+    with pytest.raises(BugError, match="does not keep to the rules that were added"):
+        solve(problem, settings=settings)
+    with pytest.raises(BugError, match="does not keep to the rules that were added"):
+        [*Ranked(problem, (Objective.UNITS,), settings)]
+
+
+def test_cuts_of_sets_that_are_asked_for_are_not_shown() -> None:
+    """They have no node that anybody could read."""
+    problem = small("boil: start > end", "junk: start > x", "tidy: x > o")
+    assert asked(problem, ':- not use(U) : motion(U,"tidy").').cuts == ((1,),)
+
+
+# --- Near the goals: a rule that asks for a unit which leads to no goal.
+
+ROW = small(
+    *(*BANNED, "mix: a > end", "cut: b > a", "chop: c > b", "fry: start > c", "junk: start > o"),
+    "tidy: o > p",
+)
+TIDY = f'{APART}\n:- use(U), motion(U,"mix"), not use(V) : motion(V,"tidy").'
+NEVER = f'{TIDY}\n:- use(U), use(V), motion(U,"junk"), motion(V,"tidy").'
+
+
+def test_ever_more_units_near_the_goals_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(solver_module, "_NEAR", 1)
+    monkeypatch.setattr(solver_module, "_MORE", 2)
+    near = Wide.nearest
+    asked_for: list[int] = []
+
+    def nearest(wide: Wide, most: int) -> frozenset[int]:
+        asked_for.append(most)
+        return near(wide, most) - {0}  # which is in the best tree, and stays
+
+    monkeypatch.setattr(Wide, "nearest", nearest)
+    looks = Looks(monkeypatch)
+    assert says(asked(ROW, TIDY)) == (Status.OPTIMAL, {2, 3, 4, 5, 6, 7})
+    assert asked_for == [1, 2, 4]  # and then all 8
+    assert looks.units == [{0, 1, 2, 3, 4}] * 3 + [{*range(8)}]
+    looks.units.clear()
+    assert asked(ROW, NEVER).status is Status.INFEASIBLE
+    assert len(looks.units) == 4
+
+
+@pytest.mark.parametrize("tree", [None, {2, 3, 4, 5, 6, 7}])
+def test_a_limit_near_the_goals_ends_the_search(
+    tree: set[int] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    units = None if tree is None else frozenset(map(ROW.network.unit_number, tree))
+    searches = Searches(monkeypatch, None, Answer(Run(units)))
+    outcome = asked(ROW, TIDY)
+    assert says(outcome) == (Status.UNKNOWN if tree is None else Status.FEASIBLE, tree or set())
+    assert len(searches.modes) == 2
+
+
+def test_each_program_of_a_search_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: Counter[str] = Counter()
+    begin, close = Grounded.__init__, Grounded.close
+
+    def beginning(grounded: Grounded, *given: Any) -> None:
+        made["begun"] += 1
+        begin(grounded, *given)
+
+    def closing(grounded: Grounded) -> None:
+        made["closed"] += 1
+        close(grounded)
+
+    monkeypatch.setattr(Grounded, "__init__", beginning)
+    monkeypatch.setattr(Grounded, "close", closing)
+    monkeypatch.setattr(solver_module, "_NEAR", 1)
+    assert asked(ROW, TIDY).status is Status.OPTIMAL
+    assert made["begun"] == made["closed"] > 2

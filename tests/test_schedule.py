@@ -20,9 +20,9 @@ from foon_asp.deadline import Deadline
 from foon_asp.planning import scheduling
 from foon_asp.planning.schedule_task import ScheduleTask, Use, schedule_task
 from foon_asp.planning.scheduling import shortest, timed_steps
-from foon_asp.problem import UsedUp
+from foon_asp.problem import ContainerRule, UsedUp
 from foon_asp.proof.replay import replay_for, waits
-from foon_asp.proof.timetable import Means, timetable_fault
+from foon_asp.proof.timetable import Asked, Means, timetable_fault, tools_asked
 from foon_asp.report.gantt import Gantt, GanttRow, ShownGantt, gantt_lines, time_text
 from foon_asp.report.robot_steps import replayable
 from foon_asp.text.clip_times import median_clips
@@ -173,12 +173,15 @@ GOOD = [seconds(0, 10, 1, BOWLS[0]), seconds(0, 20, 2, BOWLS[1]), seconds(20, 50
         ({2: seconds(20, 50, 1, *BOWLS)}, "step 3 is done by nobody, or by somebody"),
         ({0: seconds(0, 10, None, BOWLS[0])}, "step 1 is done by nobody"),
         ({0: seconds(0, 10, 3, BOWLS[0])}, "step 1 is done by agent 3, and there are 2"),
+        ({0: seconds(0, 10, 0, BOWLS[0])}, "step 1 is done by agent 0, and there are 2"),
         ({0: seconds(0, 10, 2, BOWLS[0])}, r"step 2 \(crack\) waits for 2, which is at step 1"),
         ({0: seconds(0, 10, 1, BOWLS[1])}, r"step 2 \(crack\) waits for bowl 2, which is at step 1"),
         ({2: seconds(19, 49, None, *BOWLS)}, r"step 3 \(pour\) waits for bowl 2"),
         ({2: seconds(20, 50, None, BOWLS[0])}, "has 1 of bowl, and asks for 2"),
         ({0: seconds(0, 10, 1)}, "has 0 of bowl, and asks for 1"),
         ({0: seconds(0, 10, 1, Tool("bowl", 3))}, "has bowl 3, and there are 2"),
+        ({0: seconds(0, 10, 1, Tool("bowl", 0))}, "has bowl 0, and there are 2"),
+        ({0: seconds(0, 10, 1, BOWLS[0], Tool("knife", 1))}, "has 1 of knife, and asks for 0"),
         ({0: seconds(20, 30, 1, BOWLS[1])}, "waits for bowl 2"),
         (
             {0: seconds(20, 30, 1, BOWLS[1]), 2: seconds(30, 60, None, *BOWLS)},
@@ -218,6 +221,88 @@ def test_a_schedule_of_other_steps_does_not_hold() -> None:
     problem = kitchen(SALT_AND_EGG, ["salt", "egg", "bowl; empty"])
     found = timetable_fault(problem, plan_of(problem), GOOD[:2], Means(EGG_DURATIONS, 2, {"bowl": 2}))
     assert found == "there are 3 steps, and times for 2"
+
+
+@pytest.mark.parametrize(
+    ("plan", "starts", "holds"),
+    [
+        # boil is 0, look 1, eat 2, and stir 3, which takes a boiled egg and water, of which there is enough
+        ((0, 1, 1, 2), (0, 10, 20, 30), True),
+        ((0, 1, 1, 2), (0, 10, 20, 25), False),
+        ((0, 0, 2, 1, 2), (0, 0, 10, 20, 30), True),
+        ((0, 0, 2, 1, 2), (0, 0, 10, 20, 25), False),
+        ((0, 0, 2, 2), (0, 0, 10, 10), True),
+        ((0, 2, 2), (0, 10, 20), False),
+        ((0, 3), (0, 10), True),
+        ((0, 3), (0, 9), False),
+        ((2, 0), (0, 10), False),  # the stock has an egg that is not in the kitchen
+    ],
+)
+def test_no_copy_is_taken_that_is_gone_or_looked_at(
+    plan: tuple[int, ...], starts: tuple[int, ...], holds: bool
+) -> None:
+    units = (
+        *("boil: egg > egg; hard", "look: egg; hard > egg; hard + view", "eat: egg; hard > shell"),
+        "stir: water + egg; hard > salad",
+    )
+    problem = replace(kitchen(units, ["egg", "water"]), items=UsedUp({}, {parse_node("egg; hard"): 1}))
+    means = Means({motion: Duration(10) for motion in ("boil", "look", "eat", "stir")}, 9, {})
+    steps = [seconds(start, start + 10, agent) for agent, start in enumerate(starts, 1)]
+    found = timetable_fault(problem, [problem.network.unit(unit) for unit in plan], steps, means)
+    assert found is None if holds else found is not None and "lacks a copy of egg; hard" in found
+
+
+@pytest.mark.parametrize(("bowl", "fault"), [(2, None), (1, "has no bowl for bowl; contains {egg}")])
+def test_what_was_in_a_bowl_is_gone(bowl: int, fault: str | None) -> None:
+    units = (
+        *("crack: egg + bowl; empty > bowl; contains {egg}", "wash: bowl; contains {egg} > bowl; empty"),
+        "bake: bowl; contains {egg} > cake",
+    )
+    problem = kitchen(units, ["egg", "bowl; empty"])
+    plan = [problem.network.unit(unit) for unit in (0, 1, 0, 2)]
+    means = Means({motion: Duration(10) for motion in ("crack", "wash", "bake")}, 1, {"bowl": 2})
+    used = (1, 1, 2, bowl)
+    steps = [seconds(10 * n, 10 * n + 10, 1, Tool("bowl", number)) for n, number in enumerate(used)]
+    found = timetable_fault(problem, plan, steps, means)
+    assert (found is None) == (fault is None), found
+    assert (fault or "") in (found or "")
+
+
+def test_a_bowl_that_nothing_says_the_contents_of_is_any() -> None:
+    """One that something is put into is not listed; one that was skipped need not have been filled."""
+    units = ("put: egg > egg; in [bowl]", "stir: egg; in [bowl] + bowl; contains {egg} > dough")
+    problem = replace(kitchen(units, ["egg"]), containers=ContainerRule.IMPLIED)
+    means = Means({"put": Duration(10), "stir": Duration(10)}, 1, {})
+    steps = [seconds(0, 10, 1, BOWLS[0]), seconds(10, 20, 1, BOWLS[0])]
+    assert timetable_fault(problem, plan_of(problem), steps, means) is None
+    assert timetable_fault(problem, plan_of(problem), [steps[0], seconds(10, 20, 1)], means) is not None
+
+
+def test_how_many_tools_a_unit_asks_for() -> None:
+    knife, clean, dirty = map(parse_node, ("knife", "knife; clean", "knife; dirty"))
+    assert Asked((), (), (), ()).number == 0
+    assert Asked((knife,), (clean,), (), (None,)).number == 3
+    assert Asked((knife,), (clean,), (dirty, knife, clean), (None,)).number == 4
+    problem = kitchen(("press: olive > oil", "grate: cheese; on [board] + oil > dish"), ["olive"], "board")
+    cheese, means = parse_node("cheese; on [board]"), Means({}, 1, {})
+    (asked,) = tools_asked(problem, means, problem.network.unit(1)).items()
+    assert asked == ("board", Asked((), (), (), (cheese,)))
+
+
+def test_what_tools_are_counted_by_and_how_many_there_are() -> None:
+    jar, salt, bowl = map(parse_node, ("jar; contains {salt}", "salt; in [jar]", "bowl; empty"))
+    problem = kitchen(SALT_AND_EGG, ["salt", "egg", "bowl; empty"])
+    free, said = Means({}, 1, {}), Means({}, 1, {jar: 2})
+    assert free.name(jar, "jar") == free.name(salt, "jar") == jar
+    assert free.name(bowl, "bowl") == "bowl"
+    assert said.name(jar, "jar") is jar
+    labelled = parse_node("jar; full; contains {salt}")
+    assert Means({}, 1, {labelled: 2}).name(labelled, "jar") is labelled
+    assert [said.waited_for(problem, label) for label in ("jar", "bowl", "lamp")] == [True, True, False]
+    assert said.number_of(problem, jar) == 2
+    assert free.number_of(problem, "bowl") == free.number_of(replace(problem, items=None), "bowl") == 1
+    stocked = replace(problem, items=UsedUp({}, {jar: 3, bowl: 2, parse_node("bowl; dirty"): 2}))
+    assert [free.number_of(stocked, name) for name in ("bowl", jar, "knife")] == [4, 3, 1]
 
 
 # --- The shortest.

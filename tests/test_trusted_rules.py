@@ -9,15 +9,20 @@ from typing import Any
 import pytest
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.certificate import certify_outcome
-from foon_asp.certificate.own_rules import check_with_clingo
+from foon_asp.certificate import Coverage, certify_outcome
+from foon_asp.certificate.coverage import coverage
+from foon_asp.certificate.own_rules import check_with_clingo, with_own_rules
 from foon_asp.problem import ContainerRule, Objective
-from foon_asp.proof.verify import seal, trusted, verify
+from foon_asp.proof.constraint import Rule
+from foon_asp.proof.verify import RefusedError, seal, trusted, verify
+from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.rules import Rules
 from tests import oracle
 from tests.conftest import Cli
 from tests.constraint_oracle import keeps
 from tests.random_problems import MOTIONS, random_problem
+from tests.test_constraint_meanings import small
 
 NO_CRUSHING = ':- use(U), motion(U,"crush").\n'
 DRAINING = ':- not use(U) : motion(U,"drain").\n'
@@ -148,3 +153,93 @@ def test_answers_under_random_rules_of_the_users_own(part: int) -> None:
             else:
                 assert claim.claim == "infeasible"
     assert {("optimal", True), ("infeasible", True)} <= met
+
+
+# --- By hand: what is taken on trust of which rules.
+
+BOILED = small("cut: start > a", "mix: a > end", "boil: start > end", "rot: end > a", "junk: start > x")
+NO_BOILING, NO_ROTTING = (f':- use(U), motion(U,"{motion}").' for motion in ("boil", "rot"))
+JUNK = ':- not use(U) : motion(U,"junk").'
+
+
+def own_rule(*given: str, **named: Any) -> Rule | None:
+    """Give what rules of the user's own come to, beside the covered ones."""
+    settings = Settings(tuple(map(given_constraint, given)))._replace(**named)
+    covered = with_own_rules(coverage(settings), BOILED, settings)
+    if covered is None:
+        return None
+    assert covered.not_covered == ()
+    (own,) = (rule for rule in covered.rules if rule["rule"] == "own")
+    assert Coverage((own,)).partial
+    return own
+
+
+def test_what_rules_of_the_users_own_claim() -> None:
+    for given, claims, library in (
+        ([NO_BOILING], [[[2], []]], []),
+        ([NO_BOILING, JUNK], [[[2], []], [[], [4]]], []),
+        ([":- unit(0)."], [[[], []]], []),
+        # what ours say, too, is not taken on trust
+        ([JUNK, NO_BOILING, "require_motion:required_motion=junk"], [[[2], []]], ["require_motion"]),
+        ([NO_BOILING, NO_ROTTING, "forbid_motion:forbidden_motion=boil"], [[[3], []]], ["forbid_motion"]),
+    ):
+        own = own_rule(*given)
+        assert own is not None
+        assert own["claims"] == claims
+        assert [name.partition(":")[0] for name in own["library"]] == library
+        texts = [rule for rule in given if rule.startswith(":-")]
+        assert [file["text"] for file in own["files"]] == texts
+    own = own_rule(NO_BOILING, "at_most_units", constants=("max_units=3",))
+    assert own is not None
+    assert (own["library"], own["constants"]) == (["at_most_units"], ["max_units=3"])
+    assert len(own["files"]) == 1
+
+
+def test_of_rules_that_are_not_understood_nothing_is_claimed(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert own_rule(NO_BOILING, encodings=encodings_folder()) is None
+    monkeypatch.setattr(Rules, "applied", lambda *_: None)
+    assert own_rule(NO_BOILING) is None
+
+
+def test_a_file_is_stated_with_what_it_includes(tmp_path: Path) -> None:
+    alone, more = tmp_path / "alone.lp", tmp_path / "more.lp"
+    alone.write_text(f"% Why: it boils over.\n{NO_BOILING}\n\n")
+    more.write_text(f'#include "alone.lp".\n{NO_ROTTING}\n')
+    own = own_rule(str(alone))
+    assert own is not None
+    (file,) = own["files"]
+    assert (file["name"], file["text"]) == ("alone.lp", alone.read_text())
+    assert file["sha256"] == hashlib.sha256(alone.read_bytes()).hexdigest()
+    own = own_rule(str(more))
+    assert own is not None
+    (file,) = own["files"]
+    assert "#include" not in file["text"]
+    assert "boil" in file["text"]
+    assert "rot" in file["text"]
+
+
+def test_only_what_a_proof_rests_on_is_claimed() -> None:
+    settings = Settings((given_constraint(NO_BOILING), given_constraint(NO_ROTTING)))
+    _, found = certify_outcome(solve(BOILED, settings=settings), settings)
+    assert found is not None
+    own = trusted(found.content)
+    assert own is not None
+    assert (found.claim, own["claims"]) == ("optimal", [[[2], []]])  # no cut has a unit that rots as a member
+
+
+def test_clingo_says_what_of_it_is_not_true() -> None:
+    own = own_rule(NO_BOILING, JUNK)
+    assert own is not None
+    tree: dict[str, Any] = {"tree": [0, 1, 4], "objective": ["units"]}
+    none: dict[str, Any] = {"tree": None, "objective": []}
+    for content in (tree, none):
+        check_with_clingo(content, own, BOILED)
+    claims: list[list[list[int]]] = [[[0], []], [[], [3]], [[], []], [[4], [2]]]
+    for false in claims:
+        with pytest.raises(RefusedError, match="what is taken on trust is not true"):
+            check_with_clingo(none, {**own, "claims": [*own["claims"], false]}, BOILED)
+    with pytest.raises(RefusedError, match="the tree does not keep to the rules"):
+        check_with_clingo({**tree, "tree": [0, 1]}, own, BOILED)
+    never = own_rule(":- unit(0).")
+    assert never is not None
+    check_with_clingo(none, never, BOILED)

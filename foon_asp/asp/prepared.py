@@ -32,7 +32,8 @@ class Prepared:
     cut, and that nothing is known. ``kept`` is the problem as rules of the user leave it, where these are
     applied before the search, ``contradicted`` says that they leave nothing at all, and ``asked`` is the
     program with all of them. ``rest`` says that some of them are still to be kept to: ``tree`` and
-    ``reduced`` do not know of these.
+    ``reduced`` do not know of these. ``spare`` says that trees that keep to these may need units that lead to
+    no goal.
     """
 
     problem: Problem
@@ -47,6 +48,7 @@ class Prepared:
     kept: Problem | None = None
     contradicted: bool = False
     rest: bool = False
+    spare: bool = False
     asked: Program | None = None
 
     @cached_property
@@ -169,9 +171,8 @@ def prepare(
         if problem.measures:
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
-        spare = False
         if program.understood and settings.reductions and not for_sale:
-            first, spare = _applied(first, program.understood)
+            first = _applied(first, program.understood)
         if first.contradicted:
             return first
         program, kept = first.program, first.kept or problem
@@ -183,7 +184,7 @@ def prepare(
                 lambda: deadline.passed,
                 Bounds(listener) if first.rest else listener,
                 lambda: deadline.watched("cutting the network", late=True),
-                spare,
+                first.spare,
                 first.rest,
             )
             if reduced.interrupted:
@@ -195,7 +196,7 @@ def prepare(
             reached = reach(stocked)
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: what is for sale may also be made
-            cut = program.own or (first.rest and not spare)
+            cut = program.own or (first.rest and not first.spare)
             units = relevant(kept, reached) if cut else tuple(sorted(reached.units))
         return replace(first, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
@@ -203,25 +204,20 @@ def prepare(
         return replace(first, stopped=True)
 
 
-def _applied(first: Prepared, rules: "Rules") -> tuple[Prepared, bool]:
-    """Apply the user's rules as far as they say which units there are, or which sets are needed.
-
-    Also tells whether a tree that keeps to the rest may need units that lead to no goal.
-    """
-    from foon_asp.rules.rule_kind import Kind  # noqa: PLC0415 (takes clingo along)
-
+def _applied(first: Prepared, rules: "Rules") -> Prepared:
+    """Apply the user's rules as far as they say which units there are, or which sets are needed."""
     if rules.rest and not rules.local:
-        return first, False
+        return first
     found = rules.applied(first.problem, first.deadline)
     if found is None:
-        return first, False
+        return first
     first = replace(first, asked=first.program)
     if not isinstance(found, Restriction):
-        return replace(first, contradicted=True), False
+        return replace(first, contradicted=True)
     kept = replace(first.problem, restriction=found)
     if not rules.rest:
-        return replace(first, kept=kept, program=first.program.settled), False
-    return replace(first, kept=kept, rest=True), any(rule.kind is not Kind.SHRINKING for rule in rules.rest)
+        return replace(first, kept=kept, program=first.program.settled)
+    return replace(first, kept=kept, rest=True, spare=rules.spare)
 
 
 def _limits_rest(first: Prepared) -> bool:

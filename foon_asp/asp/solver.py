@@ -219,7 +219,7 @@ class _Solver:
             return self._limited(tree, ())
         if ended is not None and ended.units is not None and within <= set(self.first.units):
             return self._ended(ended, ended.units)
-        self._look_at(within | tree)
+        self._look_at(within)
         return self._search(tree)
 
     def _with_loose_ends(self, wide: Wide, tree: Units) -> "Run | None":

@@ -168,8 +168,8 @@ class _Run:
         self._states: dict[Tool, frozenset[ObjectNode]] = {}
 
     def fault(self) -> str | None:
-        events = [(step.end, 0, number) for number, step in enumerate(self._steps)]
-        events += [(step.start, 1, number) for number, step in enumerate(self._steps)]
+        events = [(step.end, False, number) for number, step in enumerate(self._steps)]
+        events += [(step.start, True, number) for number, step in enumerate(self._steps)]
         for _, starts, number in sorted(events):
             if not starts:
                 self._end(number)
@@ -179,7 +179,7 @@ class _Run:
 
     def _start(self, number: int) -> Iterator[str]:
         unit, step = self._plan[number], self._steps[number]
-        hands: list[int | Tool] = [*step.tools] + ([] if step.agent is None else [step.agent])
+        hands = _hands(step)
         if len(set(hands)) < len(hands):
             yield "has the same tool twice"
         for hand in hands:
@@ -201,18 +201,15 @@ class _Run:
         unit, step = self._plan[number], self._steps[number]
         needed, made = _sides(self._problem, unit)
         for node in needed:
-            if not self._endless(node) and self._stays(unit, node):
-                self._read[node] -= 1
-        for node in made:
-            if not self._endless(node):
-                self._copies[node] += 1
+            if self._stays(unit, node):
+                self._read[node] -= 1  # of what is endless, nobody asks for this
+        self._copies.update(made)
         gone = {node for node in needed if not self._stays(unit, node)}
         for tool in step.tools:
-            left = self._states.get(tool, frozenset()) - gone
-            self._states[tool] = left.union(node for node in made if _is_at(node, tool.label))
-        for hand in (*step.tools, step.agent):
-            if hand is not None:
-                self._working.pop(hand, None)
+            # what of it is at other tools, nobody asks this one for
+            self._states[tool] = (self._states.get(tool, frozenset()) - gone).union(made)
+        for hand in _hands(step):
+            self._working.pop(hand, None)
 
     def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
         """Give what is wrong with the tools of a step, as far as one sees it when it starts."""
@@ -232,7 +229,7 @@ class _Run:
             taken = {node for node in (*each.kept, *each.changed, *each.others) if node is not None}
             for node in taken - there:
                 fetched = problem.at_hand(node) and means.name(node, label) in {tool.name for tool in here}
-                if not fetched and (node in needed or node.label != label):
+                if not fetched and node in needed:
                     yield f"has no {label} for {node}"
             for tool in here:  # what is fetched is as the kitchen has it, whatever it was before
                 if taken and taken.isdisjoint(self._states.get(tool, ())):
@@ -253,6 +250,6 @@ def _sides(problem: Problem, unit: FunctionalUnit) -> tuple[tuple[ObjectNode, ..
     return tuple(dict.fromkeys(needed)), tuple(dict.fromkeys(made))
 
 
-def _is_at(node: ObjectNode, label: str) -> bool:
-    """Whether a node is a tool, or something in, on or at it."""
-    return node.label == label or node.is_in(label)
+def _hands(step: TimedStep) -> list[int | Tool]:
+    """Give who and what is at a step."""
+    return [*step.tools] + ([] if step.agent is None else [step.agent])

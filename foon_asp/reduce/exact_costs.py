@@ -56,13 +56,13 @@ class ExactCosts:
 
     def _most(self, objective: Objective, actions: Collection[int]) -> int:
         """Give what no set of actions costs more than by one objective."""
-        if objective in {Objective.UNITS, Objective.KITCHEN}:
+        if objective is Objective.UNITS:
             return len(actions)
         if objective in self._multiplied:
             return len(actions) * max(self._weights.values(), default=0)
         steps = self._steps[objective]
-        items = objective.row.item * sum(a >= self._units for a in actions) if objective.row.item else 0
-        return sum(int(cost * steps) for cost in self._costs(objective, actions)) + items
+        items = sum(a >= self._units for a in actions)
+        return sum(int(cost * steps) for cost in self._costs(objective, actions)) + objective.row.item * items
 
     def _costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
         return self._problem.figures(objective, (a for a in actions if a < self._units))

@@ -142,7 +142,8 @@ class _Reducer:
                 guide = guide or self._near_goals() or self._whole()
                 hopeless = guide is None
                 if guide is not None and self.reductions:
-                    self._take(without_spare(self.graph, self.tree, self.coarse))
+                    if not self.extending:  # else it was heard of
+                        self._take(without_spare(self.graph, self.tree, self.coarse))
                     settled = self._narrow(guide)
                 ended = True
         except KeyboardInterrupt:

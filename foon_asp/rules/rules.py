@@ -157,7 +157,12 @@ class Rules:
             return Together.REQUIRED
         if not self.local:
             return Together.PLAIN
-        return Together.CUT if all(rule.kind is Kind.SHRINKING for rule in self.rest) else Together.BOUNDED
+        return Together.BOUNDED if self.spare else Together.CUT
+
+    @property
+    def spare(self) -> bool:
+        """Whether a tree that keeps to the rest may need units that lead to no goal."""
+        return any(rule.kind is not Kind.SHRINKING for rule in self.rest)
 
     @cached_property
     def rest(self) -> tuple[Rule, ...]:
