@@ -64,6 +64,9 @@ if TYPE_CHECKING:
     from foon_asp.questions.cross_check import cross_check as cross_check
     from foon_asp.questions.diff import Difference as Difference
     from foon_asp.questions.diff import diff as diff
+    from foon_asp.questions.diff_network import Agreement as Agreement
+    from foon_asp.questions.diff_network import NetworkDifference as NetworkDifference
+    from foon_asp.questions.diff_network import diff_networks as diff_networks
     from foon_asp.questions.draw import Drawn as Drawn
     from foon_asp.questions.draw import draw as draw
     from foon_asp.questions.export import Exported as Exported

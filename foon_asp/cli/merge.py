@@ -1,5 +1,6 @@
 """``foon-asp merge``: many FOONs in one, every unit with its origins."""
 
+import functools
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -8,10 +9,11 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import write_data
+from foon_asp.cli.output import fitted, write_data
 from foon_asp.cli.output_file import same_file
 from foon_asp.errors import UserError
 from foon_asp.network import Network, NetworkBuilder, counted
+from foon_asp.report.unit_block import kept_apart_text
 from foon_asp.report.whole_file import utf_8, write_whole
 from foon_asp.text.data_folder import network_files
 from foon_asp.text.diagnostics import summarize
@@ -29,10 +31,11 @@ from foon_asp.text.unit_price_list import read_unit_prices
     metavar="FILE",
     help="Prices of single units, used when copies of a unit have different ones.",
 )
+@click.option("--report", is_flag=True, help="List units that nearly agree and were kept apart, on stderr.")
 @options.lenient_option
 @options.debug_option
 def command(
-    paths: tuple[Path, ...], output: Path | None, unit_prices: Path | None, lenient: bool
+    paths: tuple[Path, ...], output: Path | None, unit_prices: Path | None, report: bool, lenient: bool
 ) -> ExitCode:
     """Merge FOONs into a universal FOON: every distinct functional unit once.
 
@@ -50,6 +53,9 @@ def command(
     with the file, the line, and the videos that the file names. Merging again keeps these places, and every
     answer on the merged network shows them. In a folder, the networks are FOON.txt, or else all *.txt and
     *.json except kitchen, goals and tables; a warning names lists of objects with other names.
+
+    --report also lists pairs of units that differ in one thing alone: the motion, a state, a relation, an
+    ingredient, or a label with another letter, so that somebody can decide whether they are meant to be one.
 
     Prices of units (in JSON) are not written, since FOON text has no place for them; import keeps them.
     Copies of a unit with different prices are an error, unless a line of --unit-prices chooses one.
@@ -84,6 +90,8 @@ def command(
         write_data(content)
     else:
         write_whole(output, content)
+    if report:
+        click.echo(fitted(functools.partial(kept_apart_text, network)), err=True, nl=False)
     click.echo(
         "\n".join(_summary(len(files), copies, network, len(reader.prices), reader.left_out)), err=True
     )

@@ -137,6 +137,11 @@ INDEX: Final[Mapping[str, Entry]] = {
         "Show what two task trees have in common, what only one has, what each costs, and where they part.",
         ("diff", "Difference"),
     ),
+    "diff-network": Entry(
+        "Compare",
+        "Show what two networks have in common, and which units nearly agree and in what.",
+        ("diff_networks", "NetworkDifference", "Agreement"),
+    ),
 }
 
 

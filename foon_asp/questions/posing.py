@@ -70,9 +70,9 @@ def the_data(command: Command) -> "tuple[Foon]":
     return (Foon(command.dataset, "the data"),)
 
 
-def no_data(command: Command) -> tuple[()]:
+def no_data(command: Command, **named: object) -> tuple[object, ...]:
     """Ask about something that the question names itself; its command has no options for data."""
-    return ()
+    return tuple(named.values())
 
 
 def each_goal(

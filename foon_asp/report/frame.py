@@ -107,6 +107,10 @@ def _rows(document: Json) -> Iterator[Json]:
     name = next((name for name in _LISTS if isinstance(document.get(name), list)), None)
     if _TWO_TREES["both"] in document:
         listed = [{"in": tree, **unit} for tree, key in _TWO_TREES.items() for unit in document[key]]
+        pairs = document.get("nearly_the_same", ())
+        listed += [
+            {"in": f"{side}, nearly {other}", **pair[side]} for pair in pairs for side, other in ("ab", "ba")
+        ]
     else:
         listed = [document] if name is None else document[name]
     yield from (dict(_flat("", row)) for each in listed for row in _searches(each))
