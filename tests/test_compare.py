@@ -280,9 +280,8 @@ def test_trees_of_searches_are_told_which_rules_they_break(cli: Cli, tmp_path: P
     assert f"(2) breaks {crush}" in again.out
     assert "as listed (2)" in again.out
     assert "was started for another question" in cli(*given, "--results", tmp_path / "a.jsonl").err
-    refused = cli(*given, "--items", "used-up", *rules)
-    assert (
-        refused.err
-        == "error: compare with constraints is not built for items that are used up (--items used-up)\n"
-    )
+    plans = cli(*given, "--items", "used-up", *rules, "--format", "json").json
+    breaks = [[search["breaks"] for search in row["searches"]] for row in plans["comparisons"]]
+    assert breaks[0] == [[crush], []]
+    assert plans["comparisons"][0]["optimum"]["units"]["value"] == 3
     assert "searches know nothing of other encodings" in cli(*given, "--encodings", "by_need").err

@@ -374,6 +374,7 @@ def test_only_plain_statements() -> None:
     narrowing = {
         "questions/assist.lp",
         "questions/at_most.lp",
+        "questions/bounded_plans.lp",
         "questions/loose_ends.lp",
         "questions/other_trees.lp",
         "questions/required.lp",

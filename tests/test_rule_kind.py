@@ -85,6 +85,7 @@ WRITTEN = [
     (":- 3 { use(U) : use(U), inputs(U,2) }.", Kind.SHRINKING, LOCAL),
     (":- #sum { N,U : use(U), inputs(U,N) } > 20.", Kind.SHRINKING, LOCAL),
     (":- #sum+ { N-2,U : use(U), inputs(U,N) } > 20.", Kind.SHRINKING, LOCAL),
+    (":- #sum { N*M,U : times(U,M), inputs(U,N) } > 20.", Kind.SHRINKING, LOCAL),
     (":- #max { N : use(U), inputs(U,N) } > 3, #min { N : use(U), inputs(U,N) } < 2.", Kind.SHRINKING, LOCAL),
     ('price("fry",3). :- #sum { P,U : use(U), motion(U,M), price(M,P) } > 9.', Kind.SHRINKING, LOCAL),
     ("#const n = 2. :- n < #count { L : use(U), input(U,O), label(O,L) }.", Kind.SHRINKING, LOCAL),
@@ -106,6 +107,8 @@ WRITTEN = [
     # other
     (":- #sum { -1,U : use(U) } < -3.", Kind.OTHER, LOCAL),
     (":- #sum { N-2,U : use(U), inputs(U,N) } > 3.", Kind.OTHER, LOCAL),
+    (":- #sum { N*I,U : use(U), inputs(U,N), ingredients(U,I) } > 3.", Kind.OTHER, LOCAL),
+    (":- #sum { M*(-1),U : times(U,M) } < -3.", Kind.OTHER, LOCAL),
     ('price("a",-3). :- #sum { P,U : use(U), motion(U,M), price(M,P) } > 9.', Kind.OTHER, LOCAL),
     (":- #count { U : use(U) } = 3.", Kind.OTHER, LOCAL),
     (":- #count { U : use(U) } != 3.", Kind.OTHER, LOCAL),

@@ -321,8 +321,8 @@ def test_a_missing_goal_is_said_too() -> None:
 
 def test_other_questions_say_by_name_that_they_are_not_built_for_it(cli: Cli) -> None:
     problem = foon_asp.load().problem("ice", items="used-up")
-    with pytest.raises(UserError, match=r"^pareto is not built for items that are used up"):
-        foon_asp.pareto(problem)
+    with pytest.raises(UserError, match=r"^sensitivity is not built for items that are used up"):
+        foon_asp.sensitivity(problem)
     with pytest.raises(UserError, match=r"^why-not is not built"):
         foon_asp.why_not(problem)
     ran = cli("assist", "--goal", "ice", "--items", "used-up")
@@ -360,7 +360,6 @@ def test_rules_hold_for_plans(constraint: str, constants: dict[str, int | str], 
     [
         ("before", "the constraint before is not built"),
         ("require_intermediate", "the constraint require_intermediate is not built"),
-        ("at_most_price", "the constraint at_most_price is not built"),
         (":- available(1).", "rules over available/1 are not built"),
         (":- use(U), input(U,O), output(V,O), not use(V).", "looks at more than the units of a plan"),
     ],
@@ -408,6 +407,19 @@ def test_rules_that_the_search_keeps_to_see_rates_and_sources() -> None:
     for fact in ("rate(U,500000)", 'source(U,"by hand")'):
         rule = f":- use(U), use(V), {fact}."
         assert foon_asp.solve(problem, constraints=[rule]).status is not Status.OPTIMAL
+
+
+def test_a_limit_of_prices_counts_each_execution(tmp_path: Path) -> None:
+    prices = tmp_path / "prices.txt"
+    motions = sorted(set(foon_asp.load().network.motions))
+    prices.write_text("".join(f"{motion}\t0.5\n" for motion in motions), encoding="utf-8")
+    problem = foon_asp.load(unit_prices=prices).problem("greek salad", items="used-up")
+    for most, status in ((1650, Status.OPTIMAL), (1649, Status.INFEASIBLE)):
+        answer = foon_asp.solve(problem, "inputs", constraints=f"at_most_price:max_price={most}")
+        assert answer.status is status
+    front = foon_asp.pareto(problem, "success,price")
+    assert front.complete
+    assert [front.measures(point)[1] for point in front.points] == [Fraction(n, 2) for n in (36, 35, 34, 33)]
 
 
 def test_a_plan_without_steps_keeps_to_the_rules() -> None:
@@ -576,6 +588,19 @@ def test_rules_on_many_small_networks() -> None:
     assert min(statuses[Status.OPTIMAL], statuses[Status.INFEASIBLE]) > 100
 
 
+@pytest.mark.parametrize("seed", [1, 5, 21, 102, 266, 292])
+def test_which_rules_a_plan_breaks(seed: int) -> None:
+    problem = random_problem(seed)
+    plan = foon_asp.solve(problem, "success").tree
+    assert plan is not None
+    counts = Counter(unit for unit in map(problem.network.unit_id, plan) if unit is not None)
+    for rule, allows in RULES:
+        checked = foon_asp.check(problem, plan, constraints=rule)
+        assert checked.breaks is not None
+        assert bool(checked.breaks) != allows(problem, counts), rule
+        assert ("it keeps to the rules" in str(checked)) == allows(problem, counts)
+
+
 REST = 'cost(mess,U,N) :- unit(U), not motion(U,"a"), N = #count { O : output(U,O) }.'
 
 
@@ -637,3 +662,76 @@ def test_all_optimal_plans_are_found(seed: int) -> None:
     assert all(replay_for(problem, problem.tree(tree.units)).shortage is None for tree in found.trees)
     first = foon_asp.alternatives(problem, objectives, limit=1)
     assert (len(first.trees), first.complete) == (1, False)
+
+
+def hold_the_best_few(seed: int) -> int:
+    problem, objectives = random_problem(seed), OBJECTIVES[seed % len(OBJECTIVES)]
+    asked = levels(objectives)
+    found = foon_asp.alternatives(problem, objectives, best=6, time_limit=20)
+    counts = [Counter(tree.units) for tree in found.trees]
+    costs = [tuple(map(Fraction, tree.costs.key(asked))) for tree in found.trees]
+    assert costs == sorted(costs)
+    best: dict[tuple[tuple[int, int], ...], tuple[Fraction, ...]] = {}
+    for plan, kitchen in plans(problem, _LONGEST):
+        name, cost = tuple(sorted(plan.items())), key(problem, plan, kitchen, asked)
+        best[name] = min(cost, best.get(name, cost))
+    for number, plan in enumerate(counts):
+        assert not any(plan >= other for other in counts[:number])
+        assert plan.total() > _LONGEST or best[tuple(sorted(plan.items()))] == costs[number]
+    for name, cost in best.items():
+        comes_before = found.complete and (len(counts) < 6 or cost < costs[-1])
+        assert not comes_before or any(Counter(dict(name)) >= other for other in counts)
+    return len(counts) if found.complete else -1
+
+
+@pytest.mark.parametrize("seed", [1, 21, 102, 503])
+def test_the_best_plans_in_order(seed: int) -> None:
+    assert hold_the_best_few(seed) > 1
+
+
+@pytest.mark.slow
+def test_the_best_plans_of_many_small_networks() -> None:
+    found = Counter(map(hold_the_best_few, range(700)))
+    assert found[-1] < 10
+    assert sum(found[number] for number in range(2, 7)) > 100
+
+
+def hold_a_front(seed: int, longest: int = 4) -> int:
+    written = f"cost(mess,U,(U*7+{seed}) \\ 5) :- unit(U). cost(toil,U,(U*U+{seed}) \\ 4) :- unit(U)."
+    measures = read_measures([written])
+    problem = replace(random_problem(seed, 14), measures=measures)
+    named = (["mess", "toil"], ["success", "mess"], ["kitchen", "mess", "toil"], ["units", "mess"])
+    objectives = parse_objectives(named[seed % 4], measures)
+
+    def dominates(one: tuple[Fraction, ...], other: tuple[Fraction, ...]) -> bool:
+        return one != other and all(a <= b for a, b in zip(one, other, strict=True))
+
+    every = set[tuple[Fraction, ...]]()
+    for counts, kitchen in plans(problem, longest):
+        own = {
+            "mess": sum(n * Fraction((u * 7 + seed) % 5) for u, n in counts.items()),
+            "toil": sum(n * Fraction((u * u + seed) % 4) for u, n in counts.items()),
+        }
+        costs = key(problem, counts, kitchen, objectives)
+        every.add(tuple(Fraction(own.get(str(o), c)) for o, c in zip(objectives, costs, strict=True)))
+    front = foon_asp.pareto(problem, objectives, time_limit=20)
+    points = {tuple(map(Fraction, point.costs.key(objectives))): point.units for point in front.points}
+    for cost, plan in points.items():
+        assert len(plan) > longest or cost in every
+        assert not any(dominates(other, cost) for other in every | points.keys())
+        assert replay_for(problem, problem.tree(plan)).shortage is None
+    if front.complete:
+        assert all(cost in points or any(dominates(p, cost) for p in points) for cost in every)
+    return len(points) if front.complete else -1
+
+
+@pytest.mark.parametrize("seed", [63, 182, 185, 390])
+def test_the_front_of_plans(seed: int) -> None:
+    assert hold_a_front(seed) > 1
+
+
+@pytest.mark.slow
+def test_the_fronts_of_many_small_networks() -> None:
+    found = Counter(map(hold_a_front, range(700)))
+    assert found[-1] < 10
+    assert sum(number for points, number in found.items() if points > 1) > 20

@@ -41,12 +41,15 @@ def stays(node: ObjectNode, inputs: tuple[ObjectNode, ...], outputs: tuple[Objec
     return tool or vessel or inside
 
 
-def random_problem(seed: int) -> Problem:
-    """Make a small question with odd things in it: cycles, stocks, goals at hand, inputs that are outputs."""
+def random_problem(seed: int, most: int = 6) -> Problem:
+    """Make a small question with odd things in it: cycles, stocks, goals at hand, inputs that are outputs.
+
+    It has this many units at most.
+    """
     choose = random.Random(seed)
     nodes = choose.sample(NODES, choose.randint(4, 9))
     builder = NetworkBuilder()
-    for number in range(choose.randint(2, 6)):
+    for number in range(choose.randint(2, most)):
         inputs = choose.sample(nodes, choose.randint(1, 3))
         outputs = choose.sample(nodes, choose.randint(1, 3))
         builder.add(choose.choice("abcd"), inputs, outputs, Source("by hand", number + 1))

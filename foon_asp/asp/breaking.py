@@ -1,48 +1,51 @@
-"""Which rules of the user's a tree breaks, whoever made the tree."""
+"""Which rules of the user's a tree or a plan breaks, whoever made it."""
 
+from collections import Counter
 from collections.abc import Collection
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.integrity import IntegrityConstraint
+from foon_asp.asp.integrity import IntegrityConstraint, placed
 from foon_asp.asp.prepared import Prepared
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.soft import soft_rules
-from foon_asp.encoding.facts import write_least_penalty, write_tree
+from foon_asp.asp.used_up import require_built_for_plans, require_rules_of_plans
+from foon_asp.encoding.facts import write_facts, write_least_penalty, write_times, write_tree
+from foon_asp.encoding.scales import Scales
+from foon_asp.encoding.search import run
 from foon_asp.errors import UserError
+from foon_asp.grounding.run import Run
 from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class Breaking:
-    """Constraints, read once, to be held against trees that execute.
+    """Constraints, read once, to be held against trees that execute; or plans, where items are used up.
 
     ``local`` says that whether a tree keeps to them does not depend on units outside it.
     """
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, used_up: bool = False) -> None:
         """Read the constraints of settings.
 
         Raises :class:`UserError` for what is wrong with them.
         """
-        rules = assemble(settings, lambda _: None).understood
-        self.local = rules is not None and rules.local
+        program = assemble(settings, lambda _: None, used_up)
+        if used_up:
+            require_built_for_plans(settings)
+            require_rules_of_plans(program)
+        self.local = program.understood is not None and program.understood.local
         weights = dict.fromkeys(settings.constraints, 1)
-        self._rules, _, relaxed = soft_rules(settings._replace(constraints=()), weights)
-        self._settings = settings._replace(constraints=(), relaxed=relaxed, session=None)
-        self._program = assemble(self._settings, lambda _: None)
+        self._rules, _, self._relaxed = soft_rules(settings._replace(constraints=()), weights)
+        self._settings = settings._replace(constraints=(), relaxed=self._relaxed, session=None)
+        self._program = assemble(self._settings, lambda _: None, used_up)
 
     def broken(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
-        """Give the rules that a tree breaks, by the ids of its units.
+        """Give the rules that a tree breaks, by the ids of its units; of a plan, each as often as executed.
 
         Raises ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
         """
-        units = sorted(tree if self.local else {*tree, *reach(problem).units})
-        asked = levels((Objective.UNITS,))
-        deadline = self._settings.begun
-        first = Prepared(problem, asked, self._settings, deadline, self._program, tuple(units))
-        numbers = list(map(problem.network.unit_number, sorted(set(tree))))
-        ended = first.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
+        ended = self._tree(problem, tree) if problem.items is None else self._plan(problem, tree)
         if not ended.exhausted:
-            deadline.check()
+            self._settings.begun.check()
             raise KeyboardInterrupt
         if ended.units is None:
             raise UserError(
@@ -51,3 +54,26 @@ class Breaking:
             )
         ways = ended.atoms["_broken"]
         return tuple(rule for rule in self._rules if ways.get(rule.number))
+
+    def _tree(self, problem: Problem, tree: Collection[int]) -> Run:
+        used = set(tree)
+        units = sorted(used if self.local else used.union(reach(problem).units))
+        asked = levels((Objective.UNITS,))
+        first = Prepared(problem, asked, self._settings, self._settings.begun, self._program, tuple(units))
+        numbers = list(map(problem.network.unit_number, sorted(used)))
+        return first.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
+
+    def _plan(self, problem: Problem, plan: Collection[int]) -> Run:
+        counts, program = Counter(plan), self._program
+        text = write_facts(problem, sorted(counts), Scales(problem, counts), program.looked_at)
+        text += write_times({problem.network.unit_number(unit): (n, n) for unit, n in counts.items()})
+        text += program.rules + write_least_penalty(1)
+        with placed(self._relaxed, text):
+            return run(
+                program.files,
+                text,
+                program.arguments,
+                self._settings.begun,
+                predicates=[("_broken", 2)],
+                endless=program.endless,
+            )

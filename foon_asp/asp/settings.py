@@ -39,11 +39,14 @@ class Bounded(NamedTuple):
     that meets them has to meet them still when units are left out of it: then what the goals do not need
     cannot matter, bounded or not. ``below`` are sets of costs, in each of which a tree has
     to be below one: those of objectives that are fractions, written down when it is known to which scale.
+    Where items are used up there are no rules and files, and each of these sets has one cost; plans are
+    ``beside`` others, by how often these execute which units: none does all of that as often.
     """
 
-    rules: str
-    files: tuple[Path, ...]
+    rules: str = ""
+    files: tuple[Path, ...] = ()
     below: tuple[Mapping[Objective, int | Fraction], ...] = ()
+    beside: tuple[Mapping[int, int], ...] = ()
 
 
 class Settings(NamedTuple):

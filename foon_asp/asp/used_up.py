@@ -12,11 +12,13 @@ from pathlib import Path
 
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.outcome import Outcome, Proof, Status
-from foon_asp.asp.settings import Settings
+from foon_asp.asp.program import Program
+from foon_asp.asp.settings import Bounded, Settings
 from foon_asp.asp.solver import Reporter
 from foon_asp.asp.solver import solve as solve_lasting
 from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
 from foon_asp.encoding.exact_success import RateScale, rate_scale
+from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.grounding.run import Run
 from foon_asp.problem import (
@@ -31,7 +33,8 @@ from foon_asp.problem import (
     relevant_to_plans,
 )
 from foon_asp.proof.replay import replay_for
-from foon_asp.rules.limit import TIMES, Limit
+from foon_asp.rules.dependence import TIMES
+from foon_asp.rules.limit import Limit
 
 Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
@@ -40,7 +43,7 @@ _LARGEST = 10**9  # a cost that is not rounded
 _FINE = 10**6  # steps of the greatest cost, where costs are rounded
 # Constraints of ours about what is available before something else, or that count units and not executions,
 # and predicates of the first kind.
-_NOT_BUILT = ("before", "require_intermediate", "at_most_price")
+_NOT_BUILT = ("before", "require_intermediate")
 _NOT_READ = frozenset({"available", "executes", "taken", "makes"})
 _MANY = 10  # counts without an order, after which clingo looks at all that are left
 _MOST_AT_ONCE = 500  # executions that it can look at
@@ -63,7 +66,7 @@ def solve_used_up(
 def _solver(
     problem: Problem, objectives: tuple[Objective, ...], settings: Settings, reporter: Reporter
 ) -> "_Solver":
-    _require_built(settings)
+    require_built_for_plans(settings)
     asked = levels(objectives)
     problem.require_known_for(asked)
     return _Solver(problem, objectives, asked, settings, reporter)
@@ -135,7 +138,7 @@ def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
     return _Counting(solver, list(counted)).order(dict(enumerate(counted.values())))
 
 
-def _require_built(settings: Settings) -> None:
+def require_built_for_plans(settings: Settings) -> None:
     """Raise :class:`UserError` for what is not built for items that are used up, by name."""
     for each in settings.constraints:
         name = Path(each.name.partition(":")[0]).stem
@@ -144,10 +147,24 @@ def _require_built(settings: Settings) -> None:
     for given, what in (
         (settings.encodings, "other encodings (--encodings)"),
         (settings.relaxed, "soft constraints"),
-        (settings.bounded, "bounds on objectives"),
+        (settings.bounded and settings.bounded.rules, "bounds on objectives by rules"),
     ):
-        if given is not None:
+        if given:
             raise UserError(f"{what} are not built for items that are used up")
+
+
+def require_rules_of_plans(program: Program) -> None:
+    """Raise :class:`UserError` for rules of the user's that look at more than a plan says."""
+    for name, arity in sorted(program.looked_at):
+        if name.lstrip("_") in _NOT_READ:
+            raise UserError(f"rules over {name}/{arity} are not built for items that are used up")
+    rules = program.understood
+    if rules is not None and not rules.local:
+        rule = next(rule for rule in rules.rules if not rule.local)
+        raise UserError(
+            f"{rule.source}: this rule looks at more than the units of a plan ({rule.further}), which is "
+            "not built for items that are used up"
+        )
 
 
 class _ManyError(Exception):
@@ -168,10 +185,15 @@ class _Solver:
         self.problem, self.objectives, self.levels = problem, objectives, asked
         self.settings, self.deadline, self.reporter = settings, settings.begun, reporter
         self.program = assemble(settings, reporter.warning, used_up=True)
-        self._require_rules()
+        require_rules_of_plans(self.program)
         self.removed: Callable[[int], bool] = lambda _: False
         self.required: tuple[frozenset[int], ...] = ()
         self.limits: Sequence[Limit] = ()
+        bounded = settings.bounded or Bounded()
+        self.below = [(objective, cost) for costs in bounded.below for objective, cost in costs.items()]
+        self.beside = bounded.beside
+        if not {objective for objective, _ in self.below} <= set(asked):
+            raise BugError("a bound is on an objective that is not asked for")
         self.tree: frozenset[int] = frozenset()  # some that makes the goals if nothing is used up
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
@@ -192,19 +214,6 @@ class _Solver:
             if isinstance(stop, KeyboardInterrupt):
                 self.deadline.interrupt()
             return self._outcome(Status.UNKNOWN if self.best is None else Status.FEASIBLE, None)
-
-    def _require_rules(self) -> None:
-        """Raise :class:`UserError` for rules of the user's that look at more than a plan says."""
-        for name, arity in sorted(self.program.looked_at):
-            if name.lstrip("_") in _NOT_READ:
-                raise UserError(f"rules over {name}/{arity} are not built for items that are used up")
-        rules = self.program.understood
-        if rules is not None and not rules.local:
-            rule = next(rule for rule in rules.rules if not rule.local)
-            raise UserError(
-                f"{rule.source}: this rule looks at more than the units of a plan ({rule.further}), which is "
-                "not built for items that are used up"
-            )
 
     def _apply_rules(self) -> bool:
         """Take what rules say of single units, and of sets of which one is needed; whether they allow a plan.
@@ -252,8 +261,7 @@ class _Solver:
         if not units:  # every goal is there, and a plan without steps is the only one, or keeps to most rules
             if not self.program.own and counting.order({}) is None:
                 return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
-            self._take(())
-            return self._outcome(Status.OPTIMAL, Proof.CUTS)
+            return self._outcome(Status.OPTIMAL if self._take(()) else Status.INFEASIBLE, Proof.CUTS)
         self.deadline.doing = "counting executions"
         began = time.perf_counter()
         counts = counting.bound.counts([counting.measure(objective) for objective in self.levels])
@@ -261,12 +269,11 @@ class _Solver:
         plan = None
         if counts is not None:
             plan = counting.order(counts)
-            if plan is None:
+            if plan is None or not self._allows(plan):
                 plan = counting.any_order(counts)
         elif counting.bound.none():
             return self._outcome(Status.INFEASIBLE, Proof.COUNTS)
-        if plan is not None:
-            self._take(plan)
+        if plan is not None and self._take(plan):
             counting.bound.derivation = [a for a, unit in enumerate(units) if unit in plan]
         elif self._none_lasts():
             return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
@@ -290,17 +297,31 @@ class _Solver:
             return False
         there = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         lasting = replace(problem, kitchen=there, items=None)
-        settings = self.settings._replace(session=None)
+        settings = self.settings._replace(session=None, bounded=None)
         return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
     def _take(self, plan: Plan) -> bool:
-        """Keep a plan if it is the best so far."""
+        """Keep a plan if it is the best so far, and what is asked for."""
         costs = self.problem.costs(plan)
+        if not self._allows(plan):
+            return False
         if self.best is not None and costs.key(self.levels) >= self.best[1].key(self.levels):
             return False
         self.best = plan, costs
         self.reporter.tree(costs)
         return True
+
+    def _allows(self, plan: Plan) -> bool:
+        """Whether a plan keeps to limits and bounds, and is another than those that are known; exactly."""
+        counts, costs = Counter(plan), self.problem.costs(plan)
+        for limit in self.limits:
+            total = sum(
+                weight * (counts[u] > 0 if limit.used else counts[u]) for u, weight in limit.weights.items()
+            )
+            if (total < limit.bound) if limit.at_least else (total > limit.bound):
+                return False
+        better = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
+        return better and not any(counts >= Counter(known) for known in self.beside)
 
     def _outcome(self, status: Status, proof: Proof | None) -> Outcome:
         plan, costs = self.best or (None, None)
@@ -341,7 +362,10 @@ class _Counting:
 
     def __init__(self, solver: _Solver, units: list[int]) -> None:
         self._solver, self._problem, self._units = solver, solver.problem, units
+        self._measures: dict[Objective, Measure] = {}
+        self._asked = -math.inf  # orders that were asked for in vain, where they are counted
         problem = solver.problem
+        places = {unit: a for a, unit in enumerate(units)}
         asked = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
 
         def finite(ids: Sequence[int]) -> list[int]:
@@ -363,11 +387,15 @@ class _Counting:
                 for each in solver.limits
             ],
             [a for a, unit in enumerate(units) if unit in solver.tree],
+            [self._below(objective, cost) for objective, cost in solver.below],
+            [
+                {places[u]: n for u, n in each.items()}
+                for each in solver.beside
+                if places.keys() >= each.keys()
+            ],
             expired=lambda: solver.deadline.passed,
             left=lambda: solver.deadline.left,
         )
-        self._measures: dict[Objective, Measure] = {}
-        self._asked = -math.inf  # orders that were asked for in vain, where they are counted
 
     def measure(self, objective: Objective) -> Measure:
         """Give what each unit costs by an objective, once for each objective."""
@@ -419,7 +447,17 @@ class _Counting:
 
     def level(self, objective: Objective, costs: Costs) -> Level:
         """Give a level of the question with what a plan costs."""
-        measure, cost = self.measure(objective), Fraction(costs.measure(objective))
+        return self._level(objective, Fraction(costs.measure(objective)))
+
+    def _below(self, objective: Objective, cost: int | Fraction) -> Level:
+        """Give a level of plans that cost less."""
+        level = self._level(objective, Fraction(cost))
+        if level.measure.exact is not None:
+            return level._replace(strict=True)
+        return level._replace(most=math.ceil(level.cost) - 1)
+
+    def _level(self, objective: Objective, cost: Fraction) -> Level:
+        measure = self.measure(objective)
         if multiplies(objective):
             return Level(measure, -cost, self._rates.weigh(cost))
         scale = self._scale(objective)
@@ -445,13 +483,8 @@ class _Counting:
 
         If a plan is found on the way, it is kept. Raises :class:`Stopped` where nothing is proved.
         """
-        most = self.bound.most_executions()
-        if most is None:
-            raise Stopped
         try:
-            self.bound.prove(
-                [Level(self.measure(Objective.UNITS), Fraction(most + 1), most)], self._is_better
-            )
+            self.bound.none_is_left(self.measure(Objective.UNITS), self._is_better)
         except BetterError:
             return False
         return True
@@ -525,8 +558,14 @@ class _Counting:
         text = facts.write_facts(problem, units, scales, looked_at)
         text += facts.write_times({number(self._units[a]): each for a, each in times.items()})
         text += facts.write_objectives(wanted)
+        files = solver.program.files
+        if best and scales is not None and (solver.below or solver.beside):
+            # those by fractions are held by counts alone
+            text += facts.write_below([{o: cost} for o, cost in solver.below if o.row.whole], scales)
+            text += facts.write_beside([{number(u): n for u, n in each.items()} for each in solver.beside])
+            files = (*files, question_encoding("bounded_plans.lp"))
         ended = search.run(
-            solver.program.files,
+            files,
             text,
             solver.program.arguments,
             solver.deadline,

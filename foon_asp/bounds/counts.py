@@ -27,6 +27,7 @@ _HIT = 0.999999  # a landmark of which a greater part is executed is taken to be
 _NEAR = 1e-6  # what differs less from a whole number is one, for choosing where to branch
 _PROBES = 60  # actions that a root looks at to see whether they can be executed twice
 _MOST_PARTS = 20_000  # that are looked at before a proof is given up
+_MOST_UNCAPPED = 1_000  # where nothing says how many executions there can be
 _ORDERS = 3  # in how many orders landmarks are looked for before there are taken to be no more
 _FAR = 1000  # executions of an action that HiGHS takes to be many when it looks for counts
 _FEWER = 8  # those that it takes to be many at first, which is much faster
@@ -83,11 +84,13 @@ class Level(NamedTuple):
     """An objective, and what the plan in hand costs by it.
 
     ``most`` is the greatest sum of costs, rounded down as they are, that a plan can have which is as good.
+    If it is ``strict``, what costs as much is not as good.
     """
 
     measure: Measure
     cost: Fraction
     most: int
+    strict: bool = False
 
 
 class BetterError(Exception):
@@ -109,7 +112,8 @@ class CountBound:
     :class:`Stopped`. ``required`` are sets of actions of each of which one has to be executed. ``limits`` say
     of sums with a weight from 0 for each action how large they are, at most or at least: over executions, or
     over the actions that are used. ``derivation`` are actions that reach the targets if nothing is used up:
-    landmarks are looked for around these.
+    landmarks are looked for around these. Plans are as good by each level of ``within``, and do not execute
+    all that one of ``beside`` does, as often.
     """
 
     def __init__(
@@ -118,11 +122,14 @@ class CountBound:
         required: Sequence[Sequence[int]] = (),
         limits: Sequence[SumLimit] = (),
         derivation: Sequence[int] = (),
+        within: Sequence[Level] = (),
+        beside: Sequence[Counts] = (),
         expired: Callable[[], bool] = lambda: False,
         left: Callable[[], float | None] = lambda: None,
     ) -> None:
         self._flows, self._limits, self._expired, self._left = flows, limits, expired, left
         self._size = len(flows.asks)
+        self._within, self._beside = tuple(within), tuple(beside)
         self.derivation = derivation
         self._random, self._many = random.Random(0), _FAR
         self.proved: float | Fraction = 0  # what every plan costs at least by the first level, so far
@@ -147,7 +154,7 @@ class CountBound:
     def _counts(self, measures: Sequence[Measure], rounds: int) -> Counts | None:
         found: Counts | None = None
         for _ in range(rounds):
-            model = _Model(self, measures, far=True)
+            model = self._model(measures, far=True)
             x: list[float] = []
             for measure in measures:
                 relaxed = self._relaxed(model, model.objective(measure))
@@ -169,7 +176,9 @@ class CountBound:
             x = model.program.solve(objective).x
             if x is None or not self._separate(x, model, at_root=True):
                 break
-        columns = {*range(model.program.columns)}.difference(range(self._size, 2 * self._size))
+        columns = {*range(model.program.columns)}
+        if not self._beside:
+            columns.difference_update(range(self._size, 2 * self._size))
         if x is None or any(abs(x[column] - round(x[column])) > _NEAR for column in columns):
             return None
         for a in range(self._size):
@@ -178,7 +187,7 @@ class CountBound:
 
     def none(self) -> bool:
         """Whether it is proved that no counts satisfy the conditions, so that there is no plan."""
-        model = _Model(self, ())
+        model = self._model(())
         while True:
             solved = model.program.solve({})
             if solved.x is None:
@@ -189,13 +198,13 @@ class CountBound:
 
     def most_executions(self) -> int | None:
         """Give how many executions a plan can have in all; ``None`` if not known."""
-        program = _Model(self, ()).program
+        program = self._model(()).program
         bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def caps(self, level: Level) -> list[int | None]:
         """Give for each action how often a plan that is as good can execute it; ``None`` if not known."""
-        model = _Model(self, (level.measure,))
+        model = self._model((level.measure,))
         model.limit(level)
         caps: list[int | None] = []
         for action in range(self._size):
@@ -229,15 +238,35 @@ class CountBound:
 
         self._prove(before, worse, asked)
 
-    def _prove(self, before: Sequence[Level], level: Level, is_better: Callable[[Counts], bool]) -> None:
-        model = _Model(self, [each.measure for each in (*before, level)])
+    def none_is_left(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
+        """Prove that there is no plan at all; counts of few executions, by their measure, are asked first.
+
+        ``is_better`` says whether some are those of a plan: then raises :class:`BetterError`. Raises
+        :class:`Stopped` where nothing is proved.
+        """
+        most, proved = self.most_executions(), self.proved
+        try:
+            self._prove((), Level(measure, Fraction((most or 0) + 1), most or 0), is_better, most is None)
+        finally:
+            self.proved = proved  # by another measure, maybe
+
+    def _prove(
+        self,
+        before: Sequence[Level],
+        level: Level,
+        is_better: Callable[[Counts], bool],
+        uncapped: bool = False,
+    ) -> None:
+        model = self._model([each.measure for each in (*before, level)])
         for each in before:
             model.limit(each)
         rounded = level.measure.exact is not None
-        cutoff = level.most if rounded else math.ceil(level.cost) - 1
         objective = model.objective(level.measure)
-        model.cap(level.measure, cutoff)
-        self._tighten_root(model, objective, cutoff)
+        cutoff: float = math.inf
+        if not uncapped:
+            most = cutoff = level.most if rounded else math.ceil(level.cost) - 1
+            model.cap(level.measure, most)
+            self._tighten_root(model, objective, most)
         first = list(model.program.lower), list(model.program.upper)
         number = 0
         waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, 0, number, first)]
@@ -248,7 +277,7 @@ class CountBound:
                 self.proved = max(self.proved, bound)
             model.tighten()
             solved = model.program.solve(objective, cutoff)
-            if solved.bound > cutoff:
+            if solved.bound > cutoff or solved.bound == math.inf:
                 continue
             if solved.x is None:
                 raise Stopped  # floats say that there is nothing, and no whole numbers do
@@ -259,8 +288,16 @@ class CountBound:
                 number += 1
                 executions = sum(part[0][: self._size])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, part))
-            if number > _MOST_PARTS:
+            if number > (_MOST_UNCAPPED if uncapped else _MOST_PARTS):
                 raise Stopped
+
+    def _model(self, measures: Sequence[Measure], far: bool = False) -> "_Model":
+        every = (*measures, *(level.measure for level in self._within))
+        different = {id(measure): measure for measure in every}
+        model = _Model(self, list(different.values()), far)
+        for level in self._within:
+            model.limit(level)
+        return model
 
     def _tighten_root(self, model: "_Model", objective: Mapping[int, int], cutoff: int) -> None:
         """Look which actions cannot be executed twice: others need not be told what they read so loosely."""
@@ -315,12 +352,21 @@ class CountBound:
             lower[self._size + idle] = 1
             yield lower, upper
             return
-        rounded = [each for each in (*before, level) if each.measure.exact is not None]
+        rounded = [each for each in (*self._within, *before, level) if each.measure.exact is not None]
         worse = [
             each
             for each in rounded
-            if _exact(each, counts) > each.cost or (each is level and _exact(each, counts) == each.cost)
+            if (cost := _exact(each, counts)) > each.cost
+            or (cost == each.cost and (each is level or each.strict))
         ]
+        held = model.held(counts, x)
+        if held is not None:  # nothing says how often its action may be executed, and so that it holds
+            action, count, column = held
+            yield program.with_bounds(action, None, count - 1)
+            lower, upper = program.with_bounds(action, count, None)
+            lower[column] = 1
+            yield lower, upper
+            return
         if worse:
             yield from _around(program, x, model.class_columns(worse[0].measure))
             return
@@ -455,7 +501,28 @@ class _Model:
         for measure in measures:
             if measure.exact is not None and not far:
                 self._add_classes(measure)
+        self._often: dict[tuple[int, int], tuple[int, int]] = {}
+        for counts in bound._beside:
+            columns = [self._as_often(a, n) for a, n in counts.items()]
+            program.row(dict.fromkeys(columns, -1), 1 - len(columns))
         self.tighten()
+
+    def _as_often(self, action: int, count: int) -> int:
+        """Give the column that says whether an action is executed so often."""
+        if count == 1:
+            return self._size + action
+        if (action, count) not in self._often:
+            column = self.program.column(0, 1)
+            self.program.row({action: 1, column: -count}, 0)
+            self._often[action, count] = column, self.program.row({column: 0, action: 0}, 1 - count)
+        return self._often[action, count][0]
+
+    def held(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
+        """Give an action that is executed as often as its column does not say, how often, and the column."""
+        for (action, count), (column, _) in self._often.items():
+            if counts.get(action, 0) >= count and not round(x[column]):
+                return action, count, column
+        return None
 
     def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
         if o in self.stock:
@@ -491,10 +558,15 @@ class _Model:
         """Tie each indicator to its action by the greatest count that it can have."""
         program = self.program
         for action, row in enumerate(self._loose):
-            most = program.upper[action]
-            if most is None and self._far:
-                most = self._many
+            most = self._most(action)
             program.change(row, {} if most is None else {self._size + action: most, action: -1})
+        for (action, count), (column, row) in self._often.items():
+            most = self._most(action)
+            program.change(row, {} if most is None else {column: max(most - count + 1, 0), action: -1})
+
+    def _most(self, action: int) -> int | None:
+        most = self.program.upper[action]
+        return self._many if most is None and self._far else most
 
     def cap(self, measure: Measure, most: int) -> None:
         """Bound counts of actions by what all of them may cost together."""

@@ -145,15 +145,15 @@ def _under(rules: Settings, problem: Problem, judgement: Judgement) -> Judgement
     """Note which rules a tree breaks."""
     if not (rules.constraints and judgement.counts and judgement.units is not None):
         return judgement
-    broken = _breaking(rules).broken(problem, judgement.units)
+    broken = _breaking(rules, problem.items is not None).broken(problem, judgement.units)
     return judgement._replace(breaks=tuple(map(str, broken)))
 
 
 @lru_cache(maxsize=1)
-def _breaking(rules: Settings) -> "Breaking":
+def _breaking(rules: Settings, used_up: bool) -> "Breaking":
     from foon_asp.asp.breaking import Breaking  # noqa: PLC0415 (takes clingo along)
 
-    return Breaking(rules)
+    return Breaking(rules, used_up)
 
 
 def judge(problem: Problem, search: Search, settings: SearchSettings) -> Judgement:

@@ -1,6 +1,6 @@
 """The facts handed to clingo, as text."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from pathlib import PurePath
@@ -426,6 +426,15 @@ def write_avoided(number: int, units: Iterable[int]) -> str:
     return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
 
 
+def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
+    """Rule out plans that execute units, by their numbers in the whole network, as often as known ones."""
+    return "".join(
+        f"_avoid({number},{_check(unit)},{count}).\n"
+        for number, plan in enumerate(plans)
+        for unit, count in plan.items()
+    )
+
+
 def write_given(numbers: Collection[int]) -> str:
     """Ask whether units, by their numbers in the whole network, are a tree."""
     return f"_given_units({len(numbers)}).\n" + "".join(f"_given({number}).\n" for number in numbers)
@@ -448,8 +457,8 @@ def write_exactly_alike(numbers: Sequence[int]) -> str:
     return "".join(f"_exactly_alike({rate},{_check(number)}).\n" for rate, number in enumerate(numbers))
 
 
-def write_distances(trees: Sequence[Collection[int]], chosen: int) -> str:
-    """Ask for a choice of ``chosen`` trees, given by their units."""
+def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
+    """Ask for a choice of ``chosen`` trees, given by their units or executions."""
     sets = list(map(frozenset, trees))
     facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
     for number, one in enumerate(sets):

@@ -1,5 +1,6 @@
 """Other trees: all optimal ones, the next best, those that differ most, and what all have in common."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -7,6 +8,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Settings
 from foon_asp.asp.assembly import CLINGO_OPTIONS
+from foon_asp.asp.ranked_plans import RankedPlans
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.used_up import best_plans
 from foon_asp.dataset.paths import File, Files
@@ -28,11 +30,11 @@ from foon_asp.questions.arguments import (
     settings,
 )
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import TABLES, Kind, Option, not_built, question
+from foon_asp.questions.contract import TABLES, Kind, Option, question
 from foon_asp.questions.options import HOW, ITEMS, TREE
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
-from foon_asp.report.answer import costs_text, goal_lines, unit_lines
+from foon_asp.report.answer import costs_text, goal_lines, missing, unit_lines
 from foon_asp.report.drawing import Drawing
 from foon_asp.report.notebook import page_bundle
 
@@ -225,8 +227,8 @@ class Alternatives(Result):
     foon-asp alternatives --goal macaroni --different 3 --within 20
 
     A tree that contains all units of another listed tree is not listed. Trees are
-    found one by one in order of their costs, which are compared exactly. With --items used-up, the plans
-    listed are the optimal ones that execute units differently often.
+    found one by one in order of their costs, which are compared exactly. With --items used-up, plans differ
+    by how often they execute units, and none does all that another one does, as often.
 
     Exits with 0 when all trees that were asked for are listed, 1 when there is no tree, 3 when a limit
     came first.
@@ -294,7 +296,7 @@ def _most_different(pool: Alternatives, count: int, how: Settings) -> Alternativ
         return pool
     ended = run(
         (question_encoding("most_different.lp"),),
-        write_distances([tree.units for tree in pool.trees], count),
+        write_distances(list(map(_executions, pool.trees)), count),
         CLINGO_OPTIONS,
         how.begun,
         predicates=[("_chosen", 1)],
@@ -310,9 +312,19 @@ def _most_different(pool: Alternatives, count: int, how: Settings) -> Alternativ
     )
 
 
+def _executions(tree: Alternative) -> frozenset[tuple[int, int]]:
+    """Give each execution of a tree or plan: the unit, and which time it is."""
+    seen = Counter[int]()
+    found = set[tuple[int, int]]()
+    for unit in tree.units:
+        seen[unit] += 1
+        found.add((unit, seen[unit]))
+    return frozenset(found)
+
+
 def _far_apart(trees: Sequence[Alternative], count: int) -> list[int]:
     """Choose ``count`` trees one by one, each as different as possible from those before it."""
-    units = [frozenset(tree.units) for tree in trees]
+    units = list(map(_executions, trees))
     chosen = [0]
     while len(chosen) < count:
         left = (number for number in range(len(trees)) if number not in chosen)
@@ -331,14 +343,13 @@ def _ranked(
 
     ``None`` allows any tree. With ``worse`` 0 only optimal trees are taken, by the whole list of objectives.
     """
-    if problem.items is not None:
-        if worse != 0:
-            raise not_built("alternatives --best and --different")
+    if problem.items is not None and worse == 0:
         plans, proved, complete = best_plans(problem, objectives, how, caller().reporter, most)
         given = tuple(Alternative(plan, costs) for plan, costs in plans)
         return Alternatives(problem, objectives, given, complete, unproved=0 if proved else len(given))
     order = levels(objectives)
-    ranked = Ranked(problem, objectives, how, caller().reporter)
+    one_by_one = Ranked if problem.items is None else RankedPlans
+    ranked = one_by_one(problem, objectives, how, caller().reporter)
     trees: list[Alternative] = []
     complete = False
     for units, costs in ranked:
@@ -432,9 +443,8 @@ def _trees(found: Alternatives) -> Iterator[str]:
         if number == 1:
             yield from unit_lines(network, tree.units)
             continue
-        gone, new = set(first.units) - set(tree.units), set(tree.units) - set(first.units)
-        yield from unit_lines(network, (unit for unit in first.units if unit in gone), "-")
-        yield from unit_lines(network, (unit for unit in tree.units if unit in new), "+")
+        yield from unit_lines(network, missing(first.units, tree.units), "-")
+        yield from unit_lines(network, missing(tree.units, first.units), "+")
     if len(found.trees) > _SHOWN:
         yield f"... and {counted(len(found.trees) - _SHOWN, 'more tree')}; --format json lists all"
 

@@ -15,7 +15,7 @@ from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.replay import Replay, replay_for
 from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
 from foon_asp.questions.arguments import Constants, settings, whole
-from foon_asp.questions.contract import Kind, Option, not_built, question
+from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -88,8 +88,9 @@ class Checked(Result):
     def text(self) -> str:
         """Say whether the tree executes, in which order, what stops it, and which rules it breaks."""
         if self.replay is not None:
-            return replay_text(self.problem, self._listed(), self.replay)
-        found = verdict_text(self.problem, self._listed(), self.simulation)
+            found = replay_text(self.problem, self._listed(), self.replay)
+        else:
+            found = verdict_text(self.problem, self._listed(), self.simulation)
         return found + "".join(f"{line}\n" for line in self._about_rules())
 
     def _about_rules(self) -> Iterator[str]:
@@ -204,9 +205,8 @@ def check(
     rules = settings(constraints, constants, encodings)._replace(session=None)
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: a tree is checked without encodings: leave them out")
-    if rules.constraints and problem.items is not None:
-        raise not_built("check with constraints")
-    breaking = _breaking(rules) if rules.constraints or rules.constants else None
+    used_up = problem.items is not None
+    breaking = _breaking(rules, used_up) if rules.constraints or rules.constants else None
     if breaking is not None and not breaking.local:
         problem = whole(problem)
     given = Tree.read(problem, tree) if isinstance(tree, str | PathLike) else Tree.given(problem, tree)
@@ -214,11 +214,12 @@ def check(
     found = Checked(given, simulate_for(given.problem, given), replay, breaking is not None)
     if breaking is None or not found.executes or found.foreign:
         return found
-    units = {unit for unit in map(given.problem.network.unit_id, given.units) if unit is not None}
+    ids = map(given.problem.network.unit_id, given.units)
+    units = [unit for unit in ids if unit is not None]
     return replace(found, breaks=breaking.broken(given.problem, units))
 
 
-def _breaking(rules: "Settings") -> "Breaking":
+def _breaking(rules: "Settings", used_up: bool) -> "Breaking":
     from foon_asp.asp.breaking import Breaking  # noqa: PLC0415 (takes clingo along)
 
-    return Breaking(rules)
+    return Breaking(rules, used_up)

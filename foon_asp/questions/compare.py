@@ -18,7 +18,7 @@ from foon_asp.problem import Problem
 from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.arguments import Constants, asked_with, at_least, limits, settings
 from foon_asp.questions.caller import caller
-from foon_asp.questions.contract import Kind, Option, Part, not_built, question
+from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS, RULES
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result
@@ -294,8 +294,6 @@ def compare_searches(
     rules = settings(constraints, constants, encodings)._replace(session=None, deadline=None)
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: searches know nothing of other encodings: leave them out")
-    if rules.constraints and problem.items is not None:
-        raise not_built("compare with constraints")
     problem = asked_with(problem, rules)
     if all_makeable or results is not None:  # results are kept with a digest of all the data
         problem = problem.whole

@@ -8,9 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from foon_asp.asp import Reporter, Status, solve
+from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.postconditions import Postconditions
+from foon_asp.asp.settings import Bounded
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, figures_json, steps_json
@@ -28,7 +29,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, Kind, Option, Part, question
-from foon_asp.questions.options import CONTAINERS, GOALS, HOW, OBJECTIVES
+from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.report.answer import (
@@ -36,12 +37,16 @@ from foon_asp.report.answer import (
     costs_text,
     figure_text,
     goal_lines,
+    missing,
     success_texts,
     unit_lines,
 )
 from foon_asp.report.stacked import is_narrow, stacked_lines
 
 _FEWEST, _MOST = 2, 3  # objectives
+
+Box = tuple[int | Fraction | None, ...]
+"""For each objective but the first, what plans cost less than; ``None`` allows any cost."""
 
 
 class Point(NamedTuple):
@@ -173,6 +178,7 @@ class Front(Result):
         default=None,
     ),
     CONTAINERS,
+    *ITEMS,
     Option("trees", "Also list the units of the trees.", Kind.FLAG, Part.TEXT),
     Option(
         "charts",
@@ -237,8 +243,6 @@ def pareto(
         )
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
     problem = asked_with(problem, how)
-    reporter = caller().reporter
-    later = _Silent(reporter)
     # One objective leads: success, which no sum can bound, if it is there, else one that is a fraction
     # and may have to be rounded, else the first. Each tree is
     # the best by the leading objective, then by the others, among those that are better than every tree
@@ -246,32 +250,92 @@ def pareto(
     # somewhere better, would be among those too, and come before it: so no tree found is dominated. When
     # no tree is left, each tree there is was left out first with some tree that is as good as it by the
     # others, and no worse by the leading objective, by which that tree was the best of those that were
-    # left. So every point of the front is there, and it took one search more than there are points.
+    # left. So every point of the front is there.
     leading = min(asked, key=lambda objective: (not multiplies(objective), objective.row.whole))
-    others = tuple(objective for objective in asked if objective is not leading)
+    order = leading, *(objective for objective in asked if objective is not leading)
     began = time.monotonic()
     found: list[Point] = []
-    complete = False
+    complete = True
+    next_best = _best_trees if problem.items is None else _best_plans
     try:
-        while not complete:
-            now = how
-            if found:
-                known = _nearest([point.costs for point in found], others)
-                now = how._replace(bounded=better_than(known, others))
-            outcome = solve(problem, (leading, *others), now, later if found else reporter)
-            if outcome.status is Status.OPTIMAL and outcome.units is not None and outcome.costs is not None:
-                point = Point(outcome.units, outcome.costs)
-                _require_apart(Postconditions(problem, asked, now), point, found)
-                found.append(point)
-            elif outcome.status is Status.INFEASIBLE:
-                complete = True
-            else:
+        for outcome in next_best(problem, order, how, found):
+            if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
+                complete = False
                 break
+            point = Point(outcome.units, outcome.costs)
+            _require_apart(Postconditions(problem, asked, how), point, found)
+            found.append(point)
     except KeyboardInterrupt:
-        pass  # what was found stands
+        complete = False  # what was found stands
     found.sort(key=lambda point: point.costs.key(asked))
     seconds = time.monotonic() - began
     return Front(problem, asked, tuple(found), complete, seconds, how.replaced)
+
+
+def _best_trees(
+    problem: Problem, order: tuple[Objective, ...], how: Settings, found: Sequence[Point]
+) -> Iterator[Outcome]:
+    """Give the best tree that is better than each point found by one of the objectives but the first.
+
+    It takes one search more than there are points. An outcome without a proof is the last.
+    """
+    reporter = caller().reporter
+    while True:
+        now = how
+        if found:
+            known = _nearest([point.costs for point in found], order[1:])
+            now = how._replace(bounded=better_than(known, order[1:]))
+        outcome = solve(problem, order, now, _Silent(reporter) if found else reporter)
+        if outcome.status is Status.INFEASIBLE:
+            return
+        yield outcome
+
+
+def _best_plans(
+    problem: Problem, order: tuple[Objective, ...], how: Settings, found: Sequence[Point]
+) -> Iterator[Outcome]:
+    """Give the best plan as :func:`_best_trees` gives trees.
+
+    What is better than each point found is divided into boxes, which are below one cost by each objective.
+    The best plan of a box stays the best of it until the box is divided.
+    """
+    reporter, others = caller().reporter, order[1:]
+    boxes: list[Box] = [(None,) * len(others)]
+    solved: dict[Box, Outcome] = {}
+    while True:
+        for box in boxes:
+            if box not in solved:
+                below = tuple({o: most} for o, most in zip(others, box, strict=True) if most is not None)
+                now = how._replace(bounded=Bounded(below=below))
+                solved[box] = solve(problem, order, now, _Silent(reporter) if found else reporter)
+                if solved[box].status not in {Status.OPTIMAL, Status.INFEASIBLE}:
+                    yield solved[box]
+        boxes = [box for box in boxes if solved[box].costs is not None]
+        if not boxes:
+            return
+        best = min(
+            (solved[box] for box in boxes), key=lambda each: each.costs.key(order) if each.costs else ()
+        )
+        assert best.costs is not None
+        yield best
+        boxes = _divided(boxes, tuple(map(best.costs.measure, others)))
+
+
+def _divided(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]:
+    """Divide boxes that a point is in, and leave out those that are within another."""
+    parts = set[Box]()
+    for box in boxes:
+        if all(most is None or cost < most for cost, most in zip(point, box, strict=True)):
+            parts.update((*box[:n], cost, *box[n + 1 :]) for n, cost in enumerate(point))
+        else:
+            parts.add(box)
+
+    def holds(box: Box, part: Box) -> bool:
+        return box != part and all(
+            most is None or (less is not None and less <= most) for most, less in zip(box, part, strict=True)
+        )
+
+    return [part for part in parts if not any(holds(box, part) for box in parts)]
 
 
 def _require_apart(holds: Postconditions, point: Point, found: Sequence[Point]) -> None:
@@ -367,12 +431,7 @@ def _changes(front: Front, number: int) -> tuple[list[int], list[int]]:
     if not number:
         return [], []
     before, point = front.points[number - 1], front.points[number]
-    return _missing(before, point), _missing(point, before)
-
-
-def _missing(point: Point, other: Point) -> list[int]:
-    known = set(other.units)
-    return [unit for unit in point.units if unit not in known]
+    return missing(before.units, point.units), missing(point.units, before.units)
 
 
 def _units(front: Front, number: int) -> Iterator[str]:

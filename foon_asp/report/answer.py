@@ -214,6 +214,16 @@ def unit_lines(network: Network, units: Iterable[int], sign: str = " ") -> Itera
         yield f"  {sign} {network.unit_number(unit)}  {network.motions[unit]}    [{network.sources[unit][0]}]"
 
 
+def missing(units: Sequence[int], other: Iterable[int]) -> list[int]:
+    """Give the units of a tree that another one does not have; those of a plan, as often as it lacks them."""
+    left, found = Counter(units) - Counter(other), list[int]()
+    for unit in units:
+        if left[unit]:
+            left[unit] -= 1
+            found.append(unit)
+    return found
+
+
 def changes_text(network: Network, gone: Sequence[int], new: Sequence[int]) -> str:
     """Name the motions of the units that go and that come: ``- heat  + pour (2)``."""
     return "  ".join(

@@ -5,7 +5,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from clingo import Infimum, Supremum, parse_term
-from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign, UnaryOperator
+from clingo.ast import (
+    AST,
+    AggregateFunction,
+    ASTType,
+    BinaryOperator,
+    ComparisonOperator,
+    Sign,
+    UnaryOperator,
+)
 from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.grounding.parsing import nodes
@@ -175,6 +183,13 @@ def value(term: AST, constants: Constants) -> Symbol | None:
         inner = value(term.argument, constants)
         return Number(-inner.number) if inner is not None and inner.type is SymbolType.Number else None
     return None
+
+
+def factors(term: AST) -> list[AST]:
+    """Give the two factors of a product, or a term itself."""
+    product = (ASTType.BinaryOperation, BinaryOperator.Multiplication)
+    is_product = (term.ast_type, getattr(term, "operator_type", None)) == product
+    return [term.left, term.right] if is_product else [term]
 
 
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:

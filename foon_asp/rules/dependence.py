@@ -7,7 +7,7 @@ Where rules say nothing of a predicate, and it is no fact, it never holds.
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from enum import Flag
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
 from clingo.symbol import SymbolType
@@ -24,12 +24,13 @@ from foon_asp.rules.clause import (
     Part,
     Signature,
     Strange,
+    factors,
     literals,
     value,
 )
 from foon_asp.rules.fact_subject import SUBJECTS
 
-USE, AVAILABLE = ("use", 1), ("available", 1)
+USE, AVAILABLE, TIMES = ("use", 1), ("available", 1), ("times", 2)
 
 # Predicates of facts whose numbers depend on more than the unit they are about, and why.
 _UNSURE = {
@@ -198,7 +199,18 @@ class Dependence:
             self._at_least_0 -= wrong
 
     def _is_at_least_0(self, term: AST, condition: Iterable[Part]) -> bool:
-        """Whether a term is a number from 0 wherever it is one and a condition holds."""
+        """Whether a term is a number from 0 wherever it is one and a condition holds.
+
+        So is such a number times how often a unit is executed, which is once where items last.
+        """
+        condition = tuple(condition)
+        product = factors(term)
+        if len(product) > 1:
+            counts = [str(each.arguments[1]) for each in condition if _counts_executions(each)]
+            return any(
+                str(count) in counts and self._is_at_least_0(other, condition)
+                for count, other in (product, product[::-1])
+            )
         known = value(term, self._constants)
         if known is not None:
             return known.type is SymbolType.Number and known.number >= 0
@@ -250,6 +262,10 @@ class Dependence:
             and bound.type is SymbolType.Number
             and bound.number == 0
         )
+
+
+def _counts_executions(part: Part) -> TypeGuard[Literal]:
+    return isinstance(part, Literal) and part.positive and part.signature == TIMES
 
 
 def named(signature: Signature) -> str:

@@ -4,14 +4,24 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from clingo.ast import AST, AggregateFunction, ASTType, BinaryOperator, ComparisonOperator
+from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
 from clingo.symbol import SymbolType
 
-from foon_asp.rules.clause import Aggregate, Clause, Constants, Literal, Part, Strange, Test, value, variables
-from foon_asp.rules.dependence import USE, Depends
+from foon_asp.rules.clause import (
+    Aggregate,
+    Clause,
+    Constants,
+    Literal,
+    Part,
+    Strange,
+    Test,
+    factors,
+    value,
+    variables,
+)
+from foon_asp.rules.dependence import TIMES, USE, Depends
 from foon_asp.rules.rule_kind import Analysis
 
-TIMES = ("times", 2)
 _WORD = re.compile(r"[\w']+")
 # What a forbidden comparison leaves: whether that is at least or at most the number, and how far from it.
 _LEFT = {
@@ -112,12 +122,12 @@ def _row(
     unit, *count = deciding[0].arguments
     weight = terms[0] if length == 2 else None
     rest = tuple(part for part in condition if part is not deciding[0])
-    factors = [] if weight is None else _factors(weight)
-    words = {name for factor in factors if factor not in count for name in variables(factor)}
+    product = [] if weight is None else factors(weight)
+    words = {name for factor in product if factor not in count for name in variables(factor)}
     words.update(word for part in rest for word in _WORD.findall(part.text))
     named = {str(each) for each in (unit, *count)}
     plain = {each.ast_type for each in (unit, *count)} == {ASTType.Variable} and "_" not in named
-    counted = [factor for factor in factors if factor in count]
+    counted = [factor for factor in product if factor in count]
     if not plain or len(named) != 1 + len(count) or str(terms[-1]) != str(unit) or len(counted) != len(count):
         return None
     if words & {str(each) for each in count} or analysis.dependence.of_parts(rest) is not Depends.NOT:
@@ -125,9 +135,3 @@ def _row(
     here: list[Part] = [Literal(("unit", 1), (unit,), 0, f"unit({unit})")]
     here += [Strange(f"{each}=1") for each in count]
     return f"{1 if weight is None else weight},{unit}", (*here, *rest), not count
-
-
-def _factors(term: AST) -> list[AST]:
-    product = (ASTType.BinaryOperation, BinaryOperator.Multiplication)
-    is_product = (term.ast_type, getattr(term, "operator_type", None)) == product
-    return [term.left, term.right] if is_product else [term]

@@ -19,10 +19,11 @@ from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.problem import Problem, Restriction, reach
 from foon_asp.rules.clause import Clause, Signature, literals, written
+from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.flat_answers import FlatAnswers
 from foon_asp.rules.flat_body import Asking, FlatBodies, NotFlatError, Way
 from foon_asp.rules.lifted_program import NOBODY, LiftedProgram, stands_alone
-from foon_asp.rules.limit import TIMES, Limit, Limiting, limiting
+from foon_asp.rules.limit import Limit, Limiting, limiting
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
 _DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}

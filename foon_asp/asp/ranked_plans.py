@@ -1,0 +1,44 @@
+"""Plans in which items are used up in order of their costs, one by one; none holds another."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+
+from foon_asp.asp.outcome import Status
+from foon_asp.asp.settings import Bounded, Settings
+from foon_asp.asp.solver import Reporter
+from foon_asp.asp.used_up import Plan, solve_used_up
+from foon_asp.problem import Costs, Objective, Problem
+
+
+class RankedPlans:
+    """The plans of a question, the best first, under a lexicographic list of objectives.
+
+    A plan that executes all that one before it does, as often, is not among them. ``complete`` and ``known``
+    are as those of :class:`foon_asp.asp.ranking.Ranked`, which gives trees.
+    """
+
+    def __init__(
+        self, problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
+    ) -> None:
+        self._problem, self._objectives = problem, tuple(objectives)
+        self._settings, self._reporter = settings._replace(deadline=settings.begun), reporter
+        self.complete = False
+        self.known: list[tuple[Plan, Costs]] = []
+
+    def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
+        """Give plan after plan, each proved the best of those that do not hold one before it."""
+        given: list[Mapping[int, int]] = []
+        while True:
+            settings = self._settings._replace(bounded=Bounded(beside=tuple(given)))
+            reporter = Reporter() if given else self._reporter
+            outcome = solve_used_up(self._problem, self._objectives, settings, reporter)
+            plan, costs = outcome.units, outcome.costs
+            if plan is None or costs is None or outcome.status is not Status.OPTIMAL:
+                self.complete = outcome.status is Status.INFEASIBLE
+                self.known = [] if plan is None or costs is None else [(plan, costs)]
+                return
+            yield plan, costs
+            if not plan:  # every other plan holds it
+                self.complete = True
+                return
+            given.append(Counter(plan))
