@@ -13,9 +13,9 @@ from typing import Any
 
 import opponents
 import pytest
+from contest.elimination import ordered
 from contest.engines import ENGINES, Engine
 from contest.instance import Instance, cuts, raw_units
-from contest.max_sat import _ordered
 from contest.page import put, table
 from contest.ratio import Figure, median, ratio
 from contest.trial import End, attempt
@@ -123,7 +123,7 @@ def test_circles_are_cut_off() -> None:
 def test_eliminated_nodes_rule_out_circles_and_nothing_else() -> None:
     """Of the 2^5 sets of actions, those that can be extended to a model of all clauses are the trees."""
     instance = circles()
-    clauses = _ordered(instance)
+    clauses = ordered(instance)
     assert clauses is not None
     highest = max(abs(literal) for clause in clauses for literal in clause)
     clauses += [

@@ -2,8 +2,10 @@
 
 import importlib
 import time
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+from contest.elimination import ordered
 from contest.instance import Instance, cuts
 
 
@@ -13,7 +15,7 @@ def ready() -> None:
 
 
 def solve_cp_sat(
-    instance: Instance, seconds: float, levels: bool, parameters: dict[str, Any]
+    instance: Instance, seconds: float, levels: bool, parameters: dict[str, Any], elimination: bool = False
 ) -> list[int] | None:
     """Give the actions of a best tree, or ``None`` where there is none.
 
@@ -31,6 +33,8 @@ def solve_cp_sat(
         model.add_bool_or([use[maker] for maker in instance.makers[goal]])
     if levels:
         _add_levels(model, instance, use)
+    if elimination:
+        _add_clauses(model, ordered(instance) or (), use)
     model.minimize(cp_model.LinearExpr.weighted_sum(use, instance.costs))
     while True:
         solver = cp_model.CpSolver()
@@ -51,6 +55,15 @@ def solve_cp_sat(
         for supports, user in found:
             clause = [use[support] for support in supports]
             model.add_bool_or(clause if user is None else [~use[user], *clause])
+
+
+def _add_clauses(model: Any, clauses: Iterable[Sequence[int]], use: Sequence[Any]) -> None:
+    variables = list(use)
+    for clause in clauses:
+        for literal in clause:
+            while abs(literal) > len(variables):
+                variables.append(model.new_bool_var(""))
+        model.add_bool_or([variables[abs(n) - 1] if n > 0 else ~variables[abs(n) - 1] for n in clause])
 
 
 def _add_levels(model: Any, instance: Instance, use: list[Any]) -> None:

@@ -14,6 +14,7 @@ from contest.max_sat import Setting, solve_max_sat
 from contest.max_sat import ready as max_sat_ready
 from contest.mixed_integer import ready as mixed_integer_ready
 from contest.mixed_integer import solve_mixed_integer
+from contest.supported import solve_supported
 from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.engines import fast_downward
 from foon_asp.problem import Objective, Problem
@@ -66,13 +67,17 @@ def _clingo(name: str, setting: str, options: Sequence[str], by_need: bool, firs
     return Engine(name, "clingo", setting, "clingo", clingo_ready, solve, first)
 
 
-def _highs(name: str, setting: str, levels: bool, threads: int, first: bool) -> Engine:
-    solve = on_instance(lambda i, _, seconds: solve_mixed_integer(i, seconds, levels, threads))
+def _highs(
+    name: str, setting: str, levels: bool, threads: int, first: bool, elimination: bool = False
+) -> Engine:
+    solve = on_instance(lambda i, _, seconds: solve_mixed_integer(i, seconds, levels, threads, elimination))
     return Engine(name, "HiGHS", setting, "highspy", mixed_integer_ready, solve, first)
 
 
-def _cp_sat(name: str, setting: str, levels: bool, parameters: dict[str, Any], first: bool) -> Engine:
-    solve = on_instance(lambda i, _, seconds: solve_cp_sat(i, seconds, levels, parameters))
+def _cp_sat(
+    name: str, setting: str, levels: bool, parameters: dict[str, Any], first: bool, elimination: bool = False
+) -> Engine:
+    solve = on_instance(lambda i, _, seconds: solve_cp_sat(i, seconds, levels, parameters, elimination))
     return Engine(name, "CP-SAT", setting, "ortools", cp_sat_ready, solve, first)
 
 
@@ -102,6 +107,16 @@ ENGINES: tuple[Engine, ...] = (
     _clingo("clingo by need", f"encodings/by_need, {' '.join(CLINGO_OPTIONS)}", CLINGO_OPTIONS, by_need=True),
     _highs("HiGHS", "cycles cut off as they turn up, 1 thread", levels=False, threads=1, first=True),
     _highs("HiGHS levels", "levels on cycles, 1 thread", levels=True, threads=1, first=False),
+    _highs("HiGHS elimination", "vertex elimination, 1 thread", False, 1, first=False, elimination=True),
+    Engine(
+        "clingo supported",
+        "clingo",
+        "supported models, vertex elimination, --opt-strategy=usc",
+        "clingo",
+        clingo_ready,
+        on_instance(lambda i, _, seconds: solve_supported(i, seconds)),
+        first=False,
+    ),
     _cp_sat("CP-SAT", "levels on cycles, 8 workers", True, {"num_workers": 8}, first=True),
     _cp_sat("CP-SAT loops", "cycles cut off, 8 workers", False, {"num_workers": 8}, first=False),
     _cp_sat("CP-SAT 1 worker", "cycles cut off, 1 worker", False, {"num_workers": 1}, first=False),
@@ -111,6 +126,14 @@ ENGINES: tuple[Engine, ...] = (
         False,
         {"num_workers": 1, "optimize_with_core": True},
         first=False,
+    ),
+    _cp_sat(
+        "CP-SAT elimination",
+        "vertex elimination, 1 worker",
+        False,
+        {"num_workers": 1},
+        first=False,
+        elimination=True,
     ),
     _rc2(
         "RC2",

@@ -1,12 +1,15 @@
 """A question as opponents get it: units and nodes by number, without what is always at hand."""
 
+import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 from foon_asp.engines.engine import cost
 from foon_asp.problem import Objective, Problem, reach, relevant
 
+_STEPS = 2**53  # whole numbers that floats hold
 SCALE = 10**6  # steps of -ln(rate) to 1, for engines that add whole numbers
 
 
@@ -15,7 +18,8 @@ class Instance:
     """Actions that need and give nodes, at a cost each; all nodes have to be made, none is at hand.
 
     ``units[a]`` is the number that action ``a`` has in the network, ``needs[a]`` and ``gives[a]`` are nodes
-    from 0 to ``nodes``, and ``costs[a]`` is a whole number: for ``success`` a rounded logarithm. Actions
+    from 0 to ``nodes``, and ``costs[a]`` is a whole number: for ``success`` a rounded logarithm,
+    for prices a multiple of them, rounded where that is too large. Actions
     that need what they give are left out as makers of that: such a node is not in ``gives``.
     """
 
@@ -112,6 +116,7 @@ def instance_of(problem: Problem, units: Sequence[int], objective: Objective) ->
     scale = SCALE if objective is Objective.SUCCESS else 1
     by_motion: dict[str, int] = {}
     costs = []
+    whole = {} if objective is Objective.SUCCESS else _whole(problem, units, objective)
     for unit in units:
         if objective is Objective.SUCCESS:
             motion = problem.network.motions[unit]
@@ -119,8 +124,18 @@ def instance_of(problem: Problem, units: Sequence[int], objective: Objective) ->
                 by_motion[motion] = round(scale * cost(problem, objective, unit))
             costs.append(by_motion[motion])
         else:
-            costs.append(int(cost(problem, objective, unit)))
+            costs.append(whole[unit])
     return Instance(tuple(units), tuple(needs), tuple(gives), tuple(costs), goals, len(numbers))
+
+
+def _whole(problem: Problem, units: Iterable[int], objective: Objective) -> dict[int, int]:
+    """Give what units cost as whole numbers: exactly, or to 2^53 steps of the sum of all."""
+    costs = {unit: Fraction(problem.figure(objective, unit)) for unit in units}
+    scale = Fraction(math.lcm(*(cost.denominator for cost in costs.values())))
+    total = sum(costs.values(), Fraction())
+    if total * scale > _STEPS:
+        scale = _STEPS / total
+    return {unit: round(cost * scale) for unit, cost in costs.items()}
 
 
 def unfounded(instance: Instance, used: Collection[int]) -> list[frozenset[int]]:

@@ -1,8 +1,10 @@
 """The same question as a mixed integer program in HiGHS, handed over whole."""
 
 import time
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+from contest.elimination import ordered
 from contest.instance import Instance, cuts
 
 
@@ -12,17 +14,22 @@ def ready() -> None:
     import numpy as np  # noqa: F401, PLC0415
 
 
-def solve_mixed_integer(instance: Instance, seconds: float, levels: bool, threads: int) -> list[int] | None:
+def solve_mixed_integer(
+    instance: Instance, seconds: float, levels: bool, threads: int, elimination: bool = False
+) -> list[int] | None:
     """Give the actions of a best tree, or ``None`` where there is none.
 
     A variable for each action says that it is used; a used one has a used maker for each node it needs. With
-    ``levels``, nodes on cycles stand above what they are made of. Else cycles are cut off when an optimum has
-    one, and the program is solved again.
+    ``levels``, nodes on cycles stand above what they are made of; with ``elimination``, they are eliminated
+    one after the other, as Rankooh and Rintanen have it. Else cycles are cut off when an optimum has one, and
+    the program is solved again.
     """
     began = time.monotonic()
     program = _Program(instance, threads)
     if levels:
         program.add_levels()
+    if elimination:
+        program.add_clauses(ordered(instance) or ())
     program.load()
     while True:
         used = program.solve(began + seconds - time.monotonic())
@@ -82,6 +89,15 @@ class _Program:
                 self._row(0.0, [*charge, action], [*([1.0] * len(charge)), -1.0])
             if node in instance.goals:
                 self._row(1.0, charge, [1.0] * len(charge))
+
+    def add_clauses(self, clauses: Iterable[Sequence[int]]) -> None:
+        """Add clauses; what is above the actions is a variable of 0 or 1."""
+        for clause in clauses:
+            for literal in clause:
+                while abs(literal) > len(self._costs):
+                    self._column(1.0)
+            signs = [1.0 if literal > 0 else -1.0 for literal in clause]
+            self._row(1.0 - signs.count(-1.0), [abs(literal) - 1 for literal in clause], signs)
 
     def load(self) -> None:
         """Hand everything to HiGHS."""
