@@ -15,7 +15,7 @@ from foon_asp.problem import ContainerRule
 from tests.browser import CHROMIUM, Browser, browser
 from tests.conftest import CORPUS
 from tests.random_problems import random_problem
-from tests.test_view import strange
+from tests.test_view import one_egg, strange
 
 pytestmark = [
     pytest.mark.slow,
@@ -482,3 +482,22 @@ def test_names_of_strangers_are_shown_as_text(chromium: Browser, tmp_path: Path,
     assert chromium.complaints == []
     assert chromium.run("document.querySelectorAll('b, img').length") == 0
     assert texts(chromium, "h1 span") == [name.replace("\u202e", "\ufffd")]
+
+
+def test_a_plan_stands_beside_the_tree_where_nothing_is_used_up(chromium: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "egg.html"
+    foon_asp.view(one_egg(1), beside=["searches", "proof"]).write(file)
+    chromium.size(1440, 900)
+    chromium.open(file)
+    assert texts(chromium, "[role=tab]") == ["Tree", "Side by side", "The proof"]
+    chromium.run("document.querySelectorAll('[role=tab]')[1].click()")
+    assert texts(chromium, ".pane h2") == ["the plan asked for", "where nothing is used up"]
+    assert any("only in the plan asked for: 1 unit" in text for text in texts(chromium, "aside h3"))
+    chromium.run("document.querySelectorAll('[role=tab]')[2].click()")
+    chromium.run(
+        "const r = document.querySelector('main:not([hidden]) input[type=range]'); r.value = r.max;"
+        "r.dispatchEvent(new Event('input'))"
+    )
+    said = chromium.run("document.querySelector('main:not([hidden]) aside').innerText")
+    assert "3 of 3 units: no plan costs less than that, and this one costs 4." in said
+    assert chromium.complaints == []

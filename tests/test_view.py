@@ -164,13 +164,53 @@ def test_weights_of_the_proof_add_up_to_the_cost(objective: str) -> None:
             assert set(cut["members"]) & set(proof["certificate"]["tree"])
 
 
-@pytest.mark.slow
-def test_plans_that_use_items_up_have_a_page_of_their_own() -> None:
-    problem = foon_asp.load().problem("ice", items="used-up")
-    shown = in_page(foon_asp.view(problem).html())
-    assert (shown["answer"]["items"], shown["searches"], shown["proof"]) == ("used-up", [], None)
-    with pytest.raises(UserError, match="view --beside searches is not built for items that are used up"):
-        foon_asp.view(problem, beside=["searches"])
+def test_a_page_needs_no_rates() -> None:
+    tea = foon_asp.build([("boil", "water; cold", "water; hot")], kitchen=["water; cold"], goals="water; hot")
+    shown = in_page(foon_asp.view(tea.problem(), beside=["searches", "front"]).html())
+    assert [each["search"] for each in shown["searches"]] == ["bfs", "dfs", "ids", "greedy-inputs"]
+    assert shown["front"]["objectives"] == ["units", "inputs"]
+
+
+def one_egg(stock: int, cooks: bool = True) -> foon_asp.Problem:
+    """Pose a plan that needs an egg twice, where a hen lays as many as are wanted, or none."""
+    units = [
+        ("fry", "egg", "omelet"),
+        ("boil", "egg", "egg; boiled"),
+        ("serve", ["omelet", "egg; boiled"], "meal"),
+    ]
+    units += [("lay", "hen", "egg")] if cooks else []
+    foon = foon_asp.build(units, kitchen=["egg", "hen"] if cooks else ["egg"], goals="meal")
+    return foon.problem(items="used-up", stock={foon_asp.parse_node("egg"): stock})
+
+
+def test_beside_a_plan_stands_the_tree_where_nothing_is_used_up() -> None:
+    problem = one_egg(1)
+    shown = in_page(foon_asp.view(problem, beside=["searches", "proof", "alternatives", "front"]).html())
+    assert (shown["answer"]["items"], shown["answer"]["costs"]["units"]) == ("used-up", 4)
+    assert (shown["lasting"]["items"], shown["lasting"]["costs"]["units"]) == ("lasting", 3)
+    assert shown["proof"]["cost"] == 3  # what holds for trees holds for plans
+    bfs = shown["searches"][0]
+    assert (bfs["items"], bfs["verdict"]) == ("used-up", "does not execute")
+    assert bfs["as_listed"]["missing"]["node"] == "egg"
+    assert shown["alternatives"] == foon_asp.alternatives(problem, best=5).json()
+    assert shown["front"]["points"] == foon_asp.pareto(problem, "units,inputs").json()["points"]
+    ruled = in_page(foon_asp.view(problem, constraints=":- times(U,2).").html())
+    assert (ruled["lasting"], ruled["proof"], ruled["without_rules"]["items"]) == (None, None, "used-up")
+    taking = in_page(foon_asp.view(problem, "kitchen", beside=["proof"]).html())
+    assert (taking["lasting"]["status"], taking["proof"]) == ("optimal", None)
+
+
+def test_where_there_is_no_plan_it_is_what_runs_out_or_what_is_missing() -> None:
+    short = in_page(foon_asp.view(one_egg(1, cooks=False)).html())
+    assert (short["answer"]["status"], short["lasting"]["costs"]["units"]) == ("infeasible", 3)
+    assert short["why_not"] is short["proof"] is None
+    nothing = foon_asp.build([("fry", "egg", "omelet")], kitchen=(), goals="omelet").problem(items="used-up")
+    shown = in_page(foon_asp.view(nothing).html())
+    assert (shown["lasting"]["status"], shown["why_not"]["roots"][0]["object"]["node"]) == (
+        "infeasible",
+        "egg",
+    )
+    assert shown["proof"]["cases"][0]["ends"] == "hopeless"
 
 
 @pytest.mark.parametrize("containers", ["strict", pytest.param("implied", marks=pytest.mark.slow)])

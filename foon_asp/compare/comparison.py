@@ -164,7 +164,7 @@ def judge(problem: Problem, search: Search, settings: SearchSettings) -> Judgeme
         stuck_at = None if retrieval.stuck_at is None else str(objects[retrieval.stuck_at])
         return Judgement(search.name, str(retrieval.ending), stuck_at=stuck_at)
     tree = problem.tree(retrieval.units)
-    simulation = _simulated(problem, retrieval.units, tree)
+    simulation = simulated(problem, retrieval.units, tree)
     obstacle = None
     if simulation.obstacle is not None:
         place, missing, cycle = simulation.obstacle
@@ -187,7 +187,7 @@ def judge(problem: Problem, search: Search, settings: SearchSettings) -> Judgeme
     )
 
 
-def _simulated(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
+def simulated(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
     """Simulate a tree; where items are used up, it has to run as a plan, in whatever order."""
     simulation = simulate_for(problem, tree)
     if problem.items is None or simulation.verdict is Verdict.NEVER:

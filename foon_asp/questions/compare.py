@@ -22,7 +22,7 @@ from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS, RULES
 from foon_asp.questions.posing import Command, each_goal
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.searching import SEARCHING, search_settings, searched
+from foon_asp.questions.searching import SEARCHING, known_searches, search_settings, searched
 from foon_asp.report.bar_chart import write_chart
 from foon_asp.report.comparison_chart import comparison_chart
 from foon_asp.report.comparison_table import (
@@ -287,7 +287,7 @@ def compare_searches(
     searches = tuple(searches)
     chosen = searched(searches)
     if problem.rates is None and not searches:
-        chosen = [each for each in chosen if each.name != "greedy-success"]
+        chosen = known_searches(rated=False)
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
     how = search_settings(ties, count, depth_limit, published, *limits(time_limit, memory_limit))
     at_least(jobs, 1, "jobs")

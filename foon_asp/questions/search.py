@@ -1,15 +1,16 @@
 """The tree that a search returns, one of the literature or of another package, and whether it executes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from foon_asp.compare.comparison import simulated
 from foon_asp.deadline import Cancel
 from foon_asp.document.json_document import costs_json, document, nodes_json, steps_json
 from foon_asp.problem import Costs, Problem
 from foon_asp.problem.progress import OnProgress
-from foon_asp.proof.simulation import Simulation, Verdict, simulate_for
+from foon_asp.proof.simulation import Simulation, Verdict
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import TABLES, Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.searching import SEARCHING, search_settings, searched
 from foon_asp.questions.tree import Tree
@@ -133,6 +134,7 @@ class Retrieved(Result):
         default=False,
     ),
     CONTAINERS,
+    *ITEMS,
     *LIMITS,
     help_="""
     \b
@@ -141,7 +143,8 @@ class Retrieved(Result):
 
     bfs, dfs, greedy-success and greedy-inputs choose one unit for each object and never look back; ids
     backtracks, and returns a tree of least depth that executes or says that none does. Other packages may
-    bring searches: docs/entry-points.md.
+    bring searches: docs/entry-points.md. They know nothing of items that are used up (--items used-up):
+    their tree then executes if it runs as a plan, in some order.
 
     Exits with 0 when the tree executes, as listed or in another order; 1 when it never does or there is
     none; 3 when stopped at a limit.
@@ -180,8 +183,8 @@ def retrieve(
     (wanted,) = searched([search])
     deadline = begin(time_limit, memory_limit)
     how = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
-    found = wanted.run(problem, how)
+    found = wanted.run(replace(problem, items=None), how)
     simulation = None
     if found.ending is Searched.TREE:
-        simulation = simulate_for(problem, problem.tree(found.units))
+        simulation = simulated(problem, found.units, problem.tree(found.units))
     return Retrieved(problem, wanted, found, simulation)

@@ -43,6 +43,11 @@ def searched(names: Iterable[str]) -> list[Search]:
     return [known[name] for name in names]
 
 
+def known_searches(rated: bool) -> list[Search]:
+    """Give all searches, without the one that has to know rates where none are known."""
+    return [search for search in searched(()) if rated or search.name != "greedy-success"]
+
+
 def search_settings(
     ties: str,
     count: str,

@@ -7,24 +7,25 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.asp import Settings
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import counted
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Objective, Problem, levels
 from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.arguments import Constants, Objectives, asked_with, chosen_objectives, settings, whole
 from foon_asp.questions.certify import Certified, certified
-from foon_asp.questions.contract import Option, Part, not_built, question, question_of
+from foon_asp.questions.contract import Option, Part, question, question_of
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
 from foon_asp.questions.pareto import Front, pareto
 from foon_asp.questions.posing import Command, one_problem, the_data
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved, retrieve
-from foon_asp.questions.searching import searched
+from foon_asp.questions.searching import known_searches
 from foon_asp.questions.shopping_list import Shopping, shopping_list
 from foon_asp.questions.why_not import Explanation, why_not
 from foon_asp.report.page import Page, network_json, view_json
@@ -51,8 +52,9 @@ class View(Result):
 
     Beside it the page shows what is not empty here: the trees of ``searches``, the certificate that is
     ``certified``, the answer ``without_rules``, ``alternatives``, the ``front``; where there is no tree,
-    ``why_not`` and the ``shopping`` that would help; and the whole ``network`` of a problem. A page about a
-    network alone has no ``answer``.
+    ``why_not`` and the ``shopping`` that would help; and the whole ``network`` of a problem. Beside a plan it
+    shows the answer where items are ``lasting``, which no plan is better than, and the certificate is about
+    that one. A page about a network alone has no ``answer``.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -63,6 +65,7 @@ class View(Result):
     answer: Answer | None
     searches: tuple[Retrieved, ...] = ()
     certified: Certified | None = None
+    lasting: Answer | None = None
     without_rules: Answer | None = None
     alternatives: Alternatives | None = None
     front: Front | None = None
@@ -89,6 +92,7 @@ class View(Result):
         if self.certified is not None and self.certified.certificate is not None:
             proof = proof_json(self.certified.answer.problem, self.certified.certificate.content)
         others: dict[str, Result | None] = {
+            "lasting": self.lasting,
             "without_rules": self.without_rules,
             "alternatives": self.alternatives,
             "front": self.front,
@@ -106,7 +110,7 @@ class View(Result):
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
         bought = None if self.shopping is None else self.shopping.outcome
-        for answer in (self.answer, self.without_rules, bought):
+        for answer in (self.answer, self.lasting, self.without_rules, bought):
             if answer is not None:
                 yield answer.problem, answer.units or ()
         for found in self.searches:
@@ -182,7 +186,7 @@ def _posed(
     *ITEMS,
     Option(
         "beside",
-        f"What to show beside the tree: {', '.join(Beside)}; by default the first two, where items last.",
+        f"What to show beside the tree: {', '.join(Beside)}; by default the first two.",
         many=True,
         choices=tuple(map(str, Beside)),
     ),
@@ -250,10 +254,6 @@ def view(
         raise UserError(f"found beside={name!r}, expected one of {', '.join(Beside)}")
     chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    if problem.items is not None:
-        for name in sorted(wanted):
-            raise not_built(f"view --beside {name}")
-        return View(answered(asked_with(problem, how), chosen, how))
     wanted = wanted or {Beside.SEARCHES, Beside.PROOF}
     rules = {"constraints": constraints, "constants": constants, "encodings": encodings}
     *_, grown = pages(problem, chosen, how, wanted, rules)
@@ -269,41 +269,59 @@ def pages(
 ) -> Iterator[View]:
     """Give a page about a tree as it grows: first with its answer, then with one thing more beside it each.
 
-    ``rules`` are those of the settings, as questions take them. Where items are used up, the answer is all
-    there is.
+    ``rules`` are those of the settings, as questions take them. A plan, in which items are used up, costs no
+    less than the best tree, in which they are not; so the proof is about that tree. But not by ``kitchen``,
+    and not under rules, which may count how often units are executed.
     """
     deadline = how.begun
     how = how._replace(deadline=deadline)
-    lasting = problem.items is None
-    proof = certified(problem, chosen, how) if Beside.PROOF in wanted and lasting else None
+    ruled = bool(how.constraints) or how.encodings is not None
+    plans, endless = problem.items is not None, replace(problem, items=None)
+    proof = certified(problem, chosen, how) if Beside.PROOF in wanted and not plans else None
     answer = answered(asked_with(problem, how), chosen, how) if proof is None else proof.answer
     page = View(answer, certified=proof, network=whole(problem) if Beside.NETWORK in wanted else None)
     yield page
-    if not lasting:
-        return
 
     def left() -> dict[str, Any]:
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
-    if how.constraints or how.encodings is not None:
+    if plans and not ruled:
+        below = Objective.KITCHEN not in chosen  # what a plan makes itself, it need not take
+        proof = certified(endless, chosen, how) if Beside.PROOF in wanted and below else None
+        lasting = answered(endless, chosen, how) if proof is None else proof.answer
+        if below:
+            Postconditions(endless, levels(tuple(chosen)), how).no_better(answer, lasting, "where items last")
+        if lasting and not answer:
+            proof = None  # of a tree, and there is no plan to hold against it
+        page = replace(page, certified=proof, lasting=lasting)
+        yield page
+    if ruled:
         page = replace(page, without_rules=answered(problem, chosen, settings(**left())))
         yield page
     if answer.ending is Ending.NEGATIVE:
-        explained = why_not(problem, **rules, **left())
-        helped = None if explained.tree_exists else shopping_list(problem, chosen, **rules, **left())
+        explained = why_not(endless, **rules, **left())
+        if plans and explained.tree_exists:
+            return  # it is what runs out
+        helped = None if explained.tree_exists else shopping_list(endless, chosen, **rules, **left())
         yield replace(page, why_not=explained, shopping=helped)
         return
     if Beside.SEARCHES in wanted:
-        page = replace(page, searches=tuple(retrieve(problem, each.name, **left()) for each in searched(())))
+        known = known_searches(problem.rates is not None)
+        page = replace(page, searches=tuple(retrieve(problem, each.name, **left()) for each in known))
         yield page
     if Beside.ALTERNATIVES in wanted:
         page = replace(page, alternatives=alternatives(problem, chosen, best=_BEST, **rules, **left()))
         yield page
     if Beside.FRONT in wanted:
-        several = chosen if len(chosen) > 1 else _against(chosen)
+        several = chosen if len(chosen) > 1 else _against(chosen, problem.rates is not None)
         yield replace(page, front=pareto(problem, several, **rules, **left()))
 
 
-def _against(chosen: Sequence[Objective]) -> tuple[Objective, ...]:
-    """Give two objectives of a front, where one was asked for: against it the number of units, or success."""
-    return (*chosen, Objective.SUCCESS if Objective.UNITS in chosen else Objective.UNITS)
+def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
+    """Give two objectives of a front, where one was asked for.
+
+    Against it the number of units; against that success, or inputs where no rates are known.
+    """
+    if Objective.UNITS not in chosen:
+        return (*chosen, Objective.UNITS)
+    return (*chosen, Objective.SUCCESS if rated else Objective.INPUTS)

@@ -20,8 +20,22 @@ from foon_asp.text.json_value import Json, json_line
 
 WEB = Path(__file__).resolve().parent / "web"
 
-_SCRIPTS = ("element", "layout", "tree", "page", "obstacle", "answers", "proof", "network", "start")
-_OTHERS = ("without_rules", "alternatives", "front", "proof", "why_not", "shopping_list", "network")
+_SCRIPTS = (
+    "element",
+    "movable",
+    "layout",
+    "tree",
+    "page",
+    "obstacle",
+    "answers",
+    "proof",
+    "network",
+    "start",
+)
+_OTHERS = (
+    *("lasting", "without_rules", "alternatives", "front"),
+    *("proof", "why_not", "shopping_list", "network"),
+)
 
 
 class Page(NamedTuple):

@@ -91,12 +91,12 @@ class Graph {
   }
 }
 
-class NetworkPanel {
+class NetworkPanel extends Movable {
   constructor(panel) {
+    super(0.02, 6);
     this.graph = new Graph(data.network);
     const { graph } = this;
     this.canvas = el("canvas", { class: "canvas", tabindex: "0", role: "img", "aria-label": `${counted(graph.units.length, "unit")} and ${counted(graph.objects.length, "object node")}` });
-    this.view = { x: 0, y: 0, k: 1 };
     this.chosen = null;
     this.depth = 1;
     this.mode = graph.named ? "recipes" : "kinds";
@@ -125,7 +125,7 @@ class NetworkPanel {
     const shared = graph.shared.filter(Boolean).length;
     this.side.append(el("section", {}, this.search, this.results), this.details, this.key,
       el("p", { class: "said" }, `${counted(graph.units.length, "unit")}, ${counted(graph.objects.length, "object node")}, of which ${shared} are shared by several ${graph.named ? "recipes" : "parts"} (with a dark rim in that colouring), ${graph.kitchen.size} are in the kitchen, and ${graph.reachable.size} are there or can be made.`));
-    movable(this.canvas, this);
+    this.listen(this.canvas);
     this.dark = window.matchMedia("(prefers-color-scheme: dark)");
     this.dark.addEventListener("change", () => this.paint());
     new ResizeObserver(() => this.sized()).observe(this.canvas);
@@ -158,20 +158,8 @@ class NetworkPanel {
     this.paint();
   }
 
-  zoom(factor, x = this.room.width / 2, y = this.room.height / 2) {
-    const k = Math.min(6, Math.max(0.02, this.view.k * factor));
-    this.view = { k, x: x - ((x - this.view.x) * k) / this.view.k, y: y - ((y - this.view.y) * k) / this.view.k };
-    this.soon();
-  }
-
-  shift(dx, dy) {
-    this.view.x += dx;
-    this.view.y += dy;
-    this.soon();
-  }
-
   // Moving shows the picture that is there, elsewhere or larger; it is painted anew once that rests.
-  soon() {
+  moved() {
     this.asked ??= requestAnimationFrame(() => { this.asked = null; this.reuse(); });
     clearTimeout(this.rest);
     this.rest = setTimeout(() => this.paint(), 140);

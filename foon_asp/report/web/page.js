@@ -22,6 +22,8 @@ const brief = (node, inputs = []) => {
   const rest = details(node, inputs);
   return [el("span", { class: "label" }, node.label), rest ? el("span", { class: "said" }, ` ${rest}`) : null];
 };
+// Whether items are used up, and so plans are asked for in place of trees.
+const plans = () => data.answer?.items === "used-up";
 const titleOf = (goals) => goals.map((goal) => goal.node).join(" + ");
 
 function costsText(costs) {
@@ -37,8 +39,8 @@ function claimOf(answer) {
   return {
     optimal: ["Proved best", ` by ${by}: ${costsText(answer.costs)}`],
     feasible: ["Not proved best", ` by ${by} (stopped at ${answer.stopped}): ${costsText(answer.costs)}`],
-    infeasible: ["No tree exists", ""],
-    unknown: ["No tree found", ` (stopped at ${answer.stopped})`],
+    infeasible: [`No ${answer.items === "used-up" ? "plan" : "tree"} exists`, ""],
+    unknown: [`No ${answer.items === "used-up" ? "plan" : "tree"} found`, ` (stopped at ${answer.stopped})`],
   }[answer.status];
 }
 

@@ -28,7 +28,7 @@ class ProofPanel {
     if (this.picture) stage.append(bar);
     else this.words.append(bar);
     bar.hidden = proof.cases.length === 1 && proof.cases[0].cuts.length < 2;
-    this.intro = el("section", {}, el("h2", {}, this.hasTree ? "Why nothing is cheaper" : "Why there is no tree"), ...this.explained());
+    this.intro = el("section", {}, el("h2", {}, !this.hasTree ? "Why there is no tree" : plans() ? "What no plan goes below" : "Why nothing is cheaper"), ...this.explained());
     this.sum = el("div", { class: "sum", role: "img" });
     this.total = el("p", { "aria-live": "polite" });
     this.cut = el("section", { "aria-live": "polite" });
@@ -42,7 +42,8 @@ class ProofPanel {
       return [el("p", {}, "A set of objects holds the goal and nothing that the kitchen has, and no unit makes one of them without needing another one of them first. So nobody can begin.")];
     return [
       el("p", {}, "A cut is a set of objects with the goal in it and nothing that the kitchen has. Whoever wants the goal has to get into it from outside: with a unit that makes one of its objects and needs none. So every tree, not only this one, has one of these units."),
-      el("p", {}, `Every cut has a weight, and no unit is charged more than it costs${this.logs ? " (here −log of its success rate, so that a product becomes a sum)" : ""}. So every tree costs at least the sum of all weights, and this tree costs no more than that.`),
+      el("p", {}, `Every cut has a weight, and no unit is charged more than it costs${this.logs ? " (here −log of its success rate, so that a product becomes a sum)" : ""}. So every tree costs at least the sum of all weights${plans() ? "." : ", and this tree costs no more than that."}`),
+      plans() ? el("p", {}, "Here items are used up. A plan is a tree, too, for whoever forgets that things run out: so what holds for trees holds for plans.") : null,
     ];
   }
 
@@ -54,6 +55,20 @@ class ProofPanel {
     this.case = this.proof.cases[place];
     this.slider.max = Math.max(1, this.case.cuts.length);
     this.go(1);
+  }
+
+  // What the plan costs by the first objective, which may be more than a tree does; for a tree, what it costs.
+  planned(cost) {
+    const ours = plans() ? data.answer.costs?.[this.by] : null;
+    const value = ours?.approx ?? ours;
+    return value === null || value === undefined ? cost : Math.max(cost, this.logs ? -Math.log(value) : value);
+  }
+
+  conclusion(cost, whole) {
+    if (!plans()) return ": no tree costs less than this one. That is the proof.";
+    if (whole <= cost * (1 + 1e-9)) return ": no plan costs less than this one. That is the proof.";
+    const rest = data.answer.status === "optimal" ? "That there is none between is proved, too, but not by cuts." : "Whether there is one between is not known.";
+    return `: no plan costs less than that, and this one costs ${this.worth(whole)}. ${rest}`;
   }
 
   label(id) {
@@ -77,6 +92,7 @@ class ProofPanel {
     const shown = cuts.slice(0, this.at);
     const sum = shown.reduce((total, cut) => total + (cut.weight ?? 0), paid);
     const cost = this.proof.cost;
+    const whole = this.planned(cost);
     this.sum.replaceChildren();
     if (cost) {
       const part = (share, look) => {
@@ -86,10 +102,10 @@ class ProofPanel {
       };
       if (paid) this.sum.append(part(paid, ""));
       for (const cut of shown) this.sum.append(part(cut.weight, ""));
-      this.sum.append(part(Math.max(0, cost - sum), "open"));
+      this.sum.append(part(Math.max(0, whole - sum), "open"));
       const done = sum >= cost * (1 - 1e-9);
       this.total.replaceChildren(el("strong", {}, `${this.worth(sum)} of ${this.worth(cost)}`), ` ${this.by}`,
-        done ? (this.case.given.length ? ": in this case, no tree costs less." : ": no tree costs less than this one. That is the proof.") : "");
+        done ? (this.case.given.length ? ": in this case, no tree costs less." : this.conclusion(cost, whole)) : "");
       this.sum.setAttribute("aria-label", `${this.worth(sum)} of ${this.worth(cost)}`);
     } else this.sum.hidden = true;
     const cut = cuts[this.at - 1];

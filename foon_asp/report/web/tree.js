@@ -137,8 +137,9 @@ function pill(id, node, step, goal) {
 }
 
 // A picture of a plan that can be moved, zoomed, and walked through. ``picked`` is told what was clicked.
-class Picture {
+class Picture extends Movable {
   constructor(holder, plan, { label, picked, leftovers = true, marks = null }) {
+    super(0.08, 4);
     this.plan = plan;
     this.picked = picked;
     this.marks = marks;
@@ -146,9 +147,8 @@ class Picture {
     this.content = drawn("g");
     this.svg = drawn("svg", { class: "picture", role: "img", "aria-label": label, tabindex: "0" }, this.content);
     holder.append(this.svg);
-    this.view = { x: 0, y: 0, k: 1 };
     this.draw();
-    movable(this.svg, this);
+    this.listen(this.svg);
     new ResizeObserver(() => this.sized()).observe(this.svg);
   }
 
@@ -280,26 +280,9 @@ class Picture {
     const end = [...this.boxes.values()].reduce((last, box) => (box.y > last.y ? box : last));
     this.view = {
       k,
-      x: wide ? width / 2 - end.x * k : (width - this.size.width * k) / 2,
+      x: wide ? Math.min(12, Math.max(width - this.size.width * k - 12, width / 2 - end.x * k)) : (width - this.size.width * k) / 2,
       y: small ? height - this.size.height * k - 12 : (height - this.size.height * k) / 2,
     };
-    this.moved();
-  }
-
-  zoom(factor, x, y) {
-    const { width, height } = this.svg.getBoundingClientRect();
-    x ??= width / 2;
-    y ??= height / 2;
-    const k = Math.min(4, Math.max(0.08, this.view.k * factor));
-    this.view.x = x - ((x - this.view.x) * k) / this.view.k;
-    this.view.y = y - ((y - this.view.y) * k) / this.view.k;
-    this.view.k = k;
-    this.moved();
-  }
-
-  shift(dx, dy) {
-    this.view.x += dx;
-    this.view.y += dy;
     this.moved();
   }
 
@@ -354,51 +337,4 @@ function curve(points) {
     path += `C${x1},${y1 + bow} ${x2},${y2 - bow} ${x2},${y2}`;
   }
   return path;
-}
-
-// Lets pointers, the wheel and keys move and zoom what has shift, zoom, fit and click.
-function movable(surface, what) {
-  const pointers = new Map();
-  let moved = 0;
-  const spot = (event) => {
-    const { left, top } = surface.getBoundingClientRect();
-    return [event.clientX - left, event.clientY - top];
-  };
-  surface.addEventListener("pointerdown", (event) => {
-    if (event.button) return;
-    pointers.set(event.pointerId, spot(event));
-    moved = 0;
-  });
-  surface.addEventListener("pointermove", (event) => {
-    const before = pointers.get(event.pointerId);
-    if (!before) return;
-    const now = spot(event);
-    const others = [...pointers].filter(([id]) => id !== event.pointerId).map(([, point]) => point);
-    moved += Math.hypot(now[0] - before[0], now[1] - before[1]);
-    if (moved > 4) surface.setPointerCapture(event.pointerId);
-    if (others.length) {
-      const far = (point) => Math.hypot(point[0] - others[0][0], point[1] - others[0][1]);
-      if (far(before)) what.zoom(far(now) / far(before), others[0][0], others[0][1]);
-    } else what.shift(now[0] - before[0], now[1] - before[1]);
-    pointers.set(event.pointerId, now);
-  });
-  const end = (event) => {
-    if (pointers.delete(event.pointerId) && event.type === "pointerup" && moved <= 4) what.click(event.target, ...spot(event));
-  };
-  surface.addEventListener("pointerup", end);
-  surface.addEventListener("pointercancel", end);
-  surface.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    what.zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.03 : 0.0015)), ...spot(event));
-  }, { passive: false });
-  surface.addEventListener("keydown", (event) => {
-    const moves = { ArrowUp: [0, 60], ArrowDown: [0, -60], ArrowLeft: [60, 0], ArrowRight: [-60, 0] };
-    if (event.shiftKey && moves[event.key]) what.shift(...moves[event.key]);
-    else if (event.key === "+" || event.key === "=") what.zoom(1.25);
-    else if (event.key === "-") what.zoom(0.8);
-    else if (event.key === "0") what.fit(true);
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
-  });
 }
