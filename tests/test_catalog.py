@@ -58,7 +58,7 @@ network: counted functional_unit level network node_pattern object_node source s
 problem: containers costs items number objective order problem progress relevance restriction
 proof: simulation
 questions: answer arguments caller contract docstring in_hand index options posing result solve
-reduce: derivation dominance exact_costs forced graph narrow near reduction reductions
+reduce: derivation dominance exact_costs extension forced graph narrow near reduction reductions
     upper_bound wide
 report: answer
 rules: constraint
