@@ -1012,3 +1012,42 @@ def test_limits_and_what_stands_for_a_thing_that_is_used_once() -> None:
     assert refusal(problem, **NO_TREE, rules=two, cuts=cuts, proof=steps) == (
         "the weights do not add up to enough"
     )
+
+
+def test_what_a_limit_does_not_speak_of_carries_what_it_costs() -> None:
+    """One may be baked at most: what is baked may carry more, and what is poured no more than it costs."""
+    rules = [{"rule": "at_most_motion", "limited_motion": "bake", "max_uses": 1}]
+    no_pouring = sorted([*rules, *forbid(["pour"])], key=verify.canonical)
+    limits = {"limits": [[0, ["1/2"]]]}
+    proof = {"weights": [[0, ["1"]]], **limits}
+    values: Content = {"claim": "bound", "rules": rules, "cuts": [[END_ID]]}
+    assert accepted(PLAIN, **values, bound=["1/2"], proof=proof).claim == "bound"
+    assert refusal(PLAIN, **values, bound=["1"], proof=proof) == "the weights do not add up to enough"
+    more = {"weights": [[0, ["3/2"]]], **limits}
+    assert refusal(PLAIN, **values, bound=["1/2"], proof=more) == "unit or item 0 carries more than it costs"
+    baked = {**values, "rules": no_pouring, "proof": {**more, "limits": [[1, ["1/2"]]]}}
+    assert accepted(PLAIN, **baked, bound=["1"]).claim == "bound"
+
+
+def test_a_rule_hears_of_the_units_of_a_branch_and_not_of_its_items() -> None:
+    rules = [{"rule": "before", "earlier_motion": "mix", "later_motion": "bake"}]
+    leaf: Content = {"weights": []}
+    for item in (START_ID, SALT_ID):
+        proof = {"branch": {"item": item}, "without": leaf, "using": leaf}
+        found = accepted(PLAIN, **BOUND | {"objective": ["kitchen"]}, rules=rules, proof=proof)
+        assert found.claim == "bound"
+
+
+def test_a_measure_that_no_objective_uses_is_not_taken_on_trust() -> None:
+    text = "cost(mine,U,1) :- unit(U)."
+    stated = {"rules": text, "sha256": hashlib.sha256(text.encode()).hexdigest(), "costs": {"0": [POUR]}}
+    assert accepted(PLAIN, **BOUND, measures={"mine": stated}).trusted == ()
+    used = accepted(PLAIN, **BOUND | {"objective": ["mine"]}, measures={"mine": stated}).trusted
+    assert [(each.name, each.costs) for each in used] == [("mine", {})]
+
+
+def test_a_claim_is_about_a_hundred_rules() -> None:
+    motions = [f"motion {number:03}" for number in range(101)]
+    assert len(accepted(PLAIN, **BOUND, rules=forbid(motions[1:])).rules) == 100
+    with pytest.raises(LimitError, match="it has more than 100 rules"):
+        accepted(PLAIN, **BOUND, rules=forbid(motions))

@@ -141,6 +141,8 @@ def test_what_never_runs_out_is_not_waited_for() -> None:
         stocked = UsedUp({}, {parse_node("lamp"): copies})
         problem = Problem(endless.network, endless.kitchen, endless.goals, None, frozenset(), items=stocked)
         assert [*waits(replay_for(problem, plan_of(problem)))] == [set(), expected]
+        twice = [*plan_of(problem), problem.network.unit(1)][: copies + 1]
+        assert [*waits(replay_for(problem, twice))] == [set(), expected, set()][: copies + 1]
 
 
 # --- What holds, found by what knows no solver.

@@ -275,6 +275,23 @@ def test_a_plan_may_repeat_units_and_is_read_back_with_its_repeats(cli: Cli, tmp
         assert "33 units" in ran.out
 
 
+def test_a_stock_is_that_of_kitchen_nodes_and_what_is_made_comes_to_it() -> None:
+    builder = foon_asp.NetworkBuilder()
+    bread, grain, toast = map(parse_node, ("bread", "grain", "toast"))
+    builder.add("toast", [bread], [toast], Source("by hand", 1))
+    builder.add("bake", [grain], [bread], Source("by hand", 2))
+    network = builder.build()
+    ids = {node: o for o, node in enumerate(network.objects)}
+    there = frozenset({ids[bread], ids[grain]})
+    problem = Problem(network, there, (ids[toast],), None, frozenset(), items=UsedUp({}, {bread: 5}))
+    toasted, baked = map(network.unit, (0, 1))
+    found = replay_for(problem, [toasted, baked, toasted, toasted])
+    assert (found.shortage, found.stock) == (None, {bread: 2})
+    nothing = replay_for(replace(problem, kitchen=there - {ids[bread]}), [toasted])
+    assert nothing.shortage is not None
+    assert (nothing.shortage.node, nothing.stock) == (bread, {})
+
+
 def test_a_replay_has_the_copies_that_are_left_and_those_that_were_taken() -> None:
     met: Counter[str] = Counter()
     for seed in range(200):

@@ -102,7 +102,8 @@ class Ruled:
     def _thing(self, units: Units) -> int:
         """Give what stands for a thing: its only unit, or a step that all of its units need."""
         if len(units) == 1:
-            return min(units)
+            (only,) = units
+            return only
         node = self._node()
         for unit in units:
             self.needs.setdefault(unit, []).append(node)
