@@ -276,6 +276,20 @@ def test_cuts_of_sets_that_are_asked_for_are_not_shown() -> None:
     assert asked(problem, ':- not use(U) : motion(U,"tidy").').cuts == ((1,),)
 
 
+def test_that_there_is_no_tree_is_looked_at_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = small("boil: start > end", "junk: start > x")
+    assert asked(problem, ":- unit(0).").status is Status.INFEASIBLE  # which no look at the network tells
+    monkeypatch.setattr(prepared_module, "reduce", lambda *_: Reduced(None, (), False, None, 0, None))
+    with pytest.raises(BugError, match="there is no tree, but the goals can be made"):
+        solve(problem)
+
+
+def test_where_nothing_makes_the_goals_clingo_is_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr("foon_asp.encoding.search.run")
+    problem = replace(small("boil: start > end"), kitchen=frozenset())
+    assert solve(problem).status is Status.INFEASIBLE
+
+
 # --- Near the goals: a rule that asks for a unit which leads to no goal.
 
 ROW = small(
