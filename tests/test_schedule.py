@@ -19,7 +19,7 @@ from foon_asp import Duration, FunctionalUnit, Problem, Source, TimedStep, Tool,
 from foon_asp.deadline import Deadline
 from foon_asp.planning import scheduling
 from foon_asp.planning.schedule_task import ScheduleTask, Use, schedule_task
-from foon_asp.planning.scheduling import shortest, timed_steps
+from foon_asp.planning.scheduling import _length, shortest, timed_steps
 from foon_asp.problem import ContainerRule, UsedUp
 from foon_asp.proof.replay import replay_for, waits
 from foon_asp.proof.timetable import Asked, Means, timetable_fault, tools_asked
@@ -387,7 +387,7 @@ def test_schedules_of_random_plans_hold(seeds: range) -> None:
 
 @needs_solver
 def test_at_a_limit_the_best_is_given_with_its_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    task = random_task(7)
+    task = random_task(4)
 
     def answers(*_: object) -> Iterator[tuple[str, object]]:
         yield "found", [3 * number for number in range(len(task.lengths))]
@@ -404,7 +404,7 @@ def test_at_a_limit_the_best_is_given_with_its_bound(monkeypatch: pytest.MonkeyP
 
 
 @needs_solver
-def test_before_anything_is_found_one_step_is_done_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_there_is_always_a_schedule_or_a_proof_that_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> Iterator[tuple[str, object]]:
         raise KeyboardInterrupt
 
@@ -415,14 +415,37 @@ def test_before_anything_is_found_one_step_is_done_after_the_other(monkeypatch: 
         task = random_task(seed)
         found = shortest(task, Deadline())
         kinds.add((found.starts is None, found.proved))
+        least = least_time(task)
+        if found.starts is None:
+            assert least is None
+            enough = task.counts | found.lacking
+            assert least_time(task._replace(counts=enough)) is not None
+            for name in found.lacking:
+                assert least_time(task._replace(counts={**enough, name: enough[name] - 1})) is None
+        else:
+            assert least is not None
+            assert found.bound <= least <= _length(task, found.starts) <= sum(task.lengths)
+            assert least == _length(task, found.starts) or not found.proved
+    assert kinds == {(True, True), (False, False), (False, True)}
+
+
+@needs_solver
+def test_without_an_order_one_step_is_done_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(scheduling, "tool_order", interrupted)
+    kinds = set()
+    for seed in range(60):
+        task = random_task(seed)
+        found = shortest(task, Deadline())
+        kinds.add(found.starts is None)
+        assert not found.proved
         if found.starts is None:
             assert least_time(task._replace(counts=task.counts | found.lacking)) is not None
         else:
-            least = least_time(task)
-            assert least is not None
-            assert found.bound <= least <= sum(task.lengths)
-            assert max(step.end for step in timed_steps(task, found.starts)) * 3 >= least
-    assert kinds == {(True, False), (False, False), (False, True)}
+            assert found.bound <= (least_time(task) or 0) <= _length(task, found.starts)
+    assert kinds == {True, False}
 
 
 # --- As it is asked for.

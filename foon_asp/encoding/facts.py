@@ -468,6 +468,21 @@ def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
     return "\n".join(facts) + "\n"
 
 
+def write_tool_order(
+    tools: Sequence[int],
+    uses: Iterable[tuple[int, Iterable[int]]],
+    after: Iterable[Iterable[int]],
+    may_lack: bool,
+) -> str:
+    """Describe which steps use tools of which kind, how many there are, and what steps wait for."""
+    facts = [f"_tools({kind},{_check(count)}).\n" for kind, count in enumerate(tools)]
+    facts += [f"_may_lack({kind}).\n" for kind in range(len(tools)) if may_lack]
+    for use, (kind, steps) in enumerate(uses):
+        facts += [f"_tool_use({use},{kind}).\n", *(f"_in_use({use},{step}).\n" for step in steps)]
+    facts += [f"_waits({step},{each}).\n" for step, earlier in enumerate(after) for each in sorted(earlier)]
+    return "".join(facts)
+
+
 def quote(text: str) -> str:
     """Give a clingo string; raises :class:`UserError` for a name that clingo would cut short or not take."""
     if not text.isascii() or "\0" in text:

@@ -4,7 +4,7 @@ It answers with what it finds on the way, and with how it ended.
 """
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Sequence
 from io import FileIO
 from typing import Any
 
@@ -24,24 +24,28 @@ def serve() -> None:
         send(answers, ("missing", str(error)))
         return
     while True:
-        task: ScheduleTask = asked.get()
-        found = _Model(cp_model, task).shortest(answers)
-        lacking = _Model(cp_model, task).lacking() if found == "infeasible" else {}
-        send(answers, ("end", (found, lacking)))
+        task, known = asked.get()
+        send(answers, ("end", _Model(cp_model, task, known).shortest(answers)))
 
 
 class _Model:
-    """The variables of a task: when each step starts, and how long each tool is in use."""
+    """The variables of a task: when each step starts, and how long each tool is in use.
 
-    def __init__(self, cp_model: Any, task: ScheduleTask) -> None:
+    ``known`` is a schedule, by the starts of steps.
+    """
+
+    def __init__(self, cp_model: Any, task: ScheduleTask, known: Sequence[int]) -> None:
         self._library, self._task = cp_model, task
         self._model = model = cp_model.CpModel()
-        self._end = end = sum(task.lengths)  # of a schedule that does one step after the other
+        ends = (start + length for start, length in zip(known, task.lengths, strict=True))
+        self._end = end = max(ends, default=0)
         self._starts = [model.new_int_var(0, end - length, "") for length in task.lengths]
         self._steps = [
             model.new_fixed_size_interval_var(start, length, "")
             for start, length in zip(self._starts, task.lengths, strict=True)
         ]
+        for start, value in zip(self._starts, known, strict=True):
+            model.add_hint(start, value)
         for step, after in enumerate(task.after):
             for earlier in after:
                 model.add(self._over(earlier) <= self._starts[step])
@@ -49,9 +53,9 @@ class _Model:
         model.add_cumulative(by_hand, [1] * len(by_hand), task.agents)
 
     def shortest(self, answers: FileIO) -> str:
-        """Look for a shortest schedule; say whether one is ``proved``, or ``infeasible``, or how it ended."""
+        """Look for a shortest schedule; say whether one is ``proved``, or how it ended."""
         model, library = self._model, self._library
-        self._hold(self._task.counts)
+        self._hold()
         makespan = model.new_int_var(self._task.bound, self._end, "")
         for step in range(len(self._starts)):
             model.add(self._over(step) <= makespan)
@@ -69,21 +73,9 @@ class _Model:
         solver = self._solver()
         solver.best_bound_callback = lambda bound: say("bound", bound)
         status = solver.solve(model, Listener())
-        if status == library.OPTIMAL:
-            return "proved"
-        return "infeasible" if status == library.INFEASIBLE else str(solver.status_name(status))
+        return "proved" if status == library.OPTIMAL else str(solver.status_name(status))
 
-    def lacking(self) -> dict[ToolName, int]:
-        """Give how many there have to be of some tools, so that there is a schedule: the fewest more."""
-        counts, model = self._task.counts, self._model
-        more = {name: model.new_int_var(0, len(self._task.uses), "") for name in counts}
-        self._hold({name: counts[name] + each for name, each in more.items()})
-        model.minimize(sum(more.values()))
-        solver = self._solver()
-        solver.solve(model)
-        return {name: counts[name] + n for name, each in more.items() if (n := solver.value(each))}
-
-    def _hold(self, counts: Mapping[ToolName, Any]) -> None:
+    def _hold(self) -> None:
         """Let no more tools be in use than there are, and each at one step at a time."""
         model = self._model
         in_use: dict[ToolName, list[Any]] = {}
@@ -99,7 +91,7 @@ class _Model:
             length = model.new_int_var(0, self._end, "")
             in_use.setdefault(name, []).append(model.new_interval_var(begin, length, end, ""))
         for name, intervals in in_use.items():
-            model.add_cumulative(intervals, [1] * len(intervals), counts[name])
+            model.add_cumulative(intervals, [1] * len(intervals), self._task.counts[name])
 
     def _over(self, step: int) -> Any:
         return self._starts[step] + self._task.lengths[step]

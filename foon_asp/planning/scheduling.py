@@ -14,6 +14,7 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.pipe import receive, send
 from foon_asp.planning.schedule_task import ScheduleTask, Use
+from foon_asp.planning.tool_order import first_schedule, tool_order
 from foon_asp.proof.timetable import TimedStep, Tool, ToolName
 from foon_asp.python_process import PythonProcess
 
@@ -25,7 +26,7 @@ class Found(NamedTuple):
     """What was found: ``starts`` in ticks, ``None`` without a schedule, and a ``bound`` that none is below.
 
     ``proved`` says that there is nothing shorter; without a schedule, that there is none. ``lacking`` says
-    then how many tools there have to be at least, and where nothing is proved, how many are enough.
+    then how many tools are enough: the fewest more, unless a limit came before that was known.
     """
 
     starts: tuple[int, ...] | None
@@ -41,12 +42,20 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
     """
     if find_spec("ortools") is None:
         raise UserError(_MISSING)
-    best, lacking = _one_by_one(task)
-    bound, ended = task.bound, ""
+    try:
+        order = tool_order(task, deadline)
+    except KeyboardInterrupt:  # at a limit, too
+        deadline.interrupt()
+        starts, lacking = _one_by_one(task)
+        return Found(starts, task.bound, False, lacking)
+    if order.steps is None:
+        return Found(None, task.bound, True, order.lacking or _one_by_one(task)[1])
     deadline.doing = "scheduling"
+    best = first_schedule(task, order.steps)
+    bound, ended = task.bound, ""
     process = _idle.pop() if _idle and _idle[-1].alive else _CpSat()
     try:
-        for kind, value in process.ask(task, deadline):
+        for kind, value in process.ask(task, best, deadline):
             if kind == "missing":
                 raise UserError(f"{_MISSING} ({value})")
             if kind == "found":
@@ -54,7 +63,7 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
             elif kind == "bound":
                 bound = max(bound, ceil(value - _EXACT))
             else:
-                ended, lacking = value
+                ended = value
                 _idle.append(process)
                 break
     except LimitError:
@@ -65,12 +74,11 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> Found:
     finally:
         if process not in _idle:
             process.end()
-    if ended not in {"proved", "infeasible", "limit"}:
+    if ended not in {"proved", "limit"}:
         raise BugError(f"CP-SAT ends with {ended or 'its process'}")
-    if ended == "proved" and best is not None:
+    if ended == "proved":
         bound = _length(task, best)
-    proved = ended != "limit" or (best is not None and _length(task, best) == bound)
-    return Found(best, bound, proved, lacking)
+    return Found(best, bound, _length(task, best) == bound, {})
 
 
 def _one_by_one(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
@@ -164,12 +172,12 @@ class _CpSat(PythonProcess):
         self._answers: queue.SimpleQueue[tuple[str, Any] | None] = queue.SimpleQueue()
         self.beside(_hear, self._in, self._answers)
 
-    def ask(self, task: ScheduleTask, deadline: Deadline) -> Iterator[tuple[str, Any]]:
-        """Hand it a task, and give what it answers; raises :class:`LimitError` at a limit."""
+    def ask(self, task: ScheduleTask, known: Sequence[int], deadline: Deadline) -> Iterator[tuple[str, Any]]:
+        """Hand it a task with a schedule, and give what it answers; raises :class:`LimitError` at a limit."""
         deadline.count(self._process.pid)
         try:
             with contextlib.suppress(OSError):  # that it died is seen when the answer is waited for
-                send(self._out, task)
+                send(self._out, (task, known))
             while True:
                 with contextlib.suppress(queue.Empty):
                     answer = self._answers.get(timeout=max(0.001, deadline.slice()))
