@@ -12,13 +12,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
+import foon_asp
 from foon_asp.asp import solve
+from foon_asp.batch import cluster
 from foon_asp.batch.answer_row import answer_row
-from foon_asp.batch.asked import Asked
+from foon_asp.batch.asked import Asked, Opener
+from foon_asp.batch.cluster import answer_on_cluster
 from foon_asp.batch.question_file import read_questions
 from foon_asp.batch.results import open_results
 from foon_asp.batch.workers import Work, answer_all
@@ -398,6 +401,53 @@ def test_a_cluster_gives_the_same_rows(cli: Cli, questions: Path, tmp_path: Path
         for name in ("a.jsonl", "b.jsonl")
     )
     assert ours == theirs
+
+
+@pytest.mark.slow
+def test_nothing_is_lost_when_a_worker_dies_in_the_middle_of_a_task(
+    tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    none = ("kitchen", "rates", "utensils", "goals", "unit_prices")
+    named = {"folder": bundled_kitchen(), "network": (), **dict.fromkeys(none), "lenient": False, "level": 3}
+    opening = Opening(tuple(named.items()), "d")
+    goals = [str(node) for node in foon_asp.load().network.objects]
+    asked = [Asked((goal,)) for goal in goals]
+    monkeypatch.setattr("foon_asp.batch.cluster._MOST", 40)
+    with distributed.Client(scheduler) as client:
+        client.wait_for_workers(2, timeout=60)
+        killed = 0
+        found = []
+        for one, row in answer_on_cluster(opening, asked, scheduler):
+            found.append(one)
+            assert row["error"] is None
+            if len(found) in {100, 200}:
+                (pid, *_) = client.run(os.getpid).values()
+                os.kill(pid, signal.SIGKILL)
+                killed += 1
+    assert killed == 2
+    assert sorted(found) == sorted(asked)
+
+
+def test_a_task_ends_in_time_and_leaves_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    one, two, three, *more = [Asked((str(number),)) for number in range(40)]
+    chunks = cluster._Chunks([one, two, three, *more])
+    tasks = iter(chunks)
+    assert next(tasks) == (one,)
+    chunks.took((one,), 1, 0.001)
+    assert next(tasks) == (two, three, *more[:2])
+    monkeypatch.setattr(cluster, "_open", lambda opener: None)
+    monkeypatch.setattr(cluster, "answer_row", lambda *given: {"goal": given[1].goals[0]})
+    opener = cast(Opener, None)
+    rows, seconds = cluster._answer_some(opener, (two, three), None, None)
+    assert [row["goal"] for row in rows] == ["1", "2"]
+    monkeypatch.setattr(cluster, "_SECONDS", 0.0)
+    rows, seconds = cluster._answer_some(opener, (two, three), None, None)
+    assert [row["goal"] for row in rows] == ["1"]
+    chunks.took((two, three), 1, seconds)
+    chunks.again.append((three,))
+    assert [next(tasks), next(tasks), next(tasks)] == [(three,), (three,), (more[2],)]
+    assert {asked for chunk in tasks for asked in chunk} == set(more[3:])
 
 
 @pytest.mark.slow

@@ -1,9 +1,11 @@
 """Questions shared among the workers of a Dask cluster."""
 
 import functools
-from collections.abc import Iterable, Iterator
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import Row, answer_row, failed_row
@@ -14,7 +16,9 @@ if TYPE_CHECKING:
     from distributed import Client
 
 _PATIENCE = "10s"  # until there has to be an answer from the scheduler
-_AHEAD = 4  # questions on their way for each thread of the cluster, so that none waits for the next
+_AHEAD = 2  # tasks on their way for each thread of the cluster, so that none waits for the next
+_SECONDS = 0.5  # after which a task begins with no further question; the others go into another task
+_MOST = 256  # questions of a task
 
 
 def answer_on_cluster(
@@ -27,7 +31,8 @@ def answer_on_cluster(
     """Answer questions on the workers of a scheduler, as ``how`` says, and give rows as they come.
 
     A worker opens the data once, and keeps them until others are asked for. The files have to be there under
-    the same names as here. A question whose worker dies again and again is a row that says so. Raises
+    the same names as here. A task has as many questions as take half a second; where its worker dies, another
+    one answers them. A question whose worker dies again and again is a row that says so. Raises
     :class:`UserError` where there is no scheduler, or Dask is not installed.
     """
     try:
@@ -39,26 +44,53 @@ def answer_on_cluster(
     except (OSError, ValueError, TypeError) as error:  # TypeError: an address of TLS without certificates
         raise UserError(f"no scheduler at {address}: {error}") from None
     with client:
-        waiting = iter(questions)
-        asked_of: dict[str, Asked] = {}
-
-        def submit(asked: Asked) -> Any:
-            future = client.submit(_answer, opener, asked, memory_limit, how, pure=False)
-            asked_of[future.key] = asked
-            return future
-
+        chunks = _Chunks(questions)
+        asked_of: dict[str, Sequence[Asked]] = {}
         running = as_completed()
-        for asked in islice(waiting, _AHEAD * max(1, _threads(client))):
-            running.add(submit(asked))
+
+        def submit(most: int) -> None:
+            for chunk in islice(chunks, most):
+                future = client.submit(_answer_some, opener, chunk, memory_limit, how, pure=False)
+                asked_of[future.key] = chunk
+                running.add(future)
+
+        ahead = _AHEAD * max(1, _threads(client))
+        submit(ahead)
         for future in running:
-            asked = asked_of.pop(future.key)
+            chunk = asked_of.pop(future.key)
+            rows: list[Row] = []
             if future.status == "finished":
-                row = future.result()
-            else:
-                row = failed_row(asked, f"on the cluster: {future.exception()}")
-            for following in islice(waiting, 1):
-                running.add(submit(following))
-            yield asked, row
+                rows, seconds = future.result()
+                chunks.took(chunk, len(rows), seconds)
+            elif len(chunk) == 1:
+                rows = [failed_row(chunk[0], f"on the cluster: {future.exception()}")]
+            else:  # one of them is at fault, and only that one fails
+                chunks.again += ((asked,) for asked in chunk)
+            submit(ahead - len(asked_of))
+            yield from zip(chunk, rows, strict=False)
+
+
+class _Chunks:
+    """Questions for one task each: as many as take half a second, going by those answered before.
+
+    ``again`` are those that come first, since a task has left them.
+    """
+
+    def __init__(self, questions: Iterable[Asked]) -> None:
+        self.again: deque[Sequence[Asked]] = deque()
+        self._waiting = iter(questions)
+        self._size = 1
+
+    def __iter__(self) -> Iterator[Sequence[Asked]]:
+        while chunk := self.again.popleft() if self.again else tuple(islice(self._waiting, self._size)):
+            yield chunk
+
+    def took(self, chunk: Sequence[Asked], answered: int, seconds: float) -> None:
+        """Learn how long a task took for the first questions of its chunk; the others are asked again."""
+        if answered < len(chunk):
+            self.again.append(chunk[answered:])
+        fit = int(_SECONDS * answered / max(seconds, 1e-6))
+        self._size = max(1, min(fit, 4 * self._size, _MOST))
 
 
 def _threads(client: "Client") -> int:
@@ -66,8 +98,21 @@ def _threads(client: "Client") -> int:
     return sum(threads.values())
 
 
-def _answer(opener: Opener, asked: Asked, memory_limit: int | None, how: Settings | None) -> Row:
-    return answer_row(_open(opener), asked, memory_limit, how)
+def _answer_some(
+    opener: Opener, chunk: Sequence[Asked], memory_limit: int | None, how: Settings | None
+) -> tuple[list[Row], float]:
+    """Answer the first questions of a chunk, at least one, and give their rows and the seconds they took.
+
+    So no row waits longer than half a second for others, but for the one after it.
+    """
+    asker = _open(opener)
+    began = time.monotonic()
+    rows: list[Row] = []
+    for asked in chunk:
+        rows.append(answer_row(asker, asked, memory_limit, how))
+        if time.monotonic() - began >= _SECONDS:
+            break
+    return rows, time.monotonic() - began
 
 
 @functools.lru_cache(maxsize=1)
