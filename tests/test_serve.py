@@ -16,6 +16,8 @@ import pytest
 
 import foon_asp
 from foon_asp import Cancel, UserError
+from foon_asp.asp import Settings
+from foon_asp.rules.constraint import RuleText
 from foon_asp.serve.desk import Desk
 from foon_asp.serve.form import Form, read_form, read_without
 from tests.browser import CHROMIUM, browser
@@ -166,6 +168,47 @@ def test_errors_in_rules_have_their_places(desk: Desk) -> None:
     )
 
 
+def test_rules_and_stocks_of_the_command_line_hold_for_every_question(tmp_path: Path) -> None:
+    foon, mine = foon_asp.load(), tmp_path / "mine.lp"
+    mine.write_text('#const forbidden="x".\n:- use(U), motion(U,forbidden).\n', encoding="utf-8")
+    fixed = (mine, RuleText(":- use(U), #false."))
+    glass = foon_asp.parse_node("drinking glass; empty")
+    used_up = foon_asp.UsedUp(told={"muddler": False}, stock={glass: 0})
+    desk = Desk(foon, Form(), how=Settings(fixed, constants=('forbidden="crush"',)), used_up=used_up)
+    assert desk.start()["always"] == [
+        "mine.lp",
+        ":- use(U), #false.",
+        'forbidden="crush"',
+        "stock: drinking glass; empty 0",
+        "goes: muddler",
+    ]
+    (last, *_) = reversed(told(desk, "ask", {"goals": ["ice"], "rules": ":- use(1).", "beside": []}))
+    ours = foon_asp.solve(
+        foon.problem("ice"), constraints=[mine, ":- use(1)."], constants={"forbidden": '"crush"'}
+    )
+    assert last["text"] == ours.text().splitlines()[1]
+    assert "motion" not in last["text"]
+    assert ours.tree is not None
+    pound = next(foon.network.unit_id(unit) for unit in ours.tree if unit.motion == "pound")
+    (event,) = told(desk, "without", {"page": last["number"], "unit": pound})
+    assert event["text"] == "no tree"  # as rules forbid to crush, too
+    (error,) = told(desk, "ask", {"goals": ["ice"], "rules": ":- use(1).\n:- bar("})
+    assert [(each["line"], each["column"]) for each in error["places"]] == [(2, 8)]
+    plan = told(desk, "ask", {"goals": ["ice"], "items": "used-up", "beside": []})[-1]
+    assert plan["text"].startswith("infeasible")  # there is no glass
+    gone = {"goals": ["ice"], "items": "used-up", "without": ["drinking glass; empty"], "beside": []}
+    assert told(desk, "ask", gone)[-1]["text"].startswith("infeasible")
+
+
+def test_what_is_wrong_with_files_is_said_before_serving(cli: Cli, tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.lp"
+    wrong.write_text(":- use(1).\n:- bar(\n", encoding="utf-8")
+    ran = cli("view", "--goal", "ice", "--serve", "--constraint", wrong)
+    assert (ran.code, "wrong.lp:3:1: error" in ran.err or "wrong.lp:2:" in ran.err) == (2, True)
+    ran = cli("view", "--goal", "ice", "--serve", "--stock", wrong)
+    assert (ran.code, "add --items used-up" in ran.err) == (2, True)
+
+
 @pytest.mark.parametrize(
     "asked",
     [
@@ -301,6 +344,12 @@ def test_a_person_asks_again(address: str) -> None:
         head = f"{frame}.querySelector('.picture .unit .head')"
         page.run(f"{head}.dispatchEvent(new PointerEvent('pointerover', {{ bubbles: true }}))")
         until(f"{head}.parentElement.querySelector(':scope > title').textContent.includes('\\nWithout it: ')")
+        hint = f"{frame}.querySelector('.hint')"
+        assert page.run(f"{hint}.checkVisibility() && {hint}.textContent").startswith(
+            "1. twist\nWithout it: "
+        )
+        page.run(f"{frame}.querySelector('.picture').dispatchEvent(new PointerEvent('pointerleave'))")
+        assert not page.run(f"{hint}.checkVisibility()")
 
         page.run(
             "const field = document.querySelectorAll('input[type=search]')[1]; field.value = 'drinking';"

@@ -6,23 +6,18 @@ from typing import Any
 
 import click
 
+from foon_asp.asp.assembly import assemble
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
+from foon_asp.dataset.items import items_of
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import parse_objectives
+from foon_asp.questions.arguments import settings
 from foon_asp.questions.contract import Question
 
-_FILES = {
-    "output": "-o",
-    "format_": "--format",
-    "constraints": "--constraint",
-    "constants": "-c",
-    "encodings": "--encodings",
-    "stock": "--stock",
-    "stays": "--stays",
-}
+_OF_A_FILE = {"output": "-o", "format_": "--format"}
 
 
 def serving(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
@@ -33,11 +28,9 @@ def serving(command: Callable[..., ExitCode], question: Question) -> Callable[..
     def served(serve: bool, **given: Any) -> ExitCode:
         if not serve:
             return command(**given)
-        for name, flag in _FILES.items():
+        for name, flag in _OF_A_FILE.items():
             if given.pop(name, None):
-                raise UserError(
-                    f"found {flag} beside --serve: rules are written in the page, which is no file"
-                )
+                raise UserError(f"found {flag} beside --serve: what the page shows is written into no file")
         deadline: Deadline | None = given.pop("deadline", None)
         asked = {name: given.pop(name) for name in own & given.keys()}
         return _serve(asked, given, deadline or Deadline())
@@ -65,6 +58,11 @@ def _serve(asked: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> E
         items=asked["items"],
         beside=tuple(asked["beside"]) or ("searches", "proof"),
     )
-    desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory)
+    how = settings(asked["constraints"], asked["constants"], asked["encodings"])
+    assemble(how, functools.partial(click.echo, err=True))  # what is wrong with files is said at once
+    used_up = None
+    if asked["stock"] or asked["stays"]:
+        used_up = items_of(dataset, asked["items"], asked["stock"], asked["stays"])
+    desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory, how, used_up)
     serve(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

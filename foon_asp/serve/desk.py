@@ -3,18 +3,19 @@
 import threading
 from collections.abc import Callable
 from fractions import Fraction
+from pathlib import Path
 
 from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.deadline import Cancel, Deadline, StoppedError, stoppable
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
-from foon_asp.problem import Costs, Objective
+from foon_asp.problem import Costs, Objective, Problem, UsedUp
 from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.regret import Part, loss_text, regret_of
 from foon_asp.questions.view import Beside, View, pages
 from foon_asp.report.answer import bound_text, costs_text, headline
-from foon_asp.rules.constraint import RuleText
+from foon_asp.rules.constraint import Constraint, RuleText, find_constraint
 from foon_asp.serve.form import Form, Without
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import nodes_beginning, notation
@@ -24,7 +25,7 @@ _KEPT = 4  # pages
 _NAMES = 30  # completions
 
 Tell = Callable[[Json], object]
-Rules = tuple[RuleText, ...]
+Rules = tuple[Constraint, ...]
 
 
 class _Told(Reporter):
@@ -59,15 +60,27 @@ class _Told(Reporter):
 class Desk:
     """What is asked of data, under limits for each question, ``first`` the question that the page opens with.
 
+    Rules and encodings of ``how`` hold for all questions, and the stock of ``used_up`` where items are.
     What happens is told as it happens, in plain values: ``progress`` and ``warning`` with a text, ``page``
     with the number of a page, ``error`` with a text and, for rules, places in their text.
     """
 
     def __init__(
-        self, foon: Foon, first: Form, time_limit: float | None = None, memory_limit: int | None = None
+        self,
+        foon: Foon,
+        first: Form,
+        time_limit: float | None = None,
+        memory_limit: int | None = None,
+        how: Settings | None = None,
+        used_up: UsedUp | None = None,
     ) -> None:
         self._foon, self._first = foon, first
         self._limits = time_limit, memory_limit
+        how = how or Settings()
+        self._how = how._replace(constraints=tuple(map(find_constraint, how.constraints)))
+        before = sum(isinstance(each, RuleText) for each in set(self._how.constraints))
+        self._box = f"rule {before + 1}"  # what the rules of the page are called in messages
+        self._used_up = used_up or UsedUp()
         self._turn = threading.Lock()
         self._token = Cancel()
         self._pages: dict[int, tuple[View, Rules]] = {}
@@ -81,8 +94,19 @@ class Desk:
             "kitchen": sorted(notation(dataset.names.node(o)) for o in dataset.kitchen),
             "objectives": [*Objective, *dataset.measures],
             "beside": [*Beside],
+            "always": self._always(),
             "first": self._first._asdict(),
         }
+
+    def _always(self) -> list[str]:
+        """Say what holds for every question, files by their names alone."""
+        how, told, stock = self._how, self._used_up.told, self._used_up.stock
+        rules = (each.name if isinstance(each, Path) else str(each) for each in how.constraints)
+        encodings = [] if how.encodings is None else [f"encodings: {how.encodings.name}"]
+        counts = [f"stock: {node} {count}" for node, count in stock.items()]
+        return [*rules, *how.constants, *encodings, *counts] + [
+            f"{'stays' if stays else 'goes'}: {name}" for name, stays in told.items()
+        ]
 
     def names(self, start: str) -> list[str]:
         """Give object nodes whose names begin so, in the notation by which they are asked for."""
@@ -113,16 +137,27 @@ class Desk:
             if not form.objectives:
                 raise UserError("name an objective: what is best")
             with deadline.watched("reading", late=True):
-                foon = self._foon.vary(adding=form.adding, without=form.without)
-                problem = foon.problem(*form.goals, containers=form.containers, items=form.items)
+                problem = self._problem(form)
             chosen = chosen_objectives(problem, form.objectives)
-            rules = (RuleText(form.rules),) if form.rules.strip() else ()
-            how = Settings(rules, deadline=deadline)
-            for page in pages(problem, chosen, how, form.beside, {"constraints": rules}):
+            rules = (*self._how.constraints, *([RuleText(form.rules)] if form.rules.strip() else []))
+            how = self._how._replace(constraints=rules, deadline=deadline)
+            named = {"constraints": rules, "constants": how.constants, "encodings": how.encodings}
+            for page in pages(problem, chosen, how, form.beside, named):
                 assert page.answer is not None
                 tell({"kind": "page", "number": self._kept(page, rules), "text": headline(page.answer)})
 
         self._run(answer, token, tell)
+
+    def _problem(self, form: Form) -> Problem:
+        foon = self._foon.vary(adding=form.adding, without=form.without)
+        if form.items == "lasting":
+            return foon.problem(*form.goals, containers=form.containers)
+        there = set(foon.kitchen)  # what was taken from the kitchen is not in stock
+        stock = {node: count for node, count in self._used_up.stock.items() if node in there}
+        stays = dict(self._used_up.told)
+        return foon.problem(
+            *form.goals, containers=form.containers, items=form.items, stock=stock, stays=stays
+        )
 
     def without(self, asked: Without, token: Cancel, tell: Tell) -> None:
         """Tell what the optimum of an answer is without one part of it."""
@@ -141,7 +176,7 @@ class Desk:
                 part, found = Part.ITEM, next(of_item, None)
             if found is None:
                 raise UserError("the tree has nothing of that kind")
-            how = Settings(rules, deadline=deadline)
+            how = self._how._replace(constraints=rules, deadline=deadline)
             told.event({"kind": "without", "text": loss_text(best, regret_of(best, part, found, how))})
 
         self._run(answer, token, tell)
@@ -169,6 +204,7 @@ class Desk:
             places = [
                 {"line": each.source.line, "column": each.source.column, "text": each.message}
                 for each in error.diagnostics
+                if each.source.file == self._box
             ]
         except UserError as error:
             text = str(error)

@@ -127,8 +127,10 @@ async def _told(
     except UserError as error:
         return PlainTextResponse(str(error), 400)
 
+    token = desk.next()  # before anything is answered: who hears that it has begun may cancel it
+
     async def lines() -> AsyncIterator[str]:
-        loop, queue, token = asyncio.get_running_loop(), asyncio.Queue[Json | None](), desk.next()
+        loop, queue = asyncio.get_running_loop(), asyncio.Queue[Json | None]()
 
         def tell(event: Json | None) -> None:
             with contextlib.suppress(RuntimeError):  # the server has ended

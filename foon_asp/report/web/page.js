@@ -75,11 +75,12 @@ class TreePanel {
     this.bar = this.controls();
     this.picture = new Picture(this.stage, this.plan, { label, picked: (what) => this.pick(what) });
     this.picture.svg.addEventListener("pointerover", ({ target }) => {
-      clearTimeout(this.rest);
+      this.left();
       this.rest = setTimeout(() => this.hover(target), 250);
     });
-    this.picture.svg.addEventListener("pointerleave", () => clearTimeout(this.rest));
-    this.stage.append(this.bar);
+    this.picture.svg.addEventListener("pointerleave", () => this.left());
+    this.tip = el("p", { class: "hint", role: "status", hidden: true });
+    this.stage.append(this.tip, this.bar);
     this.go(steps.length, false);
   }
 
@@ -236,14 +237,30 @@ class TreePanel {
     const unit = box && this.picture.boxes.get(box.dataset.id).node.step;
     const item = row && this.fromKitchen().get(row.dataset.object);
     const holder = row ?? box;
-    if (!unit || (row && !item) || holder.dataset.asked) return;
-    holder.dataset.asked = "yes";
+    if (!unit || (row && !item)) return;
+    this.over = holder;
+    if (holder.dataset.said !== undefined) return this.hint(holder);
+    holder.dataset.said = "";
     const title = holder.querySelector(":scope > title");
     const name = title.textContent;
     askAbout(item ? { item: item.node } : { unit: unit.id }, (text) => {
       title.textContent = text ? `${name}\n${text}` : name;
-      if (!text) delete holder.dataset.asked;
+      holder.dataset.said = text ? title.textContent : "";
+      if (this.over === holder) this.hint(holder);
+      if (!text) delete holder.dataset.said;
     });
+  }
+
+  // Shows what was answered about what the pointer rests on, until it goes on.
+  hint({ dataset }) {
+    this.tip.textContent = dataset.said;
+    this.tip.hidden = !dataset.said;
+  }
+
+  left() {
+    clearTimeout(this.rest);
+    this.over = null;
+    this.tip.hidden = true;
   }
 }
 

@@ -3,9 +3,10 @@
 const { first } = data;
 const body = (value) => ({ method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(value) });
 
-// Hands each line of an answer to a function as it comes.
-async function told(where, question, tell) {
+// Hands each line of an answer to a function as it comes, after telling that it has begun.
+async function told(where, question, tell, begun = () => {}) {
   const response = await fetch(where, body(question));
+  begun();
   if (!response.ok) return tell({ kind: "error", text: await response.text(), places: [] });
   const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
   let rest = "";
@@ -111,6 +112,7 @@ let latest = 0;
 let shown = 0;
 let touched = false;  // whether somebody is at work on the page that is shown
 let turn = 0;
+let busy = false;  // whether something is being answered
 
 document.body.append(
   el("main", { class: "form" }, el("h1", {}, "What is asked"),
@@ -119,6 +121,7 @@ document.body.append(
     el("div", { class: "pair" }, group("Containers", containers), group("Items", items)),
     group("Kitchen", ...kitchenField.parts, kitchen),
     group("Rules", rules, wrong),
+    ...(data.always.length ? [group("In every question", el("ul", { class: "said" }, data.always.map((each) => el("li", {}, each))))] : []),
     group("Beside the tree", beside),
     el("div", { class: "acts" }, asks, stops), status, newer),
   frame);
@@ -129,8 +132,8 @@ async function ask() {
   marked([]);
   status.textContent = "asking …";
   status.className = "told";
-  stops.disabled = false;
   touched = false;
+  busy = true;
   let said = "";
   const on = ticked(kitchen);
   await told("ask", {
@@ -150,10 +153,11 @@ async function ask() {
       said = status.textContent;
       marked(event.places);
     } else status.textContent = event.text;
-  }).catch((error) => { said = `the server does not answer: ${error.message}`; });
+  }, () => { if (now === turn) stops.disabled = false; }).catch((error) => { said = `the server does not answer: ${error.message}`; });
   if (now !== turn) return;
   status.textContent = said;
   stops.disabled = true;
+  busy = false;
 }
 
 function open(page) {
@@ -169,7 +173,7 @@ frame.addEventListener("load", () => {
   const page = shown;
   for (const act of ["pointerdown", "keydown"]) frame.contentDocument?.addEventListener(act, () => { touched = true; });
   frame.contentDocument?.addEventListener("picked", ({ detail: { say, ...what } }) => {
-    if (!stops.disabled) return say("");  // it would end what is being answered
+    if (busy) return say("");  // it would end what is being answered
     say("Without it: …");
     const tell = ({ text }) => say(text === "cancelled" ? "" : `Without it: ${text}`);  // by the next one
     return told("without", { page, ...what }, tell).catch(() => say(""));
