@@ -182,6 +182,8 @@ class _Solver:
             self.heard.tree(tree)
             return self._optimal(tree) if reduced.settled else self._up_to(wide, tree, None)
         self.first = replace(self.first, reduced=reduced._replace(settled=False))
+        if not wide.spare and (found := self._within_limits(wide, tree)) is not None:
+            return found
         ended = None if wide.spare else self._with_loose_ends(wide, tree)
         is_best = ended is not None and self._scaled().rounded is None
         if ended is None:
@@ -195,6 +197,29 @@ class _Solver:
             return self._limited(ended.units, ())
         return self._up_to(wide, self._in_hand(ended.units), ended)
 
+    def _within_limits(self, wide: Wide, tree: Units) -> Outcome | None:
+        """Find the best tree by a price on what a rule limits; ``None`` where no price tells."""
+        from foon_asp.reduce.within_limit import limited  # noqa: PLC0415 (of use with few rules)
+
+        rules = self.first.asked.understood if self.first.asked else None
+        for counts, most in rules.counted(self.problem) if rules else ():
+            if sum(map(counts, tree)) <= most:
+                continue
+            try:
+                with self.deadline.watched("cutting the network", late=True):
+                    found = limited(wide, self.levels, tree, counts, most, lambda: self.deadline.passed)
+            except KeyboardInterrupt:
+                self.deadline.interrupt()
+                return self._outcome(Status.UNKNOWN, None, {})
+            if found is None:
+                continue
+            if found.tree is None:
+                return self._outcome(Status.INFEASIBLE, None, {})
+            if self.first.keeps(found.tree):
+                self.heard.tree(found.tree)
+                return self._up_to(found.wide, found.tree, None, found.allowed)
+        return None
+
     def _near(self, wide: Wide, tree: Units) -> "Run":
         """Look for the best tree that keeps to all rules near the goals, then ever farther from them."""
         known, most = wide.everything(), _NEAR
@@ -206,14 +231,16 @@ class _Solver:
             if ended.units is not None or not ended.exhausted or among >= known:
                 return ended
 
-    def _up_to(self, wide: Wide, tree: Units, ended: "Run | None") -> Outcome:
+    def _up_to(self, wide: Wide, tree: Units, ended: "Run | None", allowed: int | None = None) -> Outcome:
         """Look for what is better than a tree, among all units that trees up to its cost can have.
 
-        ``ended`` is the search that found the tree, if one did.
+        ``ended`` is the search that found the tree, if one did; ``allowed`` is the most that a better tree
+        costs, if that is another figure.
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
-                within = wide.within(wide.total(tree), lambda: self.deadline.passed)
+                limit = wide.total(tree) if allowed is None else allowed
+                within = wide.within(limit, lambda: self.deadline.passed)
         except KeyboardInterrupt:
             self.deadline.interrupt()
             return self._limited(tree, ())

@@ -1,7 +1,8 @@
 """What actions cost under a lexicographic list of objectives, as whole numbers."""
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
+from copy import copy
 from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from itertools import pairwise
@@ -47,6 +48,25 @@ class ExactCosts:
             self._factors[objective] = self._factors[after] * (1 + self._most(after, actions))
         self.doubt = sum(_ROUNDED * self._factors[objective] for objective in self._multiplied)
         self._known: dict[int, int] = {}
+        self._actions = actions
+        self._price: Callable[[int], int] | None = None
+        self._limit: int | None = None
+
+    def priced(self, counts: Callable[[int], bool], price: int, limit: int | None = None) -> "ExactCosts":
+        """Give the same costs with a price on each unit that counts.
+
+        With a ``limit``, they are met as soon as a bound reaches it, or a tree stays below it.
+        """
+        units, costs = self._units, copy(self)
+        costs._known, costs._limit = {}, limit
+        costs._price = lambda action: price if action < units and counts(action) else 0
+        return costs
+
+    @property
+    def beyond(self) -> int:
+        """More than any set of actions costs."""
+        first = self._objectives[0]
+        return self._factors[first] * (1 + self._most(first, self._actions))
 
     def _step(self, objective: Objective, actions: Collection[int]) -> int:
         """Give into how many steps 1 is divided, so that no cost of an action is between two."""
@@ -72,6 +92,7 @@ class ExactCosts:
         cost = self._known.get(action)
         if cost is None:
             cost = sum(self._figure(o, action) * factor for o, factor in self._factors.items())
+            cost += self._price(action) if self._price else 0
             self._known[action] = cost
         return cost
 
@@ -91,7 +112,9 @@ class ExactCosts:
         the costs.
         """
         total = sum(map(self, tree))
-        if not self.doubt:
+        if self._limit is not None:
+            return cuts.bound >= self._limit or total < self._limit
+        if not self.doubt or self._price:  # with a price, it is the bound that counts
             return cuts.bound >= total
         if cuts.bound + self.doubt < total:
             return False

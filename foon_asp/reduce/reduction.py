@@ -2,8 +2,8 @@
 
 import gc
 import sys
-from collections.abc import Callable, Collection, Sequence
-from contextlib import AbstractContextManager, nullcontext, suppress
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -27,6 +27,7 @@ _ABLE = 50  # units of a required set that count while trees are looked for
 _MANY = 2000  # actions among which better trees are looked for
 _EASY = 600  # actions that clingo chooses from faster than better trees are looked for here
 _ROUNDS = 24  # of cuts, trees and what they leave
+_FEW = 6  # of these, where other costs are tried
 
 
 class Reduced(NamedTuple):
@@ -89,9 +90,7 @@ def reduce(
     ``rest`` says that trees have to keep to more than is known here, which ``wide`` is needed for; ``spare``
     that those may have units that lead to no goal.
     """
-    collecting = gc.isenabled()
-    gc.disable()  # nothing here is circular, and a collection walks over the whole network
-    try:
+    with _uncollected():
         with guard():
             reducer = _Reducer(
                 problem,
@@ -103,6 +102,26 @@ def reduce(
                 rest,
             )
         return reducer.reduce(guard)
+
+
+def at_costs(
+    wide: Wide, objectives: Sequence[Objective], costs: ExactCosts, expired: Callable[[], bool]
+) -> Reduced:
+    """Ask the same for other costs; of what comes back, the tree, the bound and ``wide`` say something."""
+    with _uncollected():
+        reducer = _Reducer(wide.problem, tuple(objectives), ALL, expired, Listener(), rest=True)
+        reducer.costs = reducer.coarse = costs
+        reducer.rounds = _FEW
+        return reducer.reduce(nullcontext)
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Do without collecting: nothing here is circular, and a collection walks over the whole network."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
     finally:
         if collecting:
             gc.enable()
@@ -123,9 +142,10 @@ class _Reducer:
         self.problem, self.objectives, self.reductions = problem, objectives, reductions
         self.expired, self.listener, self.spare, self.rest = expired, listener, spare, rest
         self.extended = extended  # so costs of all actions are asked for later
+        self.rounds = _ROUNDS
         self.extending = False  # some trees were left out before there were cuts
         self.graph: Graph = graph_of(problem, objectives)
-        self.coarse = CoarseCosts(problem, objectives[0])
+        self.coarse: Callable[[int], int] = CoarseCosts(problem, objectives[0])
         self.thin = self.graph.thin(_ABLE, self.coarse)
         self.left: Collection[int]  # there before a tree is
         self.tree: set[int] = set()
@@ -232,14 +252,14 @@ class _Reducer:
 
     def _narrow(self, guide: dict[int, int]) -> bool:
         """Go around until nothing changes; whether the tree is proved optimal."""
-        costs: ExactCosts | None = None
         with suppress(TooFineError):
             all_costs = range(len(self.graph.needs)) if self.spare or self.extended else self.left
-            self.costs = costs = ExactCosts(self.problem, self.objectives, all_costs)
+            self.costs = self.costs or ExactCosts(self.problem, self.objectives, all_costs)
+        costs = self.costs
         if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
             self._follow_added(costs)
         thorough = False  # as a last resort
-        for _ in range(_ROUNDS):
+        for _ in range(self.rounds):
             before = len(self.left), self.tree
             if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
                 cuts = self._bound(costs, guide)

@@ -32,6 +32,10 @@ _LEFT = {
 }
 
 
+class Once(Strange):
+    """That a unit is executed once."""
+
+
 class Limit(NamedTuple):
     """That units, times their weights, add up to ``bound`` at most, or ``at_least``.
 
@@ -47,7 +51,7 @@ class Limit(NamedTuple):
 class Limiting(NamedTuple):
     """What a rule limits: ``rows`` are heads ``WEIGHT,UNIT`` and bodies for what one execution counts.
 
-    ``each`` says that the bound is for each unit by itself.
+    ``each`` says that the bound is for each unit by itself, ``single`` that each that counts adds 1.
     """
 
     rows: Sequence[tuple[str, tuple[Part, ...]]]
@@ -55,6 +59,17 @@ class Limiting(NamedTuple):
     at_least: bool = False
     used: bool = False
     each: bool = False
+    single: bool = False
+
+    def bodies(self) -> list[tuple[Part, ...]]:
+        """Give bodies one of which holds for each unit that counts, and takes it as one of the tree."""
+        found = []
+        for _, body in self.rows:
+            unit, *rest = body
+            assert isinstance(unit, Literal)
+            use = Literal(USE, unit.arguments, 0, f"use({unit.arguments[0]})")
+            found.append((use, *(part for part in rest if not isinstance(part, Once))))
+        return found
 
     def limits(self, rows: Iterable[tuple[int, int]]) -> list[Limit]:
         """Give the limits, from the weights and units that the rows hold for; none with a weight below 0."""
@@ -81,9 +96,10 @@ def limiting(analysis: Analysis, clause: Clause) -> Limiting | None:
     rows = [_row(analysis, first.function, each.terms, each.condition) for each in first.elements]
     found = [row for row in rows if row is not None]
     kinds = {row[2] for row in found}
+    single = all(row[3] for row in found)
     if left is None or len(found) < len(rows) or len(kinds) != 1:
         return None
-    return Limiting([row[:2] for row in found], left[1], left[0], kinds.pop())
+    return Limiting([row[:2] for row in found], left[1], left[0], kinds.pop(), single=single)
 
 
 def _each(analysis: Analysis, body: Sequence[Part]) -> Limiting | None:
@@ -113,8 +129,11 @@ def _left(comparison: int, term: AST, constants: Constants) -> tuple[bool, int] 
 
 def _row(
     analysis: Analysis, function: AggregateFunction, terms: Sequence[AST], condition: Sequence[Part]
-) -> tuple[str, tuple[Part, ...], bool] | None:
-    """Give an element for one execution, if more of them count as many times as much; and if use counts."""
+) -> tuple[str, tuple[Part, ...], bool, bool] | None:
+    """Give an element for one execution, if more of them count as many times as much.
+
+    And whether use counts, and whether one execution counts 1.
+    """
     deciding = [part for part in condition if isinstance(part, Literal) and part.signature in {TIMES, USE}]
     length = {AggregateFunction.Sum: 2, AggregateFunction.Count: 1}.get(function)
     if len(deciding) != 1 or deciding[0].negations or len(terms) != length:
@@ -133,5 +152,6 @@ def _row(
     if words & {str(each) for each in count} or analysis.dependence.of_parts(rest) is not Depends.NOT:
         return None
     here: list[Part] = [Literal(("unit", 1), (unit,), 0, f"unit({unit})")]
-    here += [Strange(f"{each}=1") for each in count]
-    return f"{1 if weight is None else weight},{unit}", (*here, *rest), not count
+    here += [Once(f"{each}=1") for each in count]
+    single = weight is None or str(weight) in {"1", *map(str, count)}
+    return f"{1 if weight is None else weight},{unit}", (*here, *rest), not count, single

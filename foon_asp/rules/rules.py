@@ -1,10 +1,10 @@
 """The rules of the user and of the library that hold for one question, understood as far as possible."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from enum import StrEnum
-from functools import cached_property
+from functools import cache, cached_property
 from typing import NamedTuple
 
 from clingo.ast import AST, ASTType
@@ -242,6 +242,19 @@ class Rules:
             if found is not None
             for limit in each.limits(counts[number])
         ]
+
+    def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], bool], int]]:
+        """Give which units rules count, as far as that needs no clingo, and how many a tree has at most."""
+        for number, each in self._limiting.items():
+            if each.single and not (each.each or each.at_least) and self.rules[number].local:
+                clause = self._live[number][0]
+                try:
+                    bodies = [clause._replace(body=body) for body in each.bodies()]
+                    ways = [way for body in bodies for way in self._bodies.ways(body)]
+                except NotFlatError:
+                    continue
+                answers = FlatAnswers(problem, self._bodies.tables, self._bodies.size, {})
+                yield cache(answers.removed(ways)), each.bound
 
     def applied(
         self, problem: Problem, deadline: Deadline | None = None
