@@ -22,7 +22,7 @@ from foon_asp.problem import Problem
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, question_of
 from foon_asp.questions.index import module_name, question_name
-from foon_asp.questions.posing import DATA, no_data, one_problem
+from foon_asp.questions.posing import DATA, no_data, one_problem, one_problem_or_nearby
 from foon_asp.questions.result import Result
 
 
@@ -70,7 +70,7 @@ def _posed(question: Question, command: "_Command", given: Mapping[str, Any]) ->
     """Pose a question: once, or for each of several goals that were assumed. What is assumed is said."""
     asked = parameters(question, given, Part.PROBLEM)
     unnamed = question.pose is not no_data and asked.get("goals_named") == ()
-    each_alone = unnamed and question.pose is one_problem
+    each_alone = unnamed and question.pose in {one_problem, one_problem_or_nearby}
     goals = command.dataset.assumed_goals() if each_alone else []
     if len(goals) < 2:
         posed = [question.pose(command, **asked)]

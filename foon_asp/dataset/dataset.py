@@ -6,6 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
 from foon_asp.errors import UserError
@@ -35,6 +36,9 @@ from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning, kitc
 from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, notation
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
+
+if TYPE_CHECKING:  # of stores only
+    from foon_asp.dataset.nearby import Nearby
 
 
 def ask(
@@ -311,6 +315,11 @@ class Dataset:
         up, if they are.
         """
         return ask(self.data, goals, containers, self, items)
+
+    def nearby(self, goals: Sequence[int], containers: str) -> "Nearby | None":
+        """Ask for goals that can need many units, of which some need not be read; here all are."""
+        del goals, containers
+        return None
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from foon_asp.dataset.dataset import Dataset, ask, left_out
 from foon_asp.dataset.names import changed_prices, changed_rates
+from foon_asp.dataset.nearby import FIRST, Nearby
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -28,6 +29,7 @@ from foon_asp.problem import (
     unrated_remarks,
     unrated_text,
 )
+from foon_asp.store.cone import Cone
 from foon_asp.store.store import Store
 from foon_asp.text.data_folder import (
     STARTING,
@@ -267,16 +269,47 @@ class StoredDataset(Dataset):
         """Ask for goals; what no tree for them needs is not read, unless everything is asked for."""
         if everything:
             return ask(self.data, goals, containers, self, items)
+        cone = self._cone(goals, containers, items)
+        return self._posed(cone, containers, items)
+
+    def nearby(self, goals: Sequence[int], containers: str, first: int = FIRST) -> Nearby | None:
+        """Ask for goals that can need many units, of which at ``first`` so many are read.
+
+        ``None`` where they need no more than these, or what is at hand is not known yet.
+        """
+        if not self.has_kitchen:
+            return None
+        cone = self._cone(goals, containers, None, first)
+        if not cone.open:
+            return None
+        return Nearby(
+            cone,
+            lambda cone: self._posed(cone, containers, None),
+            lambda: self.problem(goals, containers),
+        )
+
+    def _cone(
+        self, goals: Sequence[int], containers: str, items: UsedUp | None, most: int | None = None
+    ) -> Cone:
+        """Find the units that goals can need, or about ``most`` of them."""
         began = time.perf_counter()
         # of what may run out, more may have to be made
         counted = {self._store.object_id(node) for node in (items.stock if items else ())}
-        cone = self._store.cone(
+        cone = self._store.cone_of(
             goals,
             container_rule(containers),
             self.utensils,
             (lambda o: o not in counted and self._at_hand(o)) if counted else self._at_hand,
+            most,
         )
-        problem = ask(self._part(cone), _places(cone, goals), containers, self, items)
+        self.read_seconds += time.perf_counter() - began
+        return cone
+
+    def _posed(self, cone: Cone, containers: str, items: UsedUp | None) -> Problem:
+        """Pose a question over what was found of a cone."""
+        began = time.perf_counter()
+        part = self._store.part_of(cone)
+        problem = ask(self._part(part), _places(part, cone.goals), containers, self, items)
         self.read_seconds += time.perf_counter() - began
         return problem
 

@@ -6,14 +6,16 @@ from typing import TYPE_CHECKING
 from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
+from foon_asp.asp.postconditions import Postconditions
 from foon_asp.problem import Objective, Problem, levels
-from foon_asp.questions.arguments import asked_with
+from foon_asp.questions.arguments import asked_with, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
 from foon_asp.text.json_value import Json, json_text
 
 if TYPE_CHECKING:  # what a command that prints an answer can do without
+    from foon_asp.dataset.nearby import Nearby
     from foon_asp.questions.tree import Tree
     from foon_asp.report.drawing import Drawing
     from foon_asp.report.page import Page
@@ -156,6 +158,44 @@ def answered_under(
             if here.costs.key(order) <= tuple(least):
                 return _noted(here)
     return answered(asked_with(problem, how), objectives, how, reporter)
+
+
+def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settings) -> Answer:
+    """Solve a question to a large store, of which no more is read than it takes to prove the answer.
+
+    What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
+    is a tree of the whole network, and none there costs less; else more is read of what leads to what it
+    takes. In the end everything is read.
+    """
+    reporter = caller().reporter
+    heard, alone = _OnlyWarnings(reporter), how._replace(session=None)
+    while True:
+        found = find(near.relaxed, objectives, alone, heard)
+        if found.status is Status.INFEASIBLE:  # and why is a question about all that could lead to the goals
+            with reading():
+                problem = near.whole()
+            return answered(problem, objectives, how)
+        lacking = [] if found.units is None else near.lacking(found.units)
+        if lacking and found.status is Status.OPTIMAL:
+            with reading():
+                near.grow(lacking)
+            continue
+        found = found._replace(problem=near.problem)
+        if lacking:  # at a limit
+            found = found._replace(status=Status.UNKNOWN, units=None, costs=None)
+        elif found.units is not None:
+            Postconditions(near.problem, levels(tuple(objectives)), how).tree(found.units)
+            assert found.costs is not None
+            reporter.tree(found.costs)
+        return _noted(found)
+
+
+class _OnlyWarnings(Reporter):
+    """Passes on what is true of the whole network when a part of it is asked about."""
+
+    def __init__(self, reporter: Reporter) -> None:
+        self.warning = reporter.warning  # type: ignore[method-assign]
+        self.bound = reporter.bound  # type: ignore[method-assign]
 
 
 def _noted(outcome: Outcome) -> Answer:

@@ -13,6 +13,7 @@ from foon_asp.problem import Problem
 from foon_asp.questions.result import Result
 
 if TYPE_CHECKING:
+    from foon_asp.dataset.nearby import Nearby
     from foon_asp.foon import Foon
 
 
@@ -61,6 +62,24 @@ def one_problem(
     with command.reading():
         how = items_of(dataset, items, stock, stays)
         return (dataset.problem(dataset.goals(goals_named), containers, items=how),)
+
+
+def one_problem_or_nearby(
+    command: Command,
+    goals_named: Sequence[str],
+    containers: str,
+    items: str = "lasting",
+    stock: File | None = None,
+    stays: File | None = None,
+) -> "tuple[Problem | Nearby]":
+    """Pose one problem; of a large store only as far as it is near the goals, where that may be enough."""
+    dataset = command.dataset
+    if items == "lasting" and (goals_named or not dataset.goals_from):
+        with command.reading():
+            near = dataset.nearby(dataset.goals(goals_named), containers)
+        if near is not None:
+            return (near,)
+    return one_problem(command, goals_named, containers, items, stock, stays)
 
 
 def the_data(command: Command) -> "tuple[Foon]":

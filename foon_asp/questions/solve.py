@@ -7,30 +7,33 @@ from foon_asp.asp import Reporter
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
-from foon_asp.problem import Problem
+from foon_asp.problem import Objective, Problem
 from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.answer import Answer, answered_under
+from foon_asp.questions.answer import Answer, answered_nearby, answered_under
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
     chosen_objectives,
     constraint_weights,
+    reading,
     settings,
     whole,
 )
 from foon_asp.questions.contract import TABLES, Kind, Option, not_built, question
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES, SOFT
+from foon_asp.questions.posing import one_problem_or_nearby
 from foon_asp.questions.result import Result
-from foon_asp.reduce import Reduction, parse_reductions
+from foon_asp.reduce import ALL, Reduction, parse_reductions
 
 if TYPE_CHECKING:
+    from foon_asp.dataset.nearby import Nearby
     from foon_asp.engines import Engine
     from foon_asp.questions.certify import Certified
     from foon_asp.questions.solve_soft import SoftAnswer
 
 
 def solve_and_more(
-    problem: Problem,
+    problem: "Problem | Nearby",
     objectives: Objectives = "units",
     *,
     constraints: Files = (),
@@ -48,10 +51,22 @@ def solve_and_more(
 
     What only some answers need is imported for these.
     """
-    chosen = chosen_objectives(problem, objectives)
     how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
+    if not isinstance(problem, Problem):
+        chosen = chosen_objectives(problem.problem, objectives)
+        plain = (
+            how.replaced is None
+            and how.reductions == ALL
+            and not (constraints or constants or clingo_options)
+        )
+        units_alone = all(each in Objective and not each.row.item for each in chosen)
+        if plain and units_alone and not (soft or certificate_file or cross_check):
+            return answered_nearby(problem, chosen, how)
+        with reading():
+            problem = problem.whole()
+    chosen = chosen_objectives(problem, objectives)
     if problem.items is not None:
         for given, what in (
             (soft, "--soft"),
@@ -120,6 +135,7 @@ def solve_and_more(
         positional=True,
     ),
     formats=(*TABLES, "foon", "steps"),
+    pose=one_problem_or_nearby,
     command=solve_and_more,
     help_="""
     \b

@@ -12,6 +12,7 @@ from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, S
 from foon_asp.network.network import UnitKey
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
 from foon_asp.store.block import Table
+from foon_asp.store.cone import Cone
 from foon_asp.store.label_index import LabelIndex
 from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
 from foon_asp.store.store_file import StoreFile
@@ -188,21 +189,29 @@ class Store:
         network, without a unit to spare, is one of this part. Producers are units with a node among their
         outputs, whether or not the rule has them make it: the part may be larger than need be.
         """
-        at_hand = in_kitchen or self.in_kitchen
-        goals = list(goals)
-        wanted = {o for o in goals if not at_hand(o)}
-        waiting = list(wanted)
-        units: set[int] = set()
-        while waiting:
-            for unit in self._producers(waiting.pop()):
-                if unit in units:
-                    continue
-                units.add(unit)
-                for o in self._needs(unit, containers, utensils):
-                    if o not in wanted and not at_hand(o):
-                        wanted.add(o)
-                        waiting.append(o)
-        return self.part(units, goals)
+        return self.part_of(self.cone_of(goals, containers, utensils, in_kitchen))
+
+    def cone_of(
+        self,
+        goals: Iterable[int],
+        containers: ContainerRule,
+        utensils: frozenset[str],
+        in_kitchen: Callable[[int], bool] | None = None,
+        most: int | None = None,
+    ) -> Cone:
+        """Find the units that goals can need, as for :meth:`cone`, or about ``most`` of them."""
+        cone = Cone(
+            goals,
+            self._producers,
+            lambda unit: self._needs(unit, containers, utensils),
+            in_kitchen or self.in_kitchen,
+        )
+        cone.grow(sorted(cone.open), most)
+        return cone
+
+    def part_of(self, cone: Cone) -> Network:
+        """Read what was found of a cone."""
+        return self.part(cone.units, cone.goals)
 
     def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
         """Read some units, the nodes in them, and further nodes, as a part of the whole network."""

@@ -1,0 +1,164 @@
+"""Large stores: no more is read than an answer takes, and it is the answer that the whole network has."""
+
+import json
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.outcome import Outcome
+from foon_asp.dataset.nearby import Nearby
+from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
+from foon_asp.deadline import Deadline
+from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.questions import answer
+from foon_asp.questions.answer import answered_nearby
+from foon_asp.store.import_files import import_files
+from foon_asp.text.data_folder import DataFiles
+from tests.conftest import Cli
+from tests.random_problems import SERIES, random_problem
+from tests.test_store import import_problem
+
+LISTS = (
+    (Objective.UNITS,),
+    (Objective.SUCCESS,),
+    (Objective.INPUTS, Objective.SUCCESS),
+    (Objective.ATTEMPTS,),
+)
+
+
+def stored(problem: Problem, folder: Path) -> StoredDataset:
+    """Import a problem, and give the data that its store has, with the rates and utensils of the problem."""
+    dataset = read_stored(DataFiles((import_problem(problem, folder),)), 3)
+    assert isinstance(dataset, StoredDataset)
+    dataset.rates, dataset.utensils = problem.rates, problem.utensils
+    return dataset
+
+
+def asked(near: Nearby | None) -> Nearby:
+    assert near is not None
+    return near
+
+
+# Two ways to a stew, of 3 and of 12 units; the last unit of either makes it of what takes the others.
+SHORT = [("boil", "water", "boiled"), ("plate", "boiled", "plated"), ("serve", "plated", "stew")]
+LONG = [
+    (f"cook {n}", f"stock {n}" if n else "bones", f"stock {n + 1}" if n < 11 else "stew") for n in range(12)
+]
+
+
+def two_ways(folder: Path) -> StoredDataset:
+    """Make a store of them, with water and bones at hand."""
+    units = "".join(f"O\t{need}\nM\t{motion}\nO\t{give}\n//\n" for motion, need, give in (*SHORT, *LONG))
+    file, kitchen = folder / "stew.txt", folder / "kitchen.txt"
+    file.write_text(units, encoding="utf-8")
+    kitchen.write_text("O\twater\nO\tbones\n", encoding="utf-8")
+    import_files(DataFiles((file,), kitchen), folder / "stew.foon")
+    dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
+    assert isinstance(dataset, StoredDataset)
+    return dataset
+
+
+def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    assert len(near.problem.network) == 2  # both ways, one unit each
+    free = solve(near.relaxed)
+    assert free.units is not None
+    assert len(free.units) == 1
+    assert near.lacking(free.units) != []
+    assert solve(near.problem).status is Status.INFEASIBLE
+    found = answered_nearby(near, [Objective.UNITS], Settings())
+    assert found.status is Status.OPTIMAL
+    assert found.tree is not None
+    assert [unit.motion for unit in found.tree.units] == ["boil", "plate", "serve"]
+    assert found.problem.kitchen < near.relaxed.kitchen, "the other way was read to its end"
+    assert not any(map(found.problem.at_hand, found.problem.goal_nodes))
+
+
+def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*asked: object) -> Outcome:
+        found = solve(*asked)  # type: ignore[arg-type]
+        return found._replace(status=Status.FEASIBLE, proof=None, stopped="the time limit of 1 s")
+
+    monkeypatch.setattr(answer, "find", stopped)
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    found = answered_nearby(near, [Objective.UNITS], Settings(deadline=Deadline(1)))
+    assert (found.status, found.units, found.costs) == (Status.UNKNOWN, None, None)
+    assert found.bounds[Objective.UNITS] == 1
+
+
+@SERIES
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_random_problems(rule: ContainerRule, part: int, tmp_path: Path) -> None:
+    compared = read_again = impossible = 0
+    for seed in range(60 // part):
+        problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
+        dataset = stored(problem, tmp_path)
+        for goals in {
+            problem.goals,
+            *((o,) for o in random.Random(seed).sample(range(len(problem.network.objects)), 3)),
+        }:
+            for objectives in LISTS:
+                near = dataset.nearby(goals, rule.value, first=1)
+                if near is None:
+                    continue
+                before = len(near.problem.network)
+                found = answered_nearby(near, objectives, Settings())
+                expected = solve(replace(problem, goals=goals), objectives)
+                assert found.status is expected.status, (seed, goals, objectives)
+                if found.costs is not None and expected.costs is not None:
+                    order = levels(objectives)
+                    assert found.costs.key(order) == expected.costs.key(order), (seed, goals, objectives)
+                compared += 1
+                read_again += len(found.problem.network) > before
+                impossible += found.status is Status.INFEASIBLE
+    assert compared > 300 // part
+    assert read_again > compared // 4
+    assert impossible > 5
+
+
+def test_the_command_reads_near_the_goal(tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    two_ways(tmp_path).close()
+    words = ("solve", "--network", tmp_path / "stew.foon", "--goal", "stew", "--format", "json")
+    whole = json.loads(cli(*words).out)
+    read: list[int] = []
+
+    class Counted(Nearby):
+        def grow(self, objects: object) -> None:
+            super().grow(objects)  # type: ignore[arg-type]
+            read.append(len(self.problem.network))
+
+    monkeypatch.setattr("foon_asp.dataset.stored_dataset.Nearby", Counted)
+    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (1,))
+    near = json.loads(cli(*words).out)
+    assert read
+    assert read[-1] < len(SHORT + LONG)
+    assert {name: value for name, value in near.items() if name != "seconds"} == {
+        name: value for name, value in whole.items() if name != "seconds"
+    }
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--objective", "kitchen"),
+        ("--reduce", "none"),
+        ("--rule", ':- use(U), motion(U,"fry").'),
+        ("--items", "used-up"),
+        ("--cross-check",),
+        ("--", "--opt-strategy=bb"),
+    ],
+)
+def test_other_questions_read_all_that_the_goal_needs(
+    words: tuple[str, ...], tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    two_ways(tmp_path).close()
+    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (1,))
+    monkeypatch.setattr("foon_asp.questions.solve.answered_nearby", None)
+    said = cli("solve", "--network", tmp_path / "stew.foon", "--goal", "stew", *words)
+    assert said.code == 0, said.err
+    assert "3 units" in said.out or "3 executions" in said.out
