@@ -621,13 +621,15 @@ class _Solver:
         if units is None:
             return outcome
         began = time.perf_counter()
-        cuts = reduced.cuts.cuts if reduced and reduced.cuts else ()
+        cuts = [cut.objects for cut in reduced.cuts.cuts] if reduced and reduced.cuts else []
+        if reduced and reduced.shared:
+            cuts = [objects for objects, _ in reduced.shared.cuts]
         size = len(self.problem.network.objects)  # beyond are sets of units that rules ask for
         outcome = outcome._replace(
             units=self.holds.tree(units),
             costs=self.heard.costs(units),
             left=0 if proof is Proof.CUTS else len(first.units),
-            cuts=tuple(tuple(sorted(cut.objects)) for cut in cuts if max(cut.objects) < size),
+            cuts=tuple(tuple(sorted(objects)) for objects in cuts if max(objects) < size),
         )
         assert self.heard.best is not None
         self.holds.outcome(outcome, None if self.program.replaced else self.heard.best[1], reduced)

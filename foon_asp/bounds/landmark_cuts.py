@@ -70,13 +70,14 @@ def landmark_cuts(
         return dear.get(o, math.inf), o
 
     remaining = deque(sorted(targets, key=dearness, reverse=True))
+    fresh = max(_FRESH, len(remaining))
     try:
         while remaining and not expired():
             target = remaining.popleft()
             if target in free.objects:
                 continue
             remaining.append(target)
-            if guide is not None and found and len(found) % _FRESH == 0:
+            if guide is not None and found and len(found) % fresh == 0:
                 dear = guide(rest_of)
             zone = {target}
             stack = [target]

@@ -76,3 +76,7 @@ class Covering:
             [c for c, status in enumerate(basis.col_status) if status == basic],
             [r for r, status in enumerate(basis.row_status) if status != basic],
         )
+
+    def weights(self) -> list[float]:
+        """Give the weight of each row in the optimum found last."""
+        return list(self._highs.getSolution().row_dual)

@@ -1,6 +1,7 @@
 """A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
 
 import gc
+import math
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
@@ -8,6 +9,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
+from foon_asp.bounds.shared_costs import PARTS, SharedCosts, share_costs
 from foon_asp.problem import Objective, Problem
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.dominance import undominated
@@ -18,7 +20,7 @@ from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
-from foon_asp.reduce.upper_bound import improved, without_spare
+from foon_asp.reduce.upper_bound import following, improved, without_spare
 from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 _LARGE = 40_000  # actions from which on it pays not to look at all of them
@@ -26,8 +28,10 @@ _FIRST = 4000  # actions nearest to the goals, among which a tree is looked for 
 _ABLE = 50  # units of a required set that count while trees are looked for
 _MANY = 2000  # actions among which better trees are looked for
 _EASY = 600  # actions that clingo chooses from faster than better trees are looked for here
+_SMALL = 200  # actions that clingo chooses from faster than costs are shared out among all cuts
 _ROUNDS = 24  # of cuts, trees and what they leave
 _FEW = 6  # of these, where other costs are tried
+_WORTH = 0.9  # of the actions may be left for another time to be worth it
 
 
 class Reduced(NamedTuple):
@@ -38,7 +42,8 @@ class Reduced(NamedTuple):
     compares trees exactly and ``bound`` is a lower bound by it on every tree; ``None`` and 0 where there is
     none. ``cuts`` are the weighted cuts of the greatest sum, over the units left at the time. ``interrupted``
     says that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
-    ``wide`` tells which units trees up to a cost can have, whatever rules leave of these trees.
+    ``wide`` tells which units trees up to a cost can have, whatever rules leave of these trees. ``shared``
+    are the cuts among which costs were shared out as well as can be, where the others left too much.
     """
 
     tree: frozenset[int] | None
@@ -49,6 +54,7 @@ class Reduced(NamedTuple):
     cuts: Cuts | None
     interrupted: bool = False
     wide: Wide | None = None
+    shared: SharedCosts | None = None
 
 
 class Listener:
@@ -153,6 +159,7 @@ class _Reducer:
         self.bound = 0
         self.cuts: Cuts | None = None
         self.wide: Wide | None = None
+        self.shared: SharedCosts | None = None
 
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
         ended = settled = hopeless = False
@@ -281,10 +288,52 @@ class _Reducer:
             if not changed and Reduction.FORCED in self.reductions and len(self.left) <= _MANY:
                 self.left = beside_forced(self.graph, self.left)
                 changed = len(self.left) < before[0]
+            if not changed and costs is not None and not thorough:
+                if self._share_costs(costs):
+                    return True
+                changed = (len(self.left), self.tree) != before
             if not changed and (thorough or len(self.left) <= _EASY):
                 break
             thorough = not changed
             guide = derive(self.graph, self.left, costs or self.coarse, added=False).cost
+        return False
+
+    def _share_costs(self, costs: ExactCosts) -> bool:
+        """Share costs out among all cuts at once, and leave out more; whether the tree is proved optimal."""
+        known = [(cut.objects, cut.members) for cut in self.cuts.cuts] if self.cuts else []
+        before = math.inf
+        while _SMALL < len(self.left) < _WORTH * before and not self.expired():
+            before = len(self.left)
+            goals, total = self.graph.goals, self._total(costs)
+            shared = share_costs(self.graph, goals, self.left, costs, known, total, self.expired)
+            if shared is None:
+                break
+            known = []
+            tree = following(self.graph, self.left, self.tree, costs, shared)
+            if tree is not self.tree:
+                self._take(tree)
+            if self._shared(costs, shared):
+                return True
+        return False
+
+    def _shared(self, costs: ExactCosts, shared: SharedCosts) -> bool:
+        """Note a bound, and leave out what is dear by it; whether the tree is proved optimal.
+
+        What trees cost is whole, so a part of 1 more than the next smaller cost is enough.
+        """
+        total = self._total(costs)
+        bound = min(-(-shared.bound // PARTS), total)
+        if bound > self.bound:
+            self.bound, self.shared = bound, shared
+            self.listener.bound(costs, bound)
+        only_better = Reduction.BOUNDS in self.reductions
+        if only_better and not costs.doubt and bound == total:
+            return True
+        if Reduction.DEAR in self.reductions:
+            limit = (total + costs.doubt - only_better) * PARTS - shared.bound
+            self.left = dear_left_out(self.graph, self.left, shared.left.__getitem__, limit, self.expired)
+        if Reduction.DOMINATED in self.reductions:
+            self.left = undominated(self.graph, self.left, costs)
         return False
 
     def _follow_added(self, costs: ExactCosts) -> None:
@@ -360,4 +409,5 @@ class _Reducer:
             self.cuts,
             early and not settled,
             self.wide,
+            self.shared,
         )

@@ -2,8 +2,11 @@
 
 from collections.abc import Callable, Collection, Iterable
 
+from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
+
+_FINE = 1000  # steps of shares that the estimates tell apart
 
 
 def without_spare(graph: Graph, tree: Iterable[int], cost: Callable[[int], int]) -> set[int]:
@@ -37,6 +40,33 @@ def replaceable(graph: Graph, tree: Collection[int], cost: Callable[[int], int])
         (a for a in tree if all(makers[o] > 1 for o in graph.gives[a] if o in used)),
         key=lambda a: (-cost(a), a),
     )
+
+
+def following(
+    graph: Graph,
+    actions: Collection[int],
+    tree: set[int],
+    cost: Callable[[int], int],
+    shared: SharedCosts,
+) -> set[int]:
+    """Look for a cheaper tree that follows a relaxed solution; gives the same tree if none is found."""
+    best = tree
+    total = sum(map(cost, best))
+
+    def unshared(action: int) -> int:
+        return 1 + int(cost(action) * (1 - min(1.0, shared.shares[action])) * _FINE)
+
+    def loose(action: int) -> int:
+        return cost(action) + shared.left[action]
+
+    for price in (unshared, loose):
+        for added in (True, False):
+            found = derive(graph, actions, price, added).tree(graph, graph.goals)
+            slim = without_spare(graph, found or best, cost)
+            slim_total = sum(map(cost, slim))
+            if slim_total < total:
+                best, total = slim, slim_total
+    return best
 
 
 def improved(

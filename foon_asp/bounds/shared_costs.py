@@ -1,0 +1,151 @@
+"""Costs shared out among landmarks as well as can be: the linear relaxation of hitting all of them.
+
+Greedy weights of cuts depend on the order in which these are found. Here all cuts are known at once, and
+those that the relaxed solution misses are added until none is found (Bonet and Helmert 2010). What HiGHS says
+are floats: the weights are rounded to parts, and no action carries more than it costs, so the bound holds
+whatever they were.
+"""
+
+import math
+import random
+from collections.abc import Callable, Collection, Iterable
+from typing import NamedTuple
+
+from foon_asp.bounds.cut import Cutter
+from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.relaxation import Covering
+
+PARTS = 720720  # of 1: most weights are simple fractions
+_FINE = 2**60  # in how many parts floats are read
+_HIT = 0.999  # a landmark of a greater share is taken to be hit
+_CUTS = 40  # that one relaxed solution is asked for
+_STALLED = 8  # solutions after which a bound that hardly grows counts as the best there is
+_GROWS = 0.01  # of what lacks, how much these have to bring
+
+
+class SharedCosts(NamedTuple):
+    """Weighted cuts: objects and weight of each, in :data:`PARTS` of 1.
+
+    No derivation by the actions looked at costs less than ``bound``, in parts. ``left`` is what the cuts
+    leave of the cost of each action, in parts, and ``shares`` is how much of each the relaxed solution takes.
+    """
+
+    bound: int
+    left: dict[int, int]
+    cuts: list[tuple[frozenset[int], int]]
+    shares: dict[int, float]
+
+
+def share_costs(
+    graph: Hypergraph,
+    targets: Iterable[int],
+    actions: Collection[int],
+    cost: Callable[[int], int],
+    known: Iterable[tuple[Collection[int], Collection[int]]],
+    enough: int,
+    expired: Callable[[], bool],
+) -> SharedCosts | None:
+    """Find cuts before the targets, and the weights of the greatest sum that the costs allow.
+
+    All of the actions can run, and each costs more than 0. ``known`` are cuts to begin with, their objects
+    and their landmarks. A bound of ``enough`` is good enough. ``None`` where nothing can be shared out.
+    """
+    return _Sharing(graph, targets, actions, cost).share(known, enough, expired)
+
+
+class _Sharing:
+    def __init__(
+        self,
+        graph: Hypergraph,
+        targets: Iterable[int],
+        actions: Collection[int],
+        cost: Callable[[int], int],
+    ) -> None:
+        self._actions = sorted(actions)
+        start = graph.start
+        self._objects = sorted(
+            {o for a in self._actions for o in graph.needs[a] if o not in start}.union(targets)
+        )
+        number = {o: place for place, o in enumerate(self._objects)}
+        small = Hypergraph(
+            len(number),
+            [[number[o] for o in graph.needs[a] if o in number] for a in self._actions],
+            [[number[o] for o in graph.gives[a] if o in number] for a in self._actions],
+            (),
+        )
+        self._cutter = Cutter(small, [number[o] for o in targets])
+        self._costs = [cost(a) for a in self._actions]
+        self._dearest = max(self._costs, default=1)
+        self._random = random.Random(0)
+        self._covering = Covering([c / self._dearest for c in self._costs])
+        self._rows: list[tuple[int, ...]] = []
+        self._cuts: list[frozenset[int]] = []
+
+    def share(
+        self,
+        known: Iterable[tuple[Collection[int], Collection[int]]],
+        enough: int,
+        expired: Callable[[], bool],
+    ) -> SharedCosts | None:
+        if self._cutter.hopeless or not self._cutter.targets:
+            return None
+        place = {a: n for n, a in enumerate(self._actions)}
+        for objects, members in known:
+            row = tuple(place[a] for a in members if a in place)
+            self._add(frozenset(objects), row)
+        values: list[float] = []
+        while True:
+            solved = self._covering.solve()
+            values.append(solved.value)
+            lacks = enough / self._dearest - solved.value
+            grown = values[-1] - values[-1 - _STALLED] if len(values) > _STALLED else math.inf
+            if lacks <= 0 or grown < _GROWS * lacks or not self._separate(solved.x, expired):
+                break
+        return self._shared(solved.x)
+
+    def _add(self, objects: frozenset[int], row: tuple[int, ...]) -> None:
+        self._cuts.append(objects)
+        self._rows.append(row)
+        self._covering.add(row)
+
+    def _separate(self, x: list[float], expired: Callable[[], bool]) -> bool:
+        """Add cuts that a relaxed solution misses, each beside those before; whether there are any."""
+        shares, chance = list(x), self._random.random
+        cutter, costs = self._cutter, self._costs
+        found = False
+        for _ in range(_CUTS):
+            if expired():
+                return False
+            order = sorted(cutter.actions, key=lambda a: (-shares[a], costs[a] * (0.5 + chance())))
+            cut = cutter.cut((), order)
+            if cut is None or sum([shares[a] for a in cut.members]) >= _HIT:
+                break
+            found = True
+            self._add(frozenset(self._objects[o] for o in cut.objects), cut.members)
+            for a in cut.members:
+                shares[a] = 1.0
+        return found
+
+    def _shared(self, x: list[float]) -> SharedCosts:
+        left = [c * PARTS for c in self._costs]
+        weights = [0] * len(self._rows)
+        wanted = [
+            round(max(w, 0.0) * _FINE) * self._dearest * PARTS // _FINE for w in self._covering.weights()
+        ]
+        dearest_first = sorted(range(len(wanted)), key=lambda row: -wanted[row])
+        for limit in (wanted, None):  # what is left by rounding goes to whom it helps
+            for row in dearest_first:
+                members = self._rows[row]
+                weight = min(left[a] for a in members)
+                if limit is not None:
+                    weight = min(weight, limit[row])
+                if weight:
+                    weights[row] += weight
+                    for a in members:
+                        left[a] -= weight
+        return SharedCosts(
+            sum(weights),
+            dict(zip(self._actions, left, strict=True)),
+            [(cut, weight) for cut, weight in zip(self._cuts, weights, strict=True) if weight],
+            dict(zip(self._actions, x, strict=True)),
+        )
