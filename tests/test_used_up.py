@@ -16,6 +16,8 @@ from foon_asp import ObjectNode, Source, UserError, parse_node
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.deadline import Deadline
+from foon_asp.engines import Asked, DisagreementError
+from foon_asp.engines.bare_plans import check_plan_with_bare_clingo
 from foon_asp.problem import Fate, Objective, Problem, UsedUp, levels, parse_objectives
 from foon_asp.problem.items import fate
 from foon_asp.proof.replay import replay_for
@@ -347,7 +349,7 @@ def test_other_questions_say_by_name_that_they_are_not_built_for_it(cli: Cli) ->
         2,
         "error: assist is not built for items that are used up (--items used-up)\n",
     )
-    for words in (("--soft", "forbid_motion=3"), ("--cross-check",), ("--certificate", "x.json")):
+    for words in (("--soft", "forbid_motion=3"), ("--certificate", "x.json")):
         ran = cli("solve", "--goal", "ice", "--items", "used-up", *words)
         assert ran.code == 2
         assert f"solve {words[0]} is not built for items that are used up" in ran.err
@@ -752,3 +754,31 @@ def test_the_fronts_of_many_small_networks() -> None:
     found = Counter(map(hold_a_front, range(700)))
     assert found[-1] < 10
     assert sum(number for points, number in found.items() if points > 1) > 20
+
+
+# --- Another engine.
+
+
+@pytest.mark.parametrize("seed", [1, 21, 102])
+def test_bare_clingo_checks_plans(seed: int) -> None:
+    problem = random_problem(seed)
+    rule = ":- times(U,N), N > 2."
+    (check,) = foon_asp.cross_check(problem, "inputs,success", constraints=rule).checks
+    assert (check.engine, check.objectives, check.reason) == ("clingo", (Objective.INPUTS,), None)
+    (check,) = foon_asp.cross_check(problem, "success").checks
+    assert check.reason == "plans are compared by whole numbers, and success is none"
+
+
+def test_bare_clingo_disagrees_with_a_plan_that_is_not_the_best() -> None:
+    problem = foon_asp.load().problem("macaroni", items="used-up")
+    found = foon_asp.solve(problem)
+    assert found.units is not None
+    worse = foon_asp.alternatives(problem, best=2).trees[1]
+    for units, costs, message in (
+        (worse.units, worse.costs, r"our plan costs \[10\], the one of clingo \[9\]; ours is not the best"),
+        (found.units, worse.costs, r"our plan costs \[10\], clingo says \(9,\)"),
+        (found.units[1:], found.costs, r"our plan costs \[9\], clingo says None"),
+    ):
+        asked = Asked(found._replace(units=units, costs=costs))
+        with pytest.raises(DisagreementError, match=message):
+            check_plan_with_bare_clingo(asked, 20)

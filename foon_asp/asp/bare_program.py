@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.asp.assembly import assemble
+from foon_asp.asp.outcome import Outcome
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
-from foon_asp.asp.used_up import most_executions
+from foon_asp.asp.used_up import executions_as_good, most_executions
 from foon_asp.encoding.facts import write_facts, write_least_penalty, write_objectives, write_times
 from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
@@ -71,6 +72,26 @@ def bare_program(
         units = relevant(problem, everything) if program.own else everything.units
         first = replace(first, units=units)
     return _written(program, first.facts + write_objectives(first.levels) + penalty)
+
+
+def bare_plans(
+    outcome: Outcome, objectives: Sequence[Objective], settings: Settings
+) -> tuple[BareProgram | None, dict[int, tuple[int, int]]]:
+    """Write a question about plans for bare clingo, of which an optimal one is known.
+
+    Beside the program, which does not say how often units are executed, gives for each unit its number and
+    how often any plan executes it that is as good by the first objective; no program where nothing says so.
+    """
+    settings = settings._replace(deadline=None, session=None)
+    most = executions_as_good(outcome, settings)
+    if most is None:
+        return None, {}
+    problem = outcome.problem
+    program = assemble(settings, lambda _: None, used_up=True)
+    facts = write_facts(problem, list(most), Scales(problem, list(most), objectives), program.looked_at)
+    number = problem.network.unit_number
+    caps = {unit: (number(unit), each) for unit, each in most.items()}
+    return _written(program, facts + write_objectives(objectives)), caps
 
 
 def _written(program: Program, facts: str) -> BareProgram:

@@ -92,6 +92,21 @@ def most_executions(
     return {u: (0, outcome.costs.units if cap is None else cap) for u, cap in zip(units, caps, strict=True)}
 
 
+def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] | None:
+    """Give how often each unit is executed at most by plans that are as good as one by its first objective.
+
+    ``None`` where nothing says so.
+    """
+    solver = _solver(outcome.problem, outcome.objectives, settings, Reporter())
+    if outcome.costs is None or not solver._apply_rules():
+        return None
+    units = solver._cut() or []
+    counting = _Counting(solver, units)
+    caps = counting.bound.caps(counting.level(solver.levels[0], outcome.costs)) if units else []
+    found = {unit: cap for unit, cap in zip(units, caps, strict=True) if cap is not None}
+    return found if len(found) == len(units) else None
+
+
 def best_plans(
     problem: Problem,
     objectives: Sequence[Objective],

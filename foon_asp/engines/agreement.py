@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 from foon_asp.asp import Outcome, Status
 from foon_asp.certificate import Coverage, coverage
-from foon_asp.engines import bare_clingo, fast_downward, highs
+from foon_asp.engines import bare_clingo, bare_plans, fast_downward, highs
 from foon_asp.engines.engine import (
     Asked,
     DisagreementError,
@@ -109,10 +109,14 @@ def _engines(
     wanted = levels(outcome.objectives)
 
     def ask_clingo() -> tuple[Objective, ...]:
+        if outcome.problem.items is not None:
+            return bare_plans.check_plan_with_bare_clingo(asked, seconds)
         bare_clingo.check_with_bare_clingo(asked, seconds)
         return () if outcome.units is None else wanted
 
     yield bare_clingo.NAME, None, ask_clingo
+    if outcome.problem.items is not None:
+        return  # others know nothing of items that are used up
     covered = coverage(asked.settings)
 
     def ask(engine: Engine) -> tuple[Objective, ...]:

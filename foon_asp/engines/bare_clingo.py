@@ -21,6 +21,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from foon_asp.asp import Status
@@ -43,6 +44,7 @@ MOST_KINDS = 10_000  # of trees within the bound
 _MEMORY = 4 * 2**30  # bytes, where no memory limit says otherwise
 _ENDED = {0, 10, 20, 30}  # the program and the Python module end otherwise where there was no fault
 _OUT_OF_MEMORY = (b"bad_alloc", b"MemoryError", b"cannot allocate memory")
+_BEST = ("--opt-mode=opt", "--models=0", "--quiet=1")
 _SECOND_OPINION = "second_opinion.lp"
 _STRING_OR_WEIGHT = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])(?:risk\(|cost\((\w+),)(\d+),(\d+)\)')
 _SHOWN = re.compile(r"use\((\d+)\)")
@@ -56,7 +58,7 @@ def check_with_bare_clingo(asked: Asked, seconds: float) -> None:
     """
     outcome = asked.outcome
     program = bare_program(outcome.problem, outcome.objectives, asked.settings, asked.soft)
-    _Check(asked, program, _Clingo(program, seconds, asked.settings.begun.memory)).check()
+    _Check(asked, program, Clingo(program, seconds, asked.settings.begun.memory)).check()
 
 
 def printed_command(asked: Asked) -> tuple[list[str], str]:
@@ -74,7 +76,7 @@ class Found(NamedTuple):
     costs: tuple[int, ...]
 
 
-class _Clingo:
+class Clingo:
     """Runs clingo, time after time until the end."""
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
@@ -84,7 +86,7 @@ class _Clingo:
 
     def best(self, more: str = "") -> Found | None:
         """Give an optimal answer, ``more`` text being read beside the facts; ``None`` where there is none."""
-        found = self._run(more, ("--opt-mode=opt", "--models=0", "--quiet=1"))
+        found = self._run(more, _BEST, _added(more))
         answers = _answers(found)
         if found["Result"] == "UNSATISFIABLE":
             return None
@@ -92,10 +94,14 @@ class _Clingo:
             raise NotCheckedError(f"clingo ended with {found['Result']!r}")
         return answers[-1]
 
+    def run(self, more: str) -> dict[str, Any]:
+        """Give what clingo says of the optimal answers, ``more`` facts being read beside the others."""
+        return self._run(more, _BEST, ())
+
     def all_kinds(self, more: str, bounds: Sequence[int]) -> list[Found]:
         """Give an answer of every kind that costs at most so much."""
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
-        found = self._run(more, (mode, f"--models={MOST_KINDS + 1}", "--project=project"))
+        found = self._run(more, (mode, f"--models={MOST_KINDS + 1}", "--project=project"), _added(more))
         answers = _answers(found)
         if len(answers) > MOST_KINDS:
             raise NotCheckedError(
@@ -105,10 +111,9 @@ class _Clingo:
             raise NotCheckedError(f"clingo ended with {found['Result']!r}")
         return answers
 
-    def _run(self, more: str, options: Iterable[str]) -> dict[str, Any]:
+    def _run(self, more: str, options: Iterable[str], added: tuple[Path, ...]) -> dict[str, Any]:
         program = self.program
         # absolute, since a name may begin with -; not resolved, since files include others beside them
-        added = (question_encoding(_SECOND_OPINION),) if more else ()
         files = [str(file.absolute()) for file in (*program.files, *added)]
         command = [sys.executable, "-P", "-m", "clingo", *files, "-", *program.constants, "--outf=2"]
         text = (program.text + more).encode("utf-8", "surrogatepass")
@@ -148,7 +153,7 @@ class _Clingo:
 class _Check:
     """One answer, compared with clingo's."""
 
-    def __init__(self, asked: Asked, program: BareProgram, clingo: _Clingo) -> None:
+    def __init__(self, asked: Asked, program: BareProgram, clingo: Clingo) -> None:
         self.asked, self.program, self.clingo = asked, program, clingo
         self.outcome, self.problem = asked.outcome, asked.outcome.problem
         self.levels = levels(self.outcome.objectives)
@@ -393,6 +398,10 @@ def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
 
     (low, high), (lower, higher) = enclosed(rate.numerator), enclosed(rate.denominator)
     return lower - high, higher - low
+
+
+def _added(more: str) -> tuple[Path, ...]:
+    return (question_encoding(_SECOND_OPINION),) if more else ()
 
 
 def _answers(found: Mapping[str, Any]) -> list[Found]:

@@ -68,11 +68,7 @@ def solve_and_more(
             problem = problem.whole()
     chosen = chosen_objectives(problem, objectives)
     if problem.items is not None:
-        for given, what in (
-            (soft, "--soft"),
-            (certificate_file, "--certificate"),
-            (cross_check, "--cross-check"),
-        ):
+        for given, what in ((soft, "--soft"), (certificate_file, "--certificate")):
             if given:
                 raise not_built(f"solve {what}")
     if soft and certificate_file is not None:
