@@ -10,11 +10,13 @@ from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.settings import Bounded, Settings
 from foon_asp.deadline import Deadline
 from foon_asp.errors import BugError, UserError
-from foon_asp.problem import Objective, Problem, UsedUp
+from foon_asp.problem import Objective, Problem, UsedUp, parse_objectives
 from foon_asp.reduce import NONE, ExactCosts, Listener, Reduction
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.measure import read_measures
+from foon_asp.rules.rules import Rules
 from tests.test_constraint_meanings import small
+from tests.test_solver import struck
 
 PROBLEM = small("cut: start > a", "mix: a > end", "boil: start > end", "junk: start > x")
 SETTLED = ':- use(U), motion(U,"boil").'
@@ -163,6 +165,28 @@ def test_a_tree_is_held_against_all_rules() -> None:
     late = replace(asked(SETTLED, Heard()), deadline=Deadline(0.0))
     assert late.keeps([2]) is None
     late.require_kept([2])
+
+
+def test_rules_that_cannot_be_applied_are_left_to_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Rules, "applied", lambda *_: None)
+    first = asked(SETTLED, Heard())
+    assert (first.kept, first.asked, first.contradicted, first.units) == (None, None, False, ALL)
+
+
+def test_a_constant_that_is_called_like_a_measure_is_refused() -> None:
+    problem = replace(PROBLEM, measures=read_measures("cost(mine,U,1) :- unit(U)."))
+    settings = Settings((given_constraint("#const mine = 3. :- use(mine)."),))
+    program = assemble(settings, print)
+    with pytest.raises(UserError, match="found #const mine in a constraint"):
+        prepare(problem, parse_objectives(["mine"], problem.measures), settings, program)
+    assert prepare(problem, (Objective.UNITS,), settings, program).tree == frozenset({2})
+
+
+def test_ctrl_c_while_facts_are_written_is_noted(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = asked(SETTLED, Heard(), deadline=Deadline())
+    struck(monkeypatch, "writing facts")
+    assert first.keeps([2]) is None
+    assert first.deadline.interrupted
 
 
 def test_items_that_are_used_up_are_refused() -> None:

@@ -257,6 +257,12 @@ def test_rates_that_are_too_fine_for_the_reductions_are_left_to_the_search() -> 
     problem = small(*BANNED, "mix: start > end", "fry: y > end", "cut: start > y")
     problem = replace(problem, rates={**rates, "fry": Fraction("0.9000000001")})
     assert says(asked(problem, APART, Objective.SUCCESS)) == (Status.OPTIMAL, {3, 4})
+    # what leads to no goal is there, too, where a rule asks for it
+    problem = small("boil: start > end", "fry: start > end", "junk: start > x")
+    rates = {"boil": Fraction("0.9000000001"), "fry": Fraction("0.9"), "junk": Fraction(1)}
+    rule = ':- use(U), motion(U,"boil"), not use(V) : motion(V,"junk").'
+    fine = replace(problem, rates=rates)
+    assert says(asked(fine, rule, Objective.SUCCESS)) == (Status.OPTIMAL, {0, 2})
 
 
 def test_rules_that_were_applied_wrongly_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

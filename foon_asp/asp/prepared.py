@@ -90,7 +90,7 @@ class Prepared:
         from foon_asp.encoding.facts import write_given  # noqa: PLC0415
 
         program = self.asked or self.program
-        tree = replace(self, units=tuple(sorted(units)), program=program, rest=True)
+        tree = replace(self, units=tuple(sorted(units)), program=program)
         numbers = list(map(self.problem.network.unit_number, tree.units))
         ended = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
         return True if ended.units is not None else (False if ended.exhausted else None)
