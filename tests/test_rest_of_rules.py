@@ -174,7 +174,8 @@ def test_a_tree_that_cuts_do_not_prove_best_is_held_against_others(
 
 def test_loose_ends_are_tied_until_none_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
     looks = Looks(monkeypatch)
-    monkeypatch.setattr(_Solver, "_near", None)  # there is no need to look at everything
+    for step in ("_near", "_up_to"):  # there is no need to look at everything
+        monkeypatch.setattr(_Solver, step, None)
     outcome = asked(LOOSE)
     assert outcome.status is Status.OPTIMAL
     assert {*(outcome.units or ())} - {10, 11} == {2, 4, 12, 13, 14}
@@ -222,14 +223,11 @@ def test_what_each_tree_has_counts_from_the_beginning(monkeypatch: pytest.Monkey
 def test_loose_ends_that_a_limit_leaves_settle_nothing(
     found: set[int] | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    problem = small(*BANNED, "mix: a, b > end", "cut: start > a", "chop: start > b", "fry: start > end")
-    monkeypatch.setattr(solver_module, "_NEAR", 1)
-    at_limit = Run() if found is None else Run(frozenset(map(problem.network.unit_number, found)))
-    Searches(monkeypatch, None, Answer(at_limit))
-    assert says(asked(problem, f'{APART}\n:- use(U), use(V), motion(U,"fry"), V < U.')) == (
-        Status.OPTIMAL,
-        {5},
-    )
+    problem = small(*BANNED, "mix: a, b > end", "cut: start > a", "chop: start > b")
+    at_limit = Run() if found is None else Run(frozenset(map(problem.network.unit_number, found)), (3,))
+    searches = Searches(monkeypatch, None, Answer(at_limit))
+    assert says(asked(problem)) == (Status.OPTIMAL, {2, 3, 4})
+    assert len(searches.modes) == 3  # the best tree is asked for once more, among all units
 
 
 def test_what_is_best_by_rounded_costs_is_held_against_what_was_not_looked_at(

@@ -242,7 +242,6 @@ class _Solver:
                 limit = wide.total(tree) if allowed is None else allowed
                 within = wide.within(limit, lambda: self.deadline.passed)
         except KeyboardInterrupt:
-            self.deadline.interrupt()
             return self._limited(tree, ())
         if ended is not None and ended.units is not None and within <= set(self.first.units):
             return self._ended(ended, ended.units)
