@@ -31,6 +31,11 @@ def starter_recipe() -> Path:
     return _folder("data", "starter/FOON.txt") / "starter"
 
 
+def bundled_vocabulary() -> Path:
+    """Give the file of the names that linting knows."""
+    return _folder("data", "vocabulary.txt") / "vocabulary.txt"
+
+
 def bundled_kitchen() -> Path:
     """Give the folder of the bundled universal FOON and its kitchen."""
     return _folder("data", "kitchen/FOON.txt") / "kitchen"

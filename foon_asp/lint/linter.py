@@ -5,32 +5,51 @@ from pathlib import Path
 from types import MappingProxyType
 
 from foon_asp.lint.block_rules import block_findings
+from foon_asp.lint.bracket_rules import bracket_findings
+from foon_asp.lint.change_rules import change_findings
 from foon_asp.lint.cycle_rules import cycle_findings
 from foon_asp.lint.flag_rules import flag_findings
+from foon_asp.lint.flow_rules import flow_findings
 from foon_asp.lint.goal_rules import goal_findings
 from foon_asp.lint.id_rules import id_findings
+from foon_asp.lint.letter_rules import letter_findings
 from foon_asp.lint.linted_files import LintedFiles
 from foon_asp.lint.name_rules import name_findings
 from foon_asp.lint.names import Names
 from foon_asp.lint.noqa import unsilenced
+from foon_asp.lint.place_rules import place_findings
+from foon_asp.lint.time_rules import time_findings
 from foon_asp.lint.unit_rules import unit_findings
+from foon_asp.lint.vocabulary import Vocabulary, read_vocabulary
+from foon_asp.resources import bundled_vocabulary
 from foon_asp.text.diagnostics import Diagnostic
 
 
-def lint(files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> list[Diagnostic]:
+def lint(
+    files: Iterable[Path],
+    contents: Mapping[Path, bytes] = MappingProxyType({}),
+    vocabulary: Path | None = None,
+) -> list[Diagnostic]:
     """Lint networks, kitchens and lists of goals together; findings by file, line and column.
 
     ``contents`` are the bytes of files that are not to be read from disk. What ``# noqa`` comments silence is
     left out.
 
-    Names are compared over all files, and the units of all are one network. The severity of a finding is that
-    of its code in the catalog; ``fix`` is the mended line where mending changes nothing of what is
-    understood. Raises :class:`foon_asp.errors.UserError` for a file that cannot be opened.
+    Names are compared over all files, and with those of a ``vocabulary`` or of the bundled one; the units of
+    all files are one network. The severity of a finding is that of its code in the catalog; ``fix`` is the
+    mended line where mending changes nothing of what is understood. Raises
+    :class:`foon_asp.errors.UserError` for a file that cannot be opened.
     """
     linted = LintedFiles(files, contents)
+    names = Names(linted)
+    known = read_vocabulary(vocabulary or bundled_vocabulary())
     findings = linted.remarks()
     for rule in _RULES:
         findings += rule(linted)
+    findings += name_findings(names, known)
+    known.add(Vocabulary.of(names))
+    findings += bracket_findings(names, known)
+    findings += change_findings(names, known)
     findings = list(unsilenced(findings, linted.sheets))
     order = {sheet.file: number for number, sheet in enumerate(linted.sheets)}
     return sorted(
@@ -47,8 +66,11 @@ def _sheet_by_sheet(files: LintedFiles) -> Iterator[Diagnostic]:
 
 _RULES: Collection[Callable[[LintedFiles], Iterator[Diagnostic]]] = (
     _sheet_by_sheet,
-    lambda files: name_findings(Names(files)),
+    letter_findings,
+    time_findings,
     unit_findings,
+    flow_findings,
+    place_findings,
     cycle_findings,
     goal_findings,
 )

@@ -3,19 +3,27 @@
 from collections.abc import Iterator
 
 from foon_asp.lint.names import Kind, Names, times
-from foon_asp.lint.near_names import near_names
+from foon_asp.lint.near_names import near_names, near_word
+from foon_asp.lint.vocabulary import Vocabulary, words_of
 from foon_asp.network import Contents, Relation
 from foon_asp.text.diagnostics import Diagnostic, Rename
 from foon_asp.text.line import StateLine
 
 
-def name_findings(names: Names) -> Iterator[Diagnostic]:
-    """Give the findings about near names, and about containers and ingredients that are no object."""
+def name_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
+    """Give the findings about near names, and about containers and ingredients that are no object.
+
+    ``known`` are names that FOONs have elsewhere.
+    """
     said = set()
     for kind in Kind:
-        for name, meant in near_names(names.counts[kind], verbs=kind is not Kind.OBJECT):
-            said.add((kind, name))
+        verbs = kind is not Kind.OBJECT
+        for name, meant in near_names(names.counts[kind], verbs, known.words, names.loose[kind]):
+            said |= {(kind, name), (kind, meant)}
             yield from _near(names, kind, name, meant)
+        for name in names.counts[kind]:
+            if (kind, name) not in said and name not in known.names[kind]:
+                yield from _misspelt(names, kind, name, known)
     if names.has_network:
         for name in names.mentions[Kind.OBJECT]:
             if name not in names.objects and (Kind.OBJECT, name) not in said:
@@ -36,6 +44,19 @@ def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnosti
         )
         rename = Rename(kind, name, meant) if counts[meant] > counts[name] else None  # which one is wrong?
         yield names.sheets[sheet].finding("near-name", message, index, name)._replace(rename=rename)
+
+
+def _misspelt(names: Names, kind: Kind, name: str, known: Vocabulary) -> Iterator[Diagnostic]:
+    """Say of a name that a word of it is nearly one that is known."""
+    for word in words_of(name):
+        if word in known.words:
+            continue
+        meant = near_word(word, known.near, verbs=kind is not Kind.OBJECT)
+        if meant is not None:
+            message = f"{word!r} in the {kind} {name!r} is no word that is known; is it {meant!r}?"
+            for sheet, index, _ in names.by_sheet(kind, name):
+                yield names.sheets[sheet].finding("misspelt", message, index, name)
+            return
 
 
 def _unknown(names: Names, name: str) -> Iterator[Diagnostic]:

@@ -28,6 +28,8 @@ class Names:
     """Every name of every kind with its mentions, in order."""
 
     def __init__(self, files: LintedFiles) -> None:
+        self.files = files
+        self.network = files.network
         self.sheets = files.sheets
         self.has_network = any(sheet.entries is None for sheet in files.sheets)
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
@@ -46,6 +48,22 @@ class Names:
             if (count := sum(m.often for m in mentions if isinstance(m.line, ObjectLine)))
         }
         """How often each label stands on an object line."""
+
+    @cached_property
+    def loose(self) -> dict[Kind, set[str]]:
+        """Names of which every object node that units have is only taken, or only made, and of motions all."""
+        network = self.network
+        taken = {node for nodes in network.inputs for node in nodes}
+        made = {node for nodes in network.outputs for node in nodes}
+        sides: dict[Kind, tuple[set[str], set[str]]] = {kind: (set(), set()) for kind in Kind}
+        for side, nodes in enumerate((taken, made)):
+            for node in nodes:
+                label, states, relations, contents = network.objects[node]
+                sides[Kind.OBJECT][side].update({label}, *(held for _, held in contents))
+                sides[Kind.OBJECT][side].update(place for _, place in relations)
+                sides[Kind.STATE][side].update(states)
+                sides[Kind.WORD][side].update(word for word, _ in (*relations, *contents))
+        return {kind: names.keys() - (sides[kind][0] & sides[kind][1]) for kind, names in self.counts.items()}
 
     def objects_alike(self, name: str) -> list[str]:
         """Give labels on object lines that may be meant, the most frequent first.

@@ -1,7 +1,7 @@
 """Names that are one name with a slip of the pen."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 
 from foon_asp.network.spelling import joined, one_letter_apart, without_doubles
 
@@ -12,10 +12,16 @@ _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked
 _RARE, _VERY_RARE = 5, 2  # mentions
 _RATIO, _HIGH_RATIO, _HIGHEST_RATIO = 3, 20, 100  # how much more often the other name stands
 _SHORT, _MIDDLE, _LONG = 3, 4, 5  # letters of the shorter word
+_SHORT_KNOWN = 4  # letters of a word that may be a slip for one that is known
 _COMPARED = 3  # names with the same letters but one: only the most frequent are compared
 
 
-def near_names(counts: dict[str, int], verbs: bool = False) -> Iterator[tuple[str, str]]:
+def near_names(
+    counts: dict[str, int],
+    verbs: bool = False,
+    known: Collection[str] = (),
+    loose: Container[str] = (),
+) -> Iterator[tuple[str, str]]:
     """Give pairs of names of one kind: the one that stands less often, and the one that may be meant.
 
     Names that only differ in doubled letters, capitals, blanks or hyphens are a pair at any frequency
@@ -24,34 +30,46 @@ def near_names(counts: dict[str, int], verbs: bool = False) -> Iterator[tuple[st
     (``baking try``). An ending that is grammar is no slip: egg, eggs, and of ``verbs`` cube, cubed. Nor is a
     digit.
 
+    ``known`` are words that are spelt as they should be: two of them are words of their own, and one beside
+    one of them that is none is a slip at any frequency. So is a name in ``loose``, those that are never made
+    or never used, beside one that is not there.
+
     ``counts`` has the mentions of each name. A name is given once. Time and memory grow with the letters of
     the names: rare names are looked up among the frequent ones by what is left when a letter is taken away.
     """
     paired = set()
-    for rare, meant in _spelt_two_ways(counts):
-        paired.add(rare)
+    for rare, meant in _spelt_two_ways(counts, known):
+        paired.update((rare, meant))
         yield rare, meant
-    rare_names = [name for name, count in counts.items() if count <= _RARE and name not in paired]
+    rare_names = [
+        name
+        for name, count in counts.items()
+        if name not in paired and (count <= _RARE or name in loose or _unknown(name, known))
+    ]
     if not rare_names:
         return
     frequent: dict[str, list[str]] = {}
     for name in sorted(counts, key=lambda name: (-counts[name], name)):
-        if counts[name] < _RATIO:
-            break
+        if counts[name] < _RATIO and name in loose and _unknown(name, known):
+            continue
         for rest in _without_a_letter(name):
             known = frequent.setdefault(rest, [])
             if len(known) < _COMPARED:
                 known.append(name)
     for name in rare_names:
-        candidates = {c for rest in _without_a_letter(name) for c in frequent.get(rest, ())}
+        candidates = {c for rest in _without_a_letter(name) for c in frequent.get(rest, ())}.difference(
+            {name}
+        )
         ordered = sorted(candidates, key=lambda other: (-counts[other], other))
-        meant_name = next((other for other in ordered if _is_slip(name, other, counts, verbs)), None)
+        meant_name = next(
+            (other for other in ordered if _is_slip(name, other, counts, verbs, known, loose)), None
+        )
         if meant_name is not None:
             yield name, meant_name
 
 
-def _spelt_two_ways(counts: dict[str, int]) -> Iterator[tuple[str, str]]:
-    """Give pairs that are the same without doubled letters, capitals and blanks."""
+def _spelt_two_ways(counts: dict[str, int], known: Collection[str]) -> Iterator[tuple[str, str]]:
+    """Give pairs that are the same without doubled letters, capitals and blanks; one of known words is meant."""
     spellings: dict[str, list[str]] = {}
     for name in counts:
         if len(name) <= _LONGEST:
@@ -59,7 +77,7 @@ def _spelt_two_ways(counts: dict[str, int]) -> Iterator[tuple[str, str]]:
     for skeleton, names in spellings.items():
         if len(names) < 2:
             continue
-        most = max(names, key=lambda name: counts[name])
+        most = max(names, key=lambda name: (not _unknown(name, known), counts[name]))
         for name in names:
             if name != most and (len(skeleton) >= _SHORTEST_DOUBLED or joined(name) == joined(most)):
                 yield name, most
@@ -71,20 +89,71 @@ def _without_a_letter(name: str) -> Iterable[str]:
     return {name, *(name[:place] + name[place + 1 :] for place in range(len(name)))}
 
 
-def _is_slip(rare: str, frequent: str, counts: dict[str, int], verbs: bool) -> bool:
+def near_word(word: str, near: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
+    """Give the known word for which one that is not known is likely a slip.
+
+    ``near`` has the known words by what is left of them when a letter is taken away, and by themselves.
+    """
+    if not _SHORT_KNOWN <= len(word) <= _LONGEST:
+        return None
+    if word + "ed" in near:
+        return word + "ed"
+    candidates = {other for rest in _without_a_letter(word) for other in near.get(rest, ())}
+    # another letter is the least likely: most of such words are words of their own
+    ordered = sorted(
+        candidates, key=lambda other: (len(other) == len(word) and sorted(other) != sorted(word), other)
+    )
+    return next((other for other in ordered if _near(word, other, verbs)), None)
+
+
+def by_what_is_left(words: Iterable[str]) -> dict[str, list[str]]:
+    """Give words by themselves and by what is left of them when a letter is taken away."""
+    near: dict[str, list[str]] = {}
+    for word in words:
+        if len(word) >= _SHORT_KNOWN:
+            for rest in _without_a_letter(word):
+                near.setdefault(rest, []).append(word)
+    return near
+
+
+def _unknown(name: str, known: Collection[str]) -> bool:
+    """Whether a name has a word that is not known, where any is."""
+    return bool(known) and any(word.isalpha() and word not in known for word in name.split(" "))
+
+
+def _near(word: str, other: str, verbs: bool) -> bool:
+    """Whether words differ by a letter behind the first, and not by an ending that is grammar."""
+    ending = _VERB_ENDING if verbs else _PLURAL_ENDING
+    is_grammar = ending.sub("", word) == ending.sub("", other)
+    return not is_grammar and word[:1] == other[:1] and one_letter_apart(word, other)
+
+
+def _is_slip(
+    rare: str,
+    frequent: str,
+    counts: dict[str, int],
+    verbs: bool,
+    known: Collection[str],
+    loose: Container[str],
+) -> bool:
     """Whether a rare name is likely a slip for a frequent one with almost the same letters."""
     words, others = rare.split(" "), frequent.split(" ")
     differing = [(a, b) for a, b in zip(words, others, strict=False) if a != b]
     if len(words) != len(others) or len(differing) != 1:
         return False
     word, other = differing[0]
-    ending = _VERB_ENDING if verbs else _PLURAL_ENDING
-    is_grammar = ending.sub("", word) == ending.sub("", other)
-    if is_grammar or word[:1] != other[:1] or not one_letter_apart(word, other):
+    if not _near(word, other, verbs):
+        return False
+    shortest = min(len(word), len(other))
+    if known:
+        if word in known:
+            return False
+        if other in known or (rare in loose and frequent not in loose):
+            return shortest >= _SHORT
+    if counts[rare] > _RARE or counts[frequent] < _RATIO:
         return False
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     ratio = counts[frequent] / counts[rare]
-    shortest = min(len(word), len(other))
     if sorted(word) == sorted(other):  # letters have changed places
         return shortest >= _MIDDLE and ratio >= _RATIO
     if len(word) == len(other):

@@ -109,13 +109,13 @@ class Sheet:
         """Give the place of a line in the file."""
         return self.places[index] if self.places is not None else Source(self.file, index + 1, column)
 
-    def finding(self, code: str, message: str, index: int, name: str = "") -> Diagnostic:
-        """Make a finding about a line, or about a name in it."""
+    def finding(self, code: str, message: str, index: int, name: str = "", column: int = 1) -> Diagnostic:
+        """Make a finding about a line, or about a name or a column of it."""
         severity = CATALOG[code].severity
         if self.places is not None:
             source, line = self._in_json(index, name)
             return Diagnostic(severity, code, message, source, line)
-        column = self._column(index, name) if name else 1
+        column = self._column(index, name) if name else column
         return Diagnostic(severity, code, message, self.place(index, column), self.lines[index])
 
     def _column(self, index: int, name: str) -> int:

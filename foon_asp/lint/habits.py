@@ -1,0 +1,121 @@
+"""What units do with objects: which come from nothing, vanish, or are no more among the contents."""
+
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+from foon_asp.network import Network, ObjectNode
+
+
+class Changes(NamedTuple):
+    """What a unit changes beyond its nodes, where a slip may be: names by the node in which they are seen.
+
+    ``lost`` were in a container that keeps other contents, ``gained`` are in one that had other contents;
+    ``new`` outputs and ``gone`` inputs are mentioned on one side alone.
+    """
+
+    lost: dict[int, list[str]]
+    gained: dict[int, list[str]]
+    new: list[int]
+    gone: list[int]
+    keeps: bool
+
+
+def held(node: ObjectNode) -> set[str]:
+    """Give the names of what a node contains."""
+    return {item for _, items in node.contents for item in items}
+
+
+def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
+    """Give every name in nodes: labels, contents and places."""
+    names = {node.label for node in nodes}
+    names.update(place for node in nodes for _, place in node.relations)
+    return names.union(*map(held, nodes))
+
+
+class Habit(NamedTuple):
+    """Of the units with a motion: how many there are, how many keep contents, and how many change what."""
+
+    units: int = 0
+    keep: int = 0
+    lose: int = 0
+    make: int = 0
+    end: int = 0
+
+    def plus(self, *more: int) -> "Habit":
+        """Add another one."""
+        return Habit(*map(sum, zip(self, more, strict=True)))
+
+
+class Habits:
+    """Looks at the units of a network one by one."""
+
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        objects = network.objects
+        self.ingredients = {name for node in objects for name in held(node)}
+        self.holders = {node.label for node in objects if node.contents}
+        self.holders.update(place for node in objects for _, place in node.relations)
+
+    def changes(self, unit: int) -> Changes:
+        """Say what a unit changes."""
+        objects = self.network.objects
+        inputs = {node: objects[node] for node in self.network.inputs[unit]}
+        outputs = {node: objects[node] for node in self.network.outputs[unit]}
+        before, after = mentioned(inputs.values()), mentioned(outputs.values())
+        new = [node for node, found in outputs.items() if found.label not in before]
+        gone = [
+            node
+            for node, found in inputs.items()
+            if found.label not in after
+            and found.label in self.ingredients
+            and found.label not in self.holders
+        ]
+        known = words_in(before)
+        lost: dict[int, list[str]] = {}
+        gained: dict[int, list[str]] = {}
+        keeps = False
+        for node, had, has in _containers(inputs, outputs):
+            keeps = True
+            missing = sorted(had - has - after)
+            more = sorted(name for name in has - had - before if known.isdisjoint(words_in([name])))
+            if missing and not more:
+                lost[node] = missing
+            elif more and not missing:
+                gained[node] = more
+        # a product stands in something, or something of its name or in it was there
+        products = {name for node in outputs.values() for name in held(node)}
+        fresh = [
+            node
+            for node in new
+            if outputs[node].label not in products
+            and not any(word == "from" and place in before for word, place in outputs[node].relations)
+            and known.isdisjoint(words_in([outputs[node].label]))
+            and before.isdisjoint(held(outputs[node]))
+        ]
+        return Changes(lost, gained, [] if gone else fresh, [] if new else gone, keeps)
+
+    def of_motions(self) -> dict[str, Habit]:
+        """Count what the units with each motion do."""
+        found: dict[str, Habit] = {}
+        for unit, motion in enumerate(self.network.motions):
+            seen = self.changes(unit)
+            new = 1, int(seen.keeps), int(bool(seen.lost)), int(bool(seen.new)), int(bool(seen.gone))
+            found[motion] = found.get(motion, Habit()).plus(*new)
+        return found
+
+
+def _containers(
+    inputs: dict[int, ObjectNode], outputs: dict[int, ObjectNode]
+) -> Iterator[tuple[int, set[str], set[str]]]:
+    """Give the outputs that keep some contents, with what they had and what they have."""
+    for node, after in outputs.items():
+        befores = [other for other in inputs.values() if other.label == after.label]
+        if len(befores) == 1 and sum(other.label == after.label for other in outputs.values()) == 1:
+            had, has = held(befores[0]), held(after)
+            if had & has:
+                yield node, had, has
+
+
+def words_in(names: Collection[str]) -> set[str]:
+    """Give the words of names, in the singular."""
+    return {word.removesuffix("s") for name in names for word in name.replace("-", " ").split(" ")}

@@ -1,0 +1,77 @@
+"""What there is to say of places: an object in something that does not contain it, or that is not there."""
+
+from collections.abc import Collection, Iterator
+
+from foon_asp.lint.habits import Habits, held, words_in
+from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.network import ObjectNode
+from foon_asp.text.diagnostics import Diagnostic
+
+_PLACES = {"in", "on"}
+
+
+def place_findings(files: LintedFiles) -> Iterator[Diagnostic]:
+    """Give the findings about each side of each unit, in linear time."""
+    network = files.network
+    habits = Habits(network)
+    labels = {node.label for node in network.objects}
+    for unit, copies in enumerate(files.copies):
+        copy = copies[0]
+        sheet = files.sheets[copy.sheet]
+        sides = network.inputs[unit], network.outputs[unit]
+        for side, ids in enumerate(sides):
+            nodes = [network.objects[node] for node in ids]
+            said = [("unheld", *each) for each in _unheld(nodes, habits)]
+            said += [("other-place", *each) for each in _elsewhere(nodes, labels, habits)]
+            if not said:
+                continue
+            blocks = list(sheet.blocks(copy.at))
+            part = blocks[copy.inputs :] if side else blocks[: copy.inputs]
+            for code, node, message in said:
+                index = next((index for index, other in part if other == node), copy.at)
+                yield sheet.finding(code, message, index, node.label)
+
+
+def _unheld(nodes: Collection[ObjectNode], habits: Habits) -> Iterator[tuple[ObjectNode, str]]:
+    """Give the one object that is in a container, and neither it nor what it is made of among the contents."""
+    for holder in nodes:
+        contents = held(holder)
+        alone = sum(node.label == holder.label for node in nodes) == 1
+        if not contents or not alone or holder.label in habits.ingredients:
+            continue
+        around = {place for _, place in holder.relations}
+        inside = [node for node in nodes if ("in", holder.label) in node.relations]
+        extra = [
+            node
+            for node in inside
+            if node.label in habits.ingredients
+            and node.label not in contents | habits.holders | around
+            and not any(node.label in held(other) for other in nodes)
+            and not held(node)
+            and words_in([node.label]).isdisjoint(words_in(contents))
+        ]
+        if len(extra) == 1:
+            inside_it = ", ".join(sorted(contents))
+            yield (
+                extra[0],
+                f"{extra[0].label!r} is in {holder.label!r} here, which contains {inside_it}, and not it",
+            )
+
+
+def _elsewhere(
+    nodes: Collection[ObjectNode], labels: Collection[str], habits: Habits
+) -> Iterator[tuple[ObjectNode, str]]:
+    """Give the objects that are in or on something that the unit has not, while something else contains them."""
+    here = {node.label for node in nodes}
+    for node in nodes:
+        for word, place in node.relations:
+            if word not in _PLACES or place in here or place not in labels or place in habits.ingredients:
+                continue
+            holders = sorted({other.label for other in nodes if node.label in held(other)})
+            if any(other.label in holders and (word, place) in other.relations for other in nodes):
+                continue
+            if not holders or not habits.ingredients.isdisjoint(holders):
+                continue
+            if words_in([place]).isdisjoint(words_in(holders)):
+                message = f"{node.label!r} is {word} {place!r}, which the unit has not, and {holders[0]!r} contains it"
+                yield node, message

@@ -1,0 +1,126 @@
+"""The names that FOONs know: objects, utensils, states, motions, and words of relations with their brackets."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from pathlib import Path
+
+from foon_asp.lint.names import Kind, Names
+from foon_asp.lint.near_names import by_what_is_left
+from foon_asp.lint.habits import Habit, Habits
+from foon_asp.network import Contents, Relation, counted
+from foon_asp.text.line import LineError, StateLine
+from foon_asp.text.table_rows import read_rows
+
+UTENSIL, HABIT = "utensil", "habit"
+_BRACKETS = {"[ ]": Relation, "{ }": Contents}
+_LEAST = 3  # lines of a word before it says anything of its brackets
+
+
+class Vocabulary:
+    """Names of each kind, and of each word of a relation how often it stands with ``[ ]`` and with ``{ }``."""
+
+    def __init__(self) -> None:
+        self.names: dict[Kind, set[str]] = {kind: set() for kind in Kind}
+        self.utensils: set[str] = set()
+        self.brackets: dict[str, Counter[type]] = {}
+        self.habits: dict[str, Habit] = {}
+
+    @classmethod
+    def of(cls, names: Names, utensils: Iterable[str] = ()) -> "Vocabulary":
+        """Learn from files: a utensil is an object that other objects are in or on, or that is said to be one."""
+        learned = cls()
+        for kind in Kind:
+            learned.names[kind].update(names.mentions[kind])
+        learned.utensils.update(utensils)
+        learned.habits = Habits(names.network).of_motions()
+        for word, mentions in names.mentions[Kind.WORD].items():
+            counts = learned.brackets.setdefault(word, Counter())
+            for mention in mentions:
+                if isinstance(mention.line, StateLine) and not mention.line.remarks:
+                    attribute = mention.line.attribute
+                    counts[type(attribute)] += mention.often
+                    if isinstance(attribute, Relation) and attribute.object in names.objects:
+                        learned.utensils.add(attribute.object)
+        return learned
+
+    def add(self, other: "Vocabulary") -> None:
+        """Add what another one knows."""
+        for kind in Kind:
+            self.names[kind] |= other.names[kind]
+        self.utensils |= other.utensils
+        for motion, habit in other.habits.items():
+            self.habits[motion] = self.habits.get(motion, Habit()).plus(*habit)
+        for word, counts in other.brackets.items():
+            self.brackets.setdefault(word, Counter()).update(counts)
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """Every word of every name."""
+        return frozenset(word for names in self.names.values() for name in names for word in words_of(name))
+
+    @cached_property
+    def near(self) -> dict[str, list[str]]:
+        """The words by themselves and by what is left of them when a letter is taken away."""
+        return by_what_is_left(self.words)
+
+    def usual_bracket(self, word: str) -> type | None:
+        """Give ``Relation`` or ``Contents`` for a word that stands with one of them nearly always."""
+        counts = self.brackets.get(word)
+        if not counts:
+            return None
+        (kind, often), *others = counts.most_common()
+        return kind if often >= max(_LEAST, 10 * sum(count for _, count in others)) else None
+
+    def text(self) -> str:
+        """Write a vocabulary, as :func:`read_vocabulary` reads it."""
+        rows = [(str(kind), name) for kind in Kind if kind is not Kind.WORD for name in self.names[kind]]
+        rows += [(UTENSIL, name) for name in self.utensils]
+        rows += [
+            (f"{Kind.WORD} {sign}", f"{word}\t{self.brackets[word][bracket]}")
+            for word in self.brackets
+            for sign, bracket in _BRACKETS.items()
+            if self.brackets[word][bracket]
+        ]
+        rows += [(HABIT, "\t".join(map(str, (motion, *habit)))) for motion, habit in self.habits.items()]
+        return "".join(f"{kind}\t{name}\n" for kind, name in sorted(rows))
+
+
+def words_of(name: str) -> Iterator[str]:
+    """Give the words of a name that are made of letters alone, small."""
+    return (word for word in name.lower().replace("-", " ").split(" ") if word.isalpha())
+
+
+def _counted(kind: str, row: str, count: int) -> tuple[str, list[int]]:
+    """Give a name and the numbers behind it."""
+    name, *numbers = row.split("\t")
+    if len(numbers) != count or not all(number.isascii() and number.isdigit() for number in numbers):
+        raise LineError(len(kind) + 2, repr(row), (f"a name and, behind tabs, {counted(count, 'number')}",))
+    return name, [int(number) for number in numbers]
+
+
+def read_vocabulary(file: Path) -> Vocabulary:
+    """Read ``kind⇥name`` lines; raises :class:`InputError` for a line of another form."""
+    found = Vocabulary()
+    kinds = {str(kind): kind for kind in Kind if kind is not Kind.WORD}
+
+    def read(kind: str, name: str, _: object) -> None:
+        sign = _BRACKETS.get(kind.removeprefix(f"{Kind.WORD} "))
+        if kind in kinds:
+            found.names[kinds[kind]].add(name)
+        elif kind == UTENSIL:
+            found.utensils.add(name)
+            found.names[Kind.OBJECT].add(name)
+        elif sign:
+            word, (often,) = _counted(kind, name, 1)
+            found.names[Kind.WORD].add(word)
+            found.brackets.setdefault(word, Counter())[sign] += often
+        elif kind == HABIT:
+            motion, counts = _counted(kind, name, len(Habit._fields))
+            found.habits[motion] = found.habits.get(motion, Habit()).plus(*counts)
+        else:
+            expected = (*kinds, UTENSIL, HABIT, *(f"{Kind.WORD} {sign}" for sign in _BRACKETS))
+            raise LineError(1, repr(kind), expected)
+
+    read_rows(file, "vocabulary", "a name", read)
+    return found
