@@ -11,6 +11,7 @@ import argparse
 import random
 from pathlib import Path
 
+from foon_asp.lint.linted_files import with_tables
 from foon_asp.lint.linter import lint
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
@@ -22,7 +23,11 @@ AROUND = 9  # lines before and behind
 
 def drawn(paths: list[Path]) -> list[tuple[Path, Diagnostic]]:
     """Give the findings that are judged, in the order of the files."""
-    found = [(path, finding) for path in paths for finding in lint(file for file, _ in foon_files([path]))]
+    found = [
+        (path, finding)
+        for path in paths
+        for finding in lint(with_tables([path], (file for file, _ in foon_files([path]))))
+    ]
     places = sorted(random.Random(SEED).sample(range(len(found)), min(DRAWN, len(found))))
     return [found[place] for place in places]
 

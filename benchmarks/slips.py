@@ -661,9 +661,10 @@ def measure_tables(source: Path, often: int, folder: Path) -> Iterator[Case]:
 
 def linted(folder: Path) -> list[Path]:
     """Give the files that are linted when a folder is named."""
+    from foon_asp.lint.linted_files import with_tables  # noqa: PLC0415
     from foon_asp.text.folder_files import foon_files  # noqa: PLC0415
 
-    return [file for file, _ in foon_files([folder])]
+    return with_tables([folder], (file for file, _ in foon_files([folder])))
 
 
 def without_ids(lines: Sequence[str]) -> list[str]:

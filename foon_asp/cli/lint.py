@@ -17,6 +17,7 @@ from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
 from foon_asp.lint.baseline import Baseline, baseline_json, read_baseline
 from foon_asp.lint.catalog import CATALOG
+from foon_asp.lint.linted_files import with_tables
 from foon_asp.lint.linter import lint
 from foon_asp.lint.mending import is_mendable, mended
 from foon_asp.lint.settings import find_settings
@@ -170,7 +171,7 @@ def _check(
 def _files(paths: Sequence[Path], stdin_filename: Path | None) -> tuple[list[Path], Mapping[Path, bytes]]:
     """Give the files, and the content of the one that is on standard input, which stands for that on disk."""
     on_disk = [path for path in paths if str(path) != _STDIN]
-    files = [file for file, _ in foon_files(on_disk)]
+    files = with_tables(on_disk, (file for file, _ in foon_files(on_disk)))
     if len(on_disk) == len(paths):
         return files, {}
     name = stdin_filename or Path("<stdin>")

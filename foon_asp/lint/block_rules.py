@@ -8,35 +8,49 @@ from foon_asp.network import Contents, Relation
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import StateLine
 
+_PLACES = {"in", "on", "inside", "under", "below", "at", "into", "onto", "on top of"}
+
 
 def block_findings(sheet: Sheet) -> Iterator[Diagnostic]:
-    """Give a finding for each different pair of lines that stand under one object."""
+    """Give a finding for each different pair of lines that stand under one object.
+
+    An object may be on a tray and covered with foil; two places, or two lists by one word, are too many.
+    """
     parts = {
-        sheet.lines[written.first]: type(written.line.attribute)
+        sheet.lines[written.first]: _part(written.line.attribute)
         for written in sheet.distinct_lines
         if isinstance(written.line, StateLine)
     }
     found: dict[tuple[str, str, str, str], list[int]] = {}  # where
-    label, above = "", dict.fromkeys((Contents, Relation), "")
+    label = ""
+    above: dict[str, str] = {}
     states: set[str] = set()
     for index, line in enumerate(sheet.lines):
         part = parts.get(line)
         if part is None:
             if line[:1] == "O":
-                label, above = line, dict.fromkeys((Contents, Relation), "")
-                states = set()
+                label, above, states = line, {}, set()
             continue
         if line in states:
             found.setdefault(("repeated-state", label, line, line), []).append(index)
-        elif part in above:
-            if above[part]:
-                code = "second-contents" if part is Contents else "second-relation"
+        elif part:
+            if part in above:
+                code = "second-contents" if part[0] == "{" else "second-relation"
                 found.setdefault((code, label, above[part], line), []).append(index)
             above[part] = line
         states.add(line)
     for (code, label, first, second), places in found.items():
         count = f" ({times(len(places))} in this file)" if len(places) > 1 else ""
         yield sheet.finding(code, _message(code, label, first, second) + count, places[0])
+
+
+def _part(attribute: str | Relation | Contents) -> str:
+    """Say what an object has one of: contents or a relation by one word, and one place."""
+    if isinstance(attribute, Contents):
+        return "{" + attribute.word
+    if isinstance(attribute, Relation):
+        return "[" if attribute.word in _PLACES else "[" + attribute.word
+    return ""
 
 
 def _message(code: str, label: str, first: str, second: str) -> str:

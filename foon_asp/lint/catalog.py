@@ -49,7 +49,6 @@ _RULES = (
     # Object nodes.
     Rule("flag-space", WARNING, "a motion flag behind a space, which makes it part of the name"),
     Rule("other-bracket", WARNING, "a bracket of another kind than the word has elsewhere"),
-    Rule("object-as-state", WARNING, "a state that is the name of an object"),
     Rule("no-bracket", WARNING, "a state that is a relation or contents without brackets"),
     Rule("missing-flag", NOTE, "no motion flag on an object line, in a file where most have one"),
     Rule("second-contents", NOTE, "two { } lines under one object"),
@@ -58,15 +57,16 @@ _RULES = (
     # Names and ids.
     Rule("near-name", WARNING, "two names that differ by a likely typing error"),
     Rule("misspelt", WARNING, "a word that is nearly one of the vocabulary"),
+    Rule("other-kind", WARNING, "a state that is known as an object, or an object as a state"),
     Rule("unknown-container", NOTE, "an object in [ ] that is never an object line"),
     Rule("unknown-ingredient", WARNING, "an ingredient in { } that is never an object line"),
     Rule("id-of-two-names", WARNING, "one id for two names"),
+    Rule("missing-id", NOTE, "no id, in a file where nearly all lines have one"),
     Rule("name-of-two-ids", WARNING, "one name with two ids"),
     # Units and what they make.
     Rule("repeated-object", WARNING, "an object node listed twice on one side of a unit"),
     Rule("no-effect", WARNING, "a unit whose outputs are its inputs"),
     Rule("duplicate-unit", WARNING, "a unit that the file already contains"),
-    Rule("shared-unit", NOTE, "a unit that another file contains, too"),
     Rule("broken-chain", WARNING, "an object that is taken, and made a little different"),
     Rule("left-out", WARNING, "a unit that makes a container and not what is in it, or the other way round"),
     Rule("swapped-sides", WARNING, "a unit that would go together with others the other way round"),
@@ -82,6 +82,9 @@ _RULES = (
     ),
     Rule("dead-cycle", NOTE, "objects that are made only by units that need them"),
     Rule("unmade-goal", WARNING, "a goal that no unit makes"),
+    Rule("table", ERROR, "a row of a table beside the network that cannot be read"),
+    Rule("unknown-row", WARNING, "a row of a table for a name that the network has not"),
+    Rule("missing-rate", WARNING, "motions of the network without a success rate"),
     Rule("unknown-item", NOTE, "an entry of a kitchen that is not in the network"),
 )
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from foon_asp.lint.habits import Habit, Habits, mentioned
+from foon_asp.lint.habits import Habit, mentioned
 from foon_asp.lint.names import Names
 from foon_asp.lint.vocabulary import Vocabulary
 from foon_asp.text.diagnostics import Diagnostic
@@ -16,7 +16,6 @@ def change_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
     ``known`` has the habits of the motions of the files, too.
     """
     network = names.network
-    habits = Habits(network)
     grown: dict[int, list[int]] = {}  # by node, the units that make it out of what is called so
     for unit, (inputs, outputs) in enumerate(zip(network.inputs, network.outputs, strict=True)):
         before = mentioned([network.objects[node] for node in inputs])
@@ -24,7 +23,7 @@ def change_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
             if network.objects[node].label in before:
                 grown.setdefault(node, []).append(unit)
     for unit, motion in enumerate(network.motions):
-        changes = habits.changes(unit)
+        changes = names.habits.units[unit]
         habit = known.habits.get(motion, Habit())
         said: list[tuple[str, int, str]] = []
         if _is_seldom(habit.lose, habit.keep):

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 
 from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.lint.names import Names
+from foon_asp.lint.vocabulary import Vocabulary
 from foon_asp.network import counted
 from foon_asp.network.dead_cycles import DeadCycle, dead_cycles
 from foon_asp.text.diagnostics import Diagnostic
@@ -10,9 +12,12 @@ from foon_asp.text.diagnostics import Diagnostic
 _SHOWN = 4  # steps of a cycle
 
 
-def cycle_findings(files: LintedFiles) -> Iterator[Diagnostic]:
-    """Give a finding for each dead cycle, where the cycle is entered; kitchens among the files break some."""
-    network = files.network
+def cycle_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
+    """Give a finding for each dead cycle, where the cycle is entered; kitchens among the files break some.
+
+    A utensil that is nothing but on, off or empty is at hand: a tap that is turned on and off is no slip.
+    """
+    files, network = names.files, names.network
     at_hand = {
         node
         for sheet in files.sheets
@@ -20,6 +25,11 @@ def cycle_findings(files: LintedFiles) -> Iterator[Diagnostic]:
         for entry in sheet.entries
         for node in network.find(entry.pattern)
     }
+    at_hand.update(
+        number
+        for number, node in enumerate(network.objects)
+        if node.label in known.utensils and not node.relations and not node.contents
+    )
     for cycle in dead_cycles(network, at_hand):
         yield _finding(files, cycle)
 

@@ -1,10 +1,9 @@
 """What there is to say of how objects come from unit to unit: chains that break, sides that are swapped."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from foon_asp.lint.habits import held
-from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.lint.names import Names
 from foon_asp.lint.sheet import Sheet
 from foon_asp.network import Network, ObjectNode
 from foon_asp.network.near_nodes import slip_between
@@ -16,11 +15,14 @@ _NEAR, _MIDDLE, _FAR = 2, 8, 25  # units between making and taking
 class _Flow:
     """The units of one sheet in order, and where each object node is made and taken."""
 
-    def __init__(self, sheet: Sheet, network: Network, units: list[tuple[int, int]]) -> None:
+    def __init__(
+        self, sheet: Sheet, network: Network, units: list[tuple[int, int]], ingredients: set[str]
+    ) -> None:
         self.sheet = sheet
         self.network = network
         self.places = dict(reversed([(unit, at) for at, unit in units]))
-        self.rank = {unit: rank for rank, (_, unit) in enumerate(units)}
+        self.rank = {unit: rank for rank, unit in enumerate(dict.fromkeys(unit for _, unit in units))}
+        self.ingredients = ingredients
         self.made: dict[int, list[int]] = {}
         self.taken: dict[int, list[int]] = {}
         for unit in self.places:
@@ -41,6 +43,11 @@ class _Flow:
         earlier = [unit for unit in self.made.get(node, ()) if self.rank[unit] < self.rank[before]]
         return earlier[-1] if earlier else None
 
+    def is_told_apart(self, node: int) -> bool:
+        """Whether a node is more than a tool in some state, of which there are many."""
+        found = self.network.objects[node]
+        return bool(found.relations or found.contents) or found.label in self.ingredients
+
     def sides(self, unit: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Give the inputs and the outputs of a unit."""
         return self.network.inputs[unit], self.network.outputs[unit]
@@ -51,14 +58,15 @@ class _Flow:
         return self.sheet.where(index, self.sheet)
 
 
-def flow_findings(files: LintedFiles) -> Iterator[Diagnostic]:
-    """Give the findings about each network by itself."""
+def flow_findings(names: Names) -> Iterator[Diagnostic]:
+    """Give the findings about each network by itself, in linear time: only what is near is compared."""
+    files, ingredients = names.files, names.habits.ingredients
     by_sheet: dict[int, list[tuple[int, int]]] = {}
     for unit, copies in enumerate(files.copies):
         for copy in copies:
             by_sheet.setdefault(copy.sheet, []).append((copy.at, unit))
     for number, units in by_sheet.items():
-        flow = _Flow(files.sheets[number], files.network, sorted(units))
+        flow = _Flow(files.sheets[number], files.network, sorted(units), ingredients)
         yield from _broken(flow)
         yield from _swapped(flow)
 
@@ -66,28 +74,20 @@ def flow_findings(files: LintedFiles) -> Iterator[Diagnostic]:
 def _broken(flow: _Flow) -> Iterator[Diagnostic]:
     """Give the findings where what is taken is not what was made before, but nearly."""
     objects = flow.network.objects
-    by_label: dict[str, list[int]] = {}
-    by_rest: dict[tuple[object, ...], list[int]] = {}
-    for node in flow.made:
-        by_label.setdefault(objects[node].label, []).append(node)
-        by_rest.setdefault(objects[node][1:], []).append(node)
+    units = list(flow.rank)
+    made = [set(flow.network.outputs[unit]).difference(flow.network.inputs[unit]) for unit in units]
     for node, takers in flow.taken.items():
         if node in flow.made:
             continue
-        taker = takers[0]
-        near = []
-        taken = objects[node]
-        relabelled = by_rest.get(taken[1:], ()) if _parts(taken) > 1 else ()
-        for other in (*by_label.get(taken.label, ()), *relabelled):
-            maker = flow.maker(other, taker)
-            if maker is None:
-                continue
-            between = flow.rank[taker] - flow.rank[maker]
-            if other not in flow.taken:
-                if _may_be_one(taken, objects[other], between):
-                    near.append((between, other, maker))
-            elif between <= _MIDDLE and _lacks_a_state(taken, objects[other]):
-                near.append((between, other, maker))
+        taker, taken = takers[0], objects[node]
+        rank = flow.rank[taker]
+        near = [
+            (between, other, units[rank - between])
+            for between in range(1, min(rank, _FAR) + 1)
+            for other in made[rank - between]
+            if (other not in flow.taken and _may_be_one(taken, objects[other], between))
+            or (between <= _MIDDLE and _lacks_a_state(taken, objects[other]))
+        ]
         if not near:
             yield from _left_out(flow, node, taker)
             continue
@@ -102,24 +102,21 @@ def _broken(flow: _Flow) -> Iterator[Diagnostic]:
 
 def _may_be_one(taken: ObjectNode, made: ObjectNode, between: int) -> bool:
     """Whether two nodes differ in so little that they may be meant to be the same."""
-    if taken.label == made.label and slip_between(taken, made):
-        return True
-    if between > _FAR:
-        return False
     if taken.label != made.label:
-        return between <= _NEAR
+        return between <= _NEAR and _parts(taken) > 1 and taken[1:] == made[1:]
+    if slip_between(taken, made):
+        return True
     states, relations = taken.states ^ made.states, taken.relations ^ made.relations
     differ = taken.contents != made.contents
     if bool(states) + bool(relations) + differ > 1:
         return False
     if differ:
         return len(held(taken) ^ held(made)) == 1 and min(len(held(taken)), len(held(made))) > 1
-    if len(states) == 1:
-        return True
-    if len(states | relations) == 2:  # one in place of another
-        return len(taken.states ^ made.states) != 1 and _parts(taken) > 1 and _parts(taken) == _parts(made)
+    if len(states) + len(relations) == 2:  # one in place of another
+        return between <= _MIDDLE and _parts(taken) > 1 and _parts(taken) == _parts(made)
     # what lies about is taken again and again: sugar, after the sugar before is in the bowl
-    return len(relations) == 1 and (between <= _NEAR or bool(taken.relations or taken.contents))
+    moved = between <= _NEAR or bool(taken.relations or taken.contents)
+    return len(states) == 1 or (len(relations) == 1 and moved)
 
 
 def _lacks_a_state(taken: ObjectNode, made: ObjectNode) -> bool:
@@ -165,15 +162,16 @@ def _swapped(flow: _Flow) -> Iterator[Diagnostic]:
         return any(other != unit for other in units.get(node, ()))
 
     for unit, at in flow.places.items():
-        inputs = set(network.inputs[unit]).difference(network.outputs[unit])
-        outputs = set(network.outputs[unit]).difference(network.inputs[unit])
+        inputs = {node for node in network.inputs[unit] if flow.is_told_apart(node)}
+        outputs = {node for node in network.outputs[unit] if flow.is_told_apart(node)}
+        inputs, outputs = inputs - outputs, outputs - inputs
         if any(others(flow.made, node, unit) for node in inputs):
             continue
         if any(others(flow.taken, node, unit) for node in outputs):
             continue
         back = [node for node in inputs if others(flow.taken, node, unit)]
         back_too = [node for node in outputs if others(flow.made, node, unit)]
-        if back and (back_too or len(back) == len(inputs)) and len(outputs) > 0:
+        if back and (back_too or len(back) == len(inputs)) and outputs:
             message = (
                 f"no unit makes what {network.motions[unit]!r} takes, and none takes what it makes; other "
                 f"units would, the other way round: are inputs and outputs swapped?"

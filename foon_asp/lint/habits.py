@@ -1,9 +1,13 @@
 """What units do with objects: which come from nothing, vanish, or are no more among the contents."""
 
 from collections.abc import Collection, Iterator
+from collections.abc import Set as AbstractSet
+from functools import cached_property
 from typing import NamedTuple
 
 from foon_asp.network import Network, ObjectNode
+
+_NOTHING: frozenset[str] = frozenset()
 
 
 class Changes(NamedTuple):
@@ -20,9 +24,9 @@ class Changes(NamedTuple):
     keeps: bool
 
 
-def held(node: ObjectNode) -> set[str]:
+def held(node: ObjectNode) -> AbstractSet[str]:
     """Give the names of what a node contains."""
-    return {item for _, items in node.contents for item in items}
+    return _NOTHING if not node.contents else {item for _, items in node.contents for item in items}
 
 
 def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
@@ -55,6 +59,11 @@ class Habits:
         self.ingredients = {name for node in objects for name in held(node)}
         self.holders = {node.label for node in objects if node.contents}
         self.holders.update(place for node in objects for _, place in node.relations)
+
+    @cached_property
+    def units(self) -> list[Changes]:
+        """What each unit changes."""
+        return [self.changes(unit) for unit in range(len(self.network))]
 
     def changes(self, unit: int) -> Changes:
         """Say what a unit changes."""
@@ -98,7 +107,7 @@ class Habits:
         """Count what the units with each motion do."""
         found: dict[str, Habit] = {}
         for unit, motion in enumerate(self.network.motions):
-            seen = self.changes(unit)
+            seen = self.units[unit]
             new = 1, int(seen.keeps), int(bool(seen.lost)), int(bool(seen.new)), int(bool(seen.gone))
             found[motion] = found.get(motion, Habit()).plus(*new)
         return found
@@ -106,7 +115,7 @@ class Habits:
 
 def _containers(
     inputs: dict[int, ObjectNode], outputs: dict[int, ObjectNode]
-) -> Iterator[tuple[int, set[str], set[str]]]:
+) -> Iterator[tuple[int, AbstractSet[str], AbstractSet[str]]]:
     """Give the outputs that keep some contents, with what they had and what they have."""
     for node, after in outputs.items():
         befores = [other for other in inputs.values() if other.label == after.label]

@@ -9,6 +9,7 @@ from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.line import name_of
 
 _KINDS = {"O": "object", "S": "state", "M": "motion"}
+_NEARLY_ALL = 20  # lines with an id for one without
 _MANY = 4  # names of one id: then it means nothing, and they are told together
 
 
@@ -36,10 +37,23 @@ def id_findings(sheet: Sheet) -> Iterator[Diagnostic]:
         rarity, first = -sum(line.often for line in alike), min(line.first for line in alike)
         names.setdefault((letter, id_), []).append(_Use(rarity, first, name))
         ids.setdefault((letter, name), []).append(_Use(rarity, first, id_))
+    yield from _missing(sheet)
     for (letter, id_), of_id in names.items():
         yield from _names_of_id(sheet, letter, id_, sorted(of_id))
     for (letter, name), of_name in ids.items():
         yield from _ids_of_name(sheet, letter, name, sorted(of_name))
+
+
+def _missing(sheet: Sheet) -> Iterator[Diagnostic]:
+    """Give the lines without an id, where nearly all have one."""
+    without = [written for written in sheet.distinct_lines if not written.line.id]
+    often = sum(written.often for written in without)
+    if not without or _NEARLY_ALL * often > sum(written.often for written in sheet.distinct_lines):
+        return
+    for written in without:
+        letter = sheet.lines[written.first][0]
+        message = f"no {_KINDS[letter]} id behind {letter}; nearly all lines of the file have ids"
+        yield sheet.finding("missing-id", message, written.first)
 
 
 def _names_of_id(sheet: Sheet, letter: str, id_: str, uses: list[_Use]) -> Iterator[Diagnostic]:

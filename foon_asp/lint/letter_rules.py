@@ -34,8 +34,8 @@ def letter_findings(files: LintedFiles) -> Iterator[Diagnostic]:
             spelt = forms[unicodedata.normalize("NFC", word)]
             if word != max(spelt, key=lambda form: (spelt[form], unicodedata.is_normalized("NFC", form))):
                 message = (
-                    f"{word!r} looks the same elsewhere, and its accents are other characters there, so that the "
-                    "names differ; copy the word from there"
+                    f"{word!r} looks the same elsewhere, where its accents are other characters; the names "
+                    "differ, so copy the word from there"
                 )
                 yield sheet.finding("accent", message, index, column=line.index(word) + 1)
 
@@ -66,8 +66,8 @@ def _of_two_scripts(sheet: Sheet, index: int, line: str) -> Iterator[Diagnostic]
             script, places = min(scripts.items(), key=lambda each: len(each[1]))
             letter = match[0][places[0]]
             message = (
-                f"{match[0]!r} has a {script.capitalize()} letter, U+{ord(letter):04X}, among others that look "
-                "like it, which makes another name; type it anew"
+                f"{match[0]!r} has a {script.capitalize()} letter, U+{ord(letter):04X}, among others that "
+                "look like it, which makes another name; type it anew"
             )
             yield sheet.finding("foreign-letter", message, index, column=match.start() + places[0] + 1)
             return

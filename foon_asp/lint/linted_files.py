@@ -19,7 +19,15 @@ from foon_asp.text.plain_file import is_json, split_lines
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 
+_TABLES = {"durations.txt", "motion.txt", "tools.txt", "unit_prices.txt", "utensils.txt"}
 _LINE_BREAK = re.compile(r"[\r\n]")
+
+
+def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
+    """Give files, and the tables of rates, utensils and the like in the folders among the paths."""
+    folders = [path for path in paths if path.is_dir()]
+    tables = [file for folder in folders for file in sorted(folder.rglob("*.txt")) if file.name in _TABLES]
+    return list(dict.fromkeys([*files, *tables]))
 
 
 class Copy(NamedTuple):
@@ -32,7 +40,7 @@ class Copy(NamedTuple):
 
 
 class LintedFiles:
-    """All sheets, the network that their units make up, and what the reader remarked on.
+    """All sheets, the network that their units make up, the tables beside, and what the reader remarked on.
 
     ``copies[u]`` are the places where unit ``u`` of the network stands, in the order read. Files are read
     independently of errors in them: what cannot be understood is left out. ``contents`` are the bytes of
@@ -43,11 +51,16 @@ class LintedFiles:
         self._contents = contents
         self.reader = FoonReader()
         self.sheets: list[Sheet] = []
+        self.tables: list[Sheet] = []
         self.copies: list[list[Copy]] = []
         self._remarks: list[Diagnostic] = []
         self._builder = NetworkBuilder()
         for file in files:
-            self._read(file)
+            if file.name in _TABLES:
+                text = self.reader.text(file, self._contents.get(file))
+                self.tables.append(Sheet(str(file), split_lines(text), self.reader))
+            else:
+                self._read(file)
         self.network: Network = self._builder.build()
         self._remarks += self.reader.diagnostics
 

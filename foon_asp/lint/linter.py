@@ -5,7 +5,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from foon_asp.lint.block_rules import block_findings
-from foon_asp.lint.bracket_rules import bracket_findings
+from foon_asp.lint.bracket_rules import bracket_findings, without_doubtful_fixes
 from foon_asp.lint.change_rules import change_findings
 from foon_asp.lint.cycle_rules import cycle_findings
 from foon_asp.lint.flag_rules import flag_findings
@@ -18,6 +18,7 @@ from foon_asp.lint.name_rules import name_findings
 from foon_asp.lint.names import Names
 from foon_asp.lint.noqa import unsilenced
 from foon_asp.lint.place_rules import place_findings
+from foon_asp.lint.table_rules import table_findings
 from foon_asp.lint.time_rules import time_findings
 from foon_asp.lint.unit_rules import unit_findings
 from foon_asp.lint.vocabulary import Vocabulary, read_vocabulary
@@ -43,15 +44,20 @@ def lint(
     linted = LintedFiles(files, contents)
     names = Names(linted)
     known = read_vocabulary(vocabulary or bundled_vocabulary())
-    findings = linted.remarks()
+    findings: list[Diagnostic] = []
     for rule in _RULES:
         findings += rule(linted)
+    findings += flow_findings(names)
+    findings += place_findings(names)
     findings += name_findings(names, known)
+    findings += table_findings(names, known)
+    findings += cycle_findings(names, known)
     known.add(Vocabulary.of(names))
+    findings += without_doubtful_fixes(linted.remarks(), known, linted.reader)
     findings += bracket_findings(names, known)
     findings += change_findings(names, known)
-    findings = list(unsilenced(findings, linted.sheets))
-    order = {sheet.file: number for number, sheet in enumerate(linted.sheets)}
+    findings = list(unsilenced(findings, [*linted.sheets, *linted.tables]))
+    order = {sheet.file: number for number, sheet in enumerate([*linted.sheets, *linted.tables])}
     return sorted(
         findings, key=lambda f: (order.get(f.source.file, 0), f.source.line, f.source.column, f.code)
     )
@@ -69,8 +75,5 @@ _RULES: Collection[Callable[[LintedFiles], Iterator[Diagnostic]]] = (
     letter_findings,
     time_findings,
     unit_findings,
-    flow_findings,
-    place_findings,
-    cycle_findings,
     goal_findings,
 )

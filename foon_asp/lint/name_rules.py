@@ -9,6 +9,9 @@ from foon_asp.network import Contents, Relation
 from foon_asp.text.diagnostics import Diagnostic, Rename
 from foon_asp.text.line import StateLine
 
+_A = {Kind.OBJECT: "an object", Kind.STATE: "a state"}
+_LETTERS = {Kind.OBJECT: "O", Kind.STATE: "S"}
+
 
 def name_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
     """Give the findings about near names, and about containers and ingredients that are no object.
@@ -24,10 +27,11 @@ def name_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
         for name in names.counts[kind]:
             if (kind, name) not in said and name not in known.names[kind]:
                 yield from _misspelt(names, kind, name, known)
+    yield from _of_the_other_kind(names, known)
     if names.has_network:
         for name in names.mentions[Kind.OBJECT]:
             if name not in names.objects and (Kind.OBJECT, name) not in said:
-                yield from _unknown(names, name)
+                yield from _unknown(names, name, known)
 
 
 def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
@@ -46,6 +50,20 @@ def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnosti
         yield names.sheets[sheet].finding("near-name", message, index, name)._replace(rename=rename)
 
 
+def _of_the_other_kind(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
+    """Say of states that are objects and of objects that are states, where they are known as nothing else."""
+    states, objects = names.counts[Kind.STATE], names.objects
+    for kind, here, other in ((Kind.STATE, states, Kind.OBJECT), (Kind.OBJECT, objects, Kind.STATE)):
+        there = names.objects if other is Kind.OBJECT else states
+        for name, count in here.items():
+            is_other = there.get(name, 0) > count or name in known.utensils
+            if is_other and kind is not other and name not in known.names[kind]:
+                message = f"{name!r} is known as {_A[other]}; is it {_A[other]} here, and the letter wrong?"
+                for sheet, index, _ in names.by_sheet(kind, name):
+                    if names.sheets[sheet].lines[index][:1] == _LETTERS[kind]:
+                        yield names.sheets[sheet].finding("other-kind", message, index, name)
+
+
 def _misspelt(names: Names, kind: Kind, name: str, known: Vocabulary) -> Iterator[Diagnostic]:
     """Say of a name that a word of it is nearly one that is known."""
     for word in words_of(name):
@@ -59,14 +77,21 @@ def _misspelt(names: Names, kind: Kind, name: str, known: Vocabulary) -> Iterato
             return
 
 
-def _unknown(names: Names, name: str) -> Iterator[Diagnostic]:
-    """Say once of a name that no file has it as an object: as a container, and as an ingredient."""
+def _unknown(names: Names, name: str, known: Vocabulary) -> Iterator[Diagnostic]:
+    """Say once of a name that no file has it as an object: as a container, and as an ingredient.
+
+    Where no other name may be meant, it has to have a word that is not known.
+    """
     alike = " or ".join(map(repr, names.objects_alike(name)))
+    if not alike and all(word in known.words for word in name.lower().replace("-", " ").split()):
+        return
     for code, part in (("unknown-container", Relation), ("unknown-ingredient", Contents)):
         found = [
             mention
             for mention in names.mentions[Kind.OBJECT][name]
-            if isinstance(mention.line, StateLine) and isinstance(mention.line.attribute, part)
+            if isinstance(mention.line, StateLine)
+            and isinstance(mention.line.attribute, part)
+            and names.sheets[mention.sheet].entries is None
         ]
         if not found:
             continue

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from foon_asp.lint.habits import Habits
 from foon_asp.lint.linted_files import LintedFiles
 from foon_asp.text.line import Line, ObjectLine
 from foon_asp.text.renaming import NameKind, line_names
@@ -50,8 +51,13 @@ class Names:
         """How often each label stands on an object line."""
 
     @cached_property
+    def habits(self) -> Habits:
+        """What the units change."""
+        return Habits(self.network)
+
+    @cached_property
     def loose(self) -> dict[Kind, set[str]]:
-        """Names of which every object node that units have is only taken, or only made, and of motions all."""
+        """Names that stand on one side of units alone: what has them is never made, or never taken."""
         network = self.network
         taken = {node for nodes in network.inputs for node in nodes}
         made = {node for nodes in network.outputs for node in nodes}

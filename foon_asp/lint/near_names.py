@@ -37,7 +37,7 @@ def near_names(
     ``counts`` has the mentions of each name. A name is given once. Time and memory grow with the letters of
     the names: rare names are looked up among the frequent ones by what is left when a letter is taken away.
     """
-    paired = set()
+    paired: set[str] = set()
     for rare, meant in _spelt_two_ways(counts, known):
         paired.update((rare, meant))
         yield rare, meant
@@ -69,7 +69,7 @@ def near_names(
 
 
 def _spelt_two_ways(counts: dict[str, int], known: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Give pairs that are the same without doubled letters, capitals and blanks; one of known words is meant."""
+    """Give pairs that are the same without doubled letters, capitals and blanks."""
     spellings: dict[str, list[str]] = {}
     for name in counts:
         if len(name) <= _LONGEST:
@@ -145,19 +145,21 @@ def _is_slip(
     if not _near(word, other, verbs):
         return False
     shortest = min(len(word), len(other))
-    if known:
-        if word in known:
-            return False
-        if other in known or (rare in loose and frequent not in loose):
-            return shortest >= _SHORT
-    if counts[rare] > _RARE or counts[frequent] < _RATIO:
-        return False
+    if known and (word in known or other in known or (rare in loose and frequent not in loose)):
+        return word not in known and shortest >= _SHORT
+    return counts[rare] <= _RARE and _is_rare_beside(word, other, counts[rare], counts[frequent])
+
+
+def _is_rare_beside(word: str, other: str, rare: int, frequent: int) -> bool:
+    """Whether a word stands so rarely beside another one that it is hardly meant."""
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
-    ratio = counts[frequent] / counts[rare]
+    shortest, ratio = min(len(word), len(other)), frequent / rare
+    if frequent < _RATIO:
+        return False
     if sorted(word) == sorted(other):  # letters have changed places
         return shortest >= _MIDDLE and ratio >= _RATIO
     if len(word) == len(other):
-        return shortest >= _LONG and ratio >= _HIGH_RATIO and counts[rare] <= _VERY_RARE
+        return shortest >= _LONG and ratio >= _HIGH_RATIO and rare <= _VERY_RARE
     if ratio >= _HIGHEST_RATIO:
         return shortest >= _SHORT
     return shortest >= _LONG and ratio >= _RATIO

@@ -3,17 +3,16 @@
 from collections.abc import Collection, Iterator
 
 from foon_asp.lint.habits import Habits, held, words_in
-from foon_asp.lint.linted_files import LintedFiles
+from foon_asp.lint.names import Names
 from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
 _PLACES = {"in", "on"}
 
 
-def place_findings(files: LintedFiles) -> Iterator[Diagnostic]:
+def place_findings(names: Names) -> Iterator[Diagnostic]:
     """Give the findings about each side of each unit, in linear time."""
-    network = files.network
-    habits = Habits(network)
+    files, network, habits = names.files, names.network, names.habits
     labels = {node.label for node in network.objects}
     for unit, copies in enumerate(files.copies):
         copy = copies[0]
@@ -33,7 +32,7 @@ def place_findings(files: LintedFiles) -> Iterator[Diagnostic]:
 
 
 def _unheld(nodes: Collection[ObjectNode], habits: Habits) -> Iterator[tuple[ObjectNode, str]]:
-    """Give the one object that is in a container, and neither it nor what it is made of among the contents."""
+    """Give the one object that is in a container, and is not among its contents."""
     for holder in nodes:
         contents = held(holder)
         alone = sum(node.label == holder.label for node in nodes) == 1
@@ -61,7 +60,7 @@ def _unheld(nodes: Collection[ObjectNode], habits: Habits) -> Iterator[tuple[Obj
 def _elsewhere(
     nodes: Collection[ObjectNode], labels: Collection[str], habits: Habits
 ) -> Iterator[tuple[ObjectNode, str]]:
-    """Give the objects that are in or on something that the unit has not, while something else contains them."""
+    """Give the objects in or on something that the unit has not, while something else contains them."""
     here = {node.label for node in nodes}
     for node in nodes:
         for word, place in node.relations:
@@ -73,5 +72,5 @@ def _elsewhere(
             if not holders or not habits.ingredients.isdisjoint(holders):
                 continue
             if words_in([place]).isdisjoint(words_in(holders)):
-                message = f"{node.label!r} is {word} {place!r}, which the unit has not, and {holders[0]!r} contains it"
-                yield node, message
+                here_it_is = f"which the unit has not, and {holders[0]!r} contains it"
+                yield node, f"{node.label!r} is {word} {place!r}, {here_it_is}"

@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from statistics import median
 from typing import NamedTuple
 
@@ -92,8 +92,8 @@ def _clock(match: re.Match[str]) -> _Clock:
     return _Clock(match[0], match.start() + 1, seconds)
 
 
-def _values(sheet: Sheet, steps: list[_Step]) -> Iterator[Diagnostic]:
-    """Give the findings about single times; what they are on is returned."""
+def _values(sheet: Sheet, steps: list[_Step]) -> Generator[Diagnostic, None, set[int]]:
+    """Give the findings about single times, and return the lines that they are on."""
     if not steps:
         return set()
     clocks = [clock for step in steps for span in step.spans for clock in span]

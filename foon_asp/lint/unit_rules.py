@@ -30,23 +30,18 @@ def _no_effect(files: LintedFiles, unit: int, copies: list[Copy]) -> Iterator[Di
 
 
 def _copies(files: LintedFiles, unit: int, copies: list[Copy]) -> Iterator[Diagnostic]:
-    """Name the first copy in the file, or else the first of all."""
+    """Name the first copy in the file; that recipes have units in common is as it should be."""
     motion = files.network.motions[unit]
     firsts: dict[int, Copy] = {}
     for copy in copies:
         sheet = files.sheets[copy.sheet]
-        if first := firsts.get(copy.sheet):
+        first = firsts.setdefault(copy.sheet, copy)
+        if first is not copy:
             message = (
                 f"the unit {motion!r} is already on {sheet.where(first.at, sheet)}, with the "
                 "same inputs and outputs; one is enough"
             )
             yield sheet.finding("duplicate-unit", message, copy.at)
-            continue
-        if firsts:
-            other = files.sheets[copies[0].sheet]
-            where = other.where(copies[0].at, sheet)
-            yield sheet.finding("shared-unit", f"the unit {motion!r} is also in {where}", copy.at)
-        firsts[copy.sheet] = copy
 
 
 def _repeated_objects(files: LintedFiles, copy: Copy) -> Iterator[Diagnostic]:

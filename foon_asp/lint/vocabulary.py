@@ -1,45 +1,46 @@
-"""The names that FOONs know: objects, utensils, states, motions, and words of relations with their brackets."""
+"""The names that FOONs know, the brackets of words, and what units with a motion do."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 
+from foon_asp.lint.habits import Habit
 from foon_asp.lint.names import Kind, Names
 from foon_asp.lint.near_names import by_what_is_left
-from foon_asp.lint.habits import Habit, Habits
 from foon_asp.network import Contents, Relation, counted
 from foon_asp.text.line import LineError, StateLine
 from foon_asp.text.table_rows import read_rows
 
 UTENSIL, HABIT = "utensil", "habit"
-_BRACKETS = {"[ ]": Relation, "{ }": Contents}
+Bracket = type[Relation] | type[Contents]
+_BRACKETS: dict[str, Bracket] = {"[ ]": Relation, "{ }": Contents}
 _LEAST = 3  # lines of a word before it says anything of its brackets
 
 
 class Vocabulary:
-    """Names of each kind, and of each word of a relation how often it stands with ``[ ]`` and with ``{ }``."""
+    """Names of each kind, how often words of relations stand with each bracket, and what units mostly do."""
 
     def __init__(self) -> None:
         self.names: dict[Kind, set[str]] = {kind: set() for kind in Kind}
         self.utensils: set[str] = set()
-        self.brackets: dict[str, Counter[type]] = {}
+        self.brackets: dict[str, Counter[Bracket]] = {}
         self.habits: dict[str, Habit] = {}
 
     @classmethod
     def of(cls, names: Names, utensils: Iterable[str] = ()) -> "Vocabulary":
-        """Learn from files: a utensil is an object that other objects are in or on, or that is said to be one."""
+        """Learn from files; a utensil is an object that others are in or on, or that is said to be one."""
         learned = cls()
         for kind in Kind:
             learned.names[kind].update(names.mentions[kind])
         learned.utensils.update(utensils)
-        learned.habits = Habits(names.network).of_motions()
+        learned.habits = names.habits.of_motions()
         for word, mentions in names.mentions[Kind.WORD].items():
             counts = learned.brackets.setdefault(word, Counter())
             for mention in mentions:
                 if isinstance(mention.line, StateLine) and not mention.line.remarks:
                     attribute = mention.line.attribute
-                    counts[type(attribute)] += mention.often
+                    counts[Relation if isinstance(attribute, Relation) else Contents] += mention.often
                     if isinstance(attribute, Relation) and attribute.object in names.objects:
                         learned.utensils.add(attribute.object)
         return learned
@@ -64,7 +65,7 @@ class Vocabulary:
         """The words by themselves and by what is left of them when a letter is taken away."""
         return by_what_is_left(self.words)
 
-    def usual_bracket(self, word: str) -> type | None:
+    def usual_bracket(self, word: str) -> Bracket | None:
         """Give ``Relation`` or ``Contents`` for a word that stands with one of them nearly always."""
         counts = self.brackets.get(word)
         if not counts:
