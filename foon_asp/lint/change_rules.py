@@ -31,7 +31,7 @@ def change_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
                 said.append(
                     ("lost-contents", node, f"contains {_all(lost)} before {motion!r}, and no output has it")
                 )
-        for node, gained in changes.gained.items():
+        for node, gained in () if _is_habit(habit.gain, habit.keep) else changes.gained.items():
             said.append(
                 ("gained-contents", node, f"contains {_all(gained)} after {motion!r}, and no input has it")
             )
@@ -61,6 +61,10 @@ def change_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
 
 def _is_seldom(often: int, of: int) -> bool:
     return of >= _KNOWN and _SELDOM * often <= of
+
+
+def _is_habit(often: int, of: int) -> bool:
+    return often > 0 and not _is_seldom(often, of)
 
 
 def _all(names: list[str]) -> str:

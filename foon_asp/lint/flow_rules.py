@@ -48,6 +48,12 @@ class _Flow:
         found = self.network.objects[node]
         return bool(found.relations or found.contents) or found.label in self.ingredients
 
+    def has_place(self, node: int, unit: int, side: int) -> bool:
+        """Whether everything that a node is in or on is on that side of the unit, too."""
+        objects = self.network.objects
+        labels = {objects[other].label for other in self.sides(unit)[side]}
+        return labels.issuperset(place for _, place in objects[node].relations)
+
     def sides(self, unit: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Give the inputs and the outputs of a unit."""
         return self.network.inputs[unit], self.network.outputs[unit]
@@ -85,7 +91,17 @@ def _broken(flow: _Flow) -> Iterator[Diagnostic]:
             (between, other, units[rank - between])
             for between in range(1, min(rank, _FAR) + 1)
             for other in made[rank - between]
-            if (other not in flow.taken and _may_be_one(taken, objects[other], between))
+            if (
+                other not in flow.taken
+                and _may_be_one(taken, objects[other], between)
+                and (
+                    taken.relations == objects[other].relations
+                    or len(taken.relations) != len(objects[other].relations)
+                    or slip_between(taken, objects[other])
+                    or not flow.has_place(node, taker, 0)
+                    or not flow.has_place(other, units[rank - between], 1)
+                )
+            )
             or (between <= _MIDDLE and _lacks_a_state(taken, objects[other]))
         ]
         if not near:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from foon_asp.network import Network, ObjectNode
 
+_STEM, _SHORTEST = 4, 3  # letters by which words are taken for one: wrapped, wrapping
 _NOTHING: frozenset[str] = frozenset()
 
 
@@ -42,6 +43,7 @@ class Habit(NamedTuple):
     units: int = 0
     keep: int = 0
     lose: int = 0
+    gain: int = 0
     make: int = 0
     end: int = 0
 
@@ -75,17 +77,22 @@ class Habits:
         gone = [
             node
             for node, found in inputs.items()
-            if found.label not in after
-            and found.label in self.ingredients
-            and found.label not in self.holders
+            if found.label in self.ingredients.difference(after, self.holders)
+            and not _comes_from(found, before)
         ]
-        known = words_in(before)
+        known = words_in(before) | words_in({state for node in inputs.values() for state in node.states})
         lost: dict[int, list[str]] = {}
         gained: dict[int, list[str]] = {}
         keeps = False
         for node, had, has in _containers(inputs, outputs):
             keeps = True
-            missing = sorted(had - has - after)
+            missing = sorted(
+                name
+                for name in had - has - after
+                if not any(
+                    node.label == name and held(node) and held(node) <= after for node in inputs.values()
+                )
+            )
             more = sorted(name for name in has - had - before if known.isdisjoint(words_in([name])))
             if missing and not more:
                 lost[node] = missing
@@ -97,8 +104,13 @@ class Habits:
             node
             for node in new
             if outputs[node].label not in products
-            and not any(word == "from" and place in before for word, place in outputs[node].relations)
-            and known.isdisjoint(words_in([outputs[node].label]))
+            and not _comes_from(outputs[node], before)
+            and not any(
+                word.startswith(other[:_STEM])
+                for word in words_in([outputs[node].label])
+                for other in known
+                if len(other) >= _SHORTEST
+            )
             and before.isdisjoint(held(outputs[node]))
         ]
         return Changes(lost, gained, [] if gone else fresh, [] if new else gone, keeps)
@@ -108,9 +120,22 @@ class Habits:
         found: dict[str, Habit] = {}
         for unit, motion in enumerate(self.network.motions):
             seen = self.units[unit]
-            new = 1, int(seen.keeps), int(bool(seen.lost)), int(bool(seen.new)), int(bool(seen.gone))
+            new = (
+                1,
+                int(seen.keeps),
+                int(bool(seen.lost)),
+                int(bool(seen.gained)),
+                int(bool(seen.new)),
+                int(bool(seen.gone)),
+            )
             found[motion] = found.get(motion, Habit()).plus(*new)
         return found
+
+
+def _comes_from(node: ObjectNode, places: AbstractSet[str]) -> bool:
+    """Whether a node is said to be from something that is there: water from a tap."""
+    written = {state.removeprefix("from ") for state in node.states if state.startswith("from ")}
+    return not places.isdisjoint(written.union(place for word, place in node.relations if word == "from"))
 
 
 def _containers(

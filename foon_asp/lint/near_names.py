@@ -53,9 +53,9 @@ def near_names(
         if counts[name] < _RATIO and name in loose and _unknown(name, known):
             continue
         for rest in _without_a_letter(name):
-            known = frequent.setdefault(rest, [])
-            if len(known) < _COMPARED:
-                known.append(name)
+            alike = frequent.setdefault(rest, [])
+            if len(alike) < _COMPARED:
+                alike.append(name)
     for name in rare_names:
         candidates = {c for rest in _without_a_letter(name) for c in frequent.get(rest, ())}.difference(
             {name}

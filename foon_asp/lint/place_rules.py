@@ -46,6 +46,7 @@ def _unheld(nodes: Collection[ObjectNode], habits: Habits) -> Iterator[tuple[Obj
             if node.label in habits.ingredients
             and node.label not in contents | habits.holders | around
             and not any(node.label in held(other) for other in nodes)
+            and not any(held(other) for other in inside if other.label in contents)
             and not held(node)
             and words_in([node.label]).isdisjoint(words_in(contents))
         ]
