@@ -89,7 +89,8 @@ class Habits:
             missing = sorted(
                 name
                 for name in had - has - after
-                if not any(
+                if words_in([name]).isdisjoint(words_in(has - had))
+                and not any(
                     node.label == name and held(node) and held(node) <= after for node in inputs.values()
                 )
             )
