@@ -69,6 +69,12 @@ _STDIN = "-"
     metavar="FILE",
     help="What the text on standard input is the content of, if - is among the files.",
 )
+@click.option(
+    "--vocabulary",
+    type=click.Path(path_type=NamedPath, exists=True, dir_okay=False),
+    metavar="FILE",
+    help="Names that are spelt correctly, in place of ours; foon-asp vocabulary writes such a file.",
+)
 @options.format_option(*TABLES, "github", "sarif")
 @options.debug_option
 def command(
@@ -82,6 +88,7 @@ def command(
     write_baseline: bool,
     statistics: bool,
     stdin_filename: Path | None,
+    vocabulary: Path | None,
     format_: str,
 ) -> ExitCode:
     """Find what is wrong with networks, kitchens and lists of goals.
@@ -91,7 +98,8 @@ def command(
     foon-asp lint recipes/ kitchen.json         files that belong together
     foon-asp lint --diff recipes/               show what is safe to repair
     foon-asp lint --fix recipes/                repair it
-    foon-asp lint --ignore shared-unit recipes/
+    foon-asp lint --ignore near-name recipes/
+    foon-asp lint --vocabulary names.txt recipes/
     foon-asp lint - --stdin-filename recipe.txt < recipe.txt
 
     Files are checked together: names are compared across all of them, and their units are one network. Every
@@ -115,7 +123,7 @@ def command(
         settings = dataclasses.replace(settings, select=select, ignore=())
     settings = dataclasses.replace(settings, ignore=(*settings.ignore, *ignore))
     known = read_baseline(baseline) if baseline and not write_baseline else None
-    all_findings = settings.applied(lint(files, contents))
+    all_findings = settings.applied(lint(files, contents, vocabulary))
     if baseline and write_baseline:
         write_whole(baseline, utf_8(json_text(baseline_json(baseline, all_findings))))
         click.echo(f"wrote {baseline}: {counted(len(all_findings), 'finding')}", err=True)
@@ -127,7 +135,7 @@ def command(
     if fix:
         count, fixed = _mend(files, findings, contents, unsafe_fixes)
         if count:
-            all_findings = settings.applied(lint(files, fixed))
+            all_findings = settings.applied(lint(files, fixed, vocabulary))
             findings = known.new(all_findings) if known else all_findings
         for content in fixed.values():  # the mended text of standard input
             write_data(content)

@@ -20,6 +20,7 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "schema": Entry("Tools", "Print the JSON Schema of what a verb prints with --format json."),
     "init": Entry("Data", "Write a data folder to start from, of a recipe of yours or a small one of ours."),
     "lint": Entry("Data", "Find what is wrong with networks, kitchens and lists of objects."),
+    "vocabulary": Entry("Data", "Learn the names of FOONs, against which lint holds other files."),
     "fmt": Entry("Data", "Bring FOON files into canonical form."),
     "rename": Entry("Data", "Rename an object, a state or a motion everywhere, and show the change first."),
     "convert": Entry("Data", "Write FOON files in another dialect."),

@@ -81,10 +81,11 @@ _RULES = (
         "an object in something that the unit has not, while something else contains it",
     ),
     Rule("dead-cycle", NOTE, "objects that are made only by units that need them"),
-    Rule("unmade-goal", WARNING, "a goal that no unit makes"),
+    # What stands beside units.
     Rule("table", ERROR, "a row of a table beside the network that cannot be read"),
     Rule("unknown-row", WARNING, "a row of a table for a name that the network has not"),
     Rule("missing-rate", WARNING, "motions of the network without a success rate"),
+    Rule("unmade-goal", WARNING, "a goal that no unit makes"),
     Rule("unknown-item", NOTE, "an entry of a kitchen that is not in the network"),
 )
 

@@ -1,7 +1,7 @@
 """The names that FOONs know, the brackets of words, and what units with a motion do."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from foon_asp.network import Contents, Relation, counted
 from foon_asp.text.line import LineError, StateLine
 from foon_asp.text.table_rows import read_rows
 
+_UTENSILS = "utensils.txt"
 UTENSIL, HABIT = "utensil", "habit"
 Bracket = type[Relation] | type[Contents]
 _BRACKETS: dict[str, Bracket] = {"[ ]": Relation, "{ }": Contents}
@@ -28,12 +29,14 @@ class Vocabulary:
         self.habits: dict[str, Habit] = {}
 
     @classmethod
-    def of(cls, names: Names, utensils: Iterable[str] = ()) -> "Vocabulary":
-        """Learn from files; a utensil is an object that others are in or on, or that is said to be one."""
+    def of(cls, names: Names) -> "Vocabulary":
+        """Learn from files; a utensil is an object that others are in or on, or that a table says is one."""
         learned = cls()
         for kind in Kind:
             learned.names[kind].update(names.mentions[kind])
-        learned.utensils.update(utensils)
+        for table in names.files.tables:
+            if Path(table.file).name == _UTENSILS:
+                learned.utensils.update(line.strip() for line in table.lines if line.strip()[:1] not in "#")
         learned.habits = names.habits.of_motions()
         for word, mentions in names.mentions[Kind.WORD].items():
             counts = learned.brackets.setdefault(word, Counter())
