@@ -58,9 +58,8 @@ def test_linting_goes_on_after_errors(tmp_path: Path) -> None:
         "state-without-object",
         "duplicate-unit",
         "no-effect",
-        "shared-unit",
     ]
-    assert [finding.source.line for finding in findings] == [1, 8, 10, 16, 1]
+    assert [finding.source.line for finding in findings] == [1, 8, 10, 16]
 
 
 def test_findings_are_sorted_by_file_line_and_column(tmp_path: Path) -> None:
@@ -73,7 +72,7 @@ def test_findings_are_sorted_by_file_line_and_column(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_line_ends_do_not_matter(tmp_path: Path, end: str) -> None:
-    text = "O\tonion\nS\tpeeled\nS\tpeeled\nM\tchop\nO\tonion\nS\tin [bowl]\n"
+    text = "O\tonion\nS\tpeeled\nS\tpeeled\nM\tchop\nO\tonion\nS\tin [gamelle]\n"
     here = [(f.source.line, f.source.column, f.code, f.excerpt) for f in found(tmp_path, text)]
     there = [
         (f.source.line, f.source.column, f.code, f.excerpt) for f in found(tmp_path, text.replace("\n", end))
@@ -150,30 +149,33 @@ def test_names_are_compared_over_all_files_and_kinds_of_mention(tmp_path: Path) 
 
 def test_what_is_never_an_object(tmp_path: Path) -> None:
     text = (
-        "O\twhite rice\nM\tput\nO\tcup\nS\tin\t[sink]\nS\tcontains\t{rice,salt}\nO\tcup\nS\tin\t[sink]\n//\n"
+        "O\twhite rice\nO\tcup\nM\tput\nO\tcup\nS\tin\t[xyrq]\nS\tcontains\t{rice,zqlz}\n"
+        "O\tcup\nS\tin\t[xyrq]\n//\n"
     )
     findings = found(tmp_path, text)
     assert [(f.code, f.source.line, f.source.column) for f in findings] == [
-        ("unknown-container", 4, 7),
-        ("unknown-ingredient", 5, 13),
-        ("unknown-ingredient", 5, 18),
+        ("unknown-container", 5, 7),
+        ("unknown-ingredient", 6, 13),
+        ("unknown-ingredient", 6, 18),
     ]
-    assert "'sink' stands in [ ] twice" in findings[0].message
+    assert "'xyrq' stands in [ ] twice" in findings[0].message
     assert "is it 'white rice'?" in findings[1].message
     assert "no unit adds it" in findings[2].message
-    known = "O\tsink\nO\trice\nO\tsalt\nM\tuse\nO\tdone\n//\n"
+    known = "O\txyrq\nO\trice\nO\tzqlz\nM\tuse\nO\tdone\n//\n"
     assert found(tmp_path, text, known) == []
+    # what is known to be a thing, and has no other name here, may never have been annotated
+    assert found(tmp_path, text.replace("xyrq", "sink").replace("rice,zqlz", "salt")) == []
 
 
 def test_the_caret_stands_under_the_whole_name(tmp_path: Path) -> None:
-    text = "O\tbowl\nS\tcontains\t{rice vinegar,rice, rice wine}\nM\tinstall\nO\tbowl\nS\tin [stall]\n//\n"
+    text = "O\tbowl\nS\tcontains\t{quix vinegar,quix, quix wine}\nM\tinqall\nO\tbowl\nS\tin [qall]\n//\n"
     findings = [f for f in found(tmp_path, text) if f.code.startswith("unknown")]
     carets = [(f.excerpt[f.source.column - 1 :], f.message.split("'")[1]) for f in findings]
     assert carets == [
-        ("rice vinegar,rice, rice wine}", "rice vinegar"),
-        ("rice, rice wine}", "rice"),
-        ("rice wine}", "rice wine"),
-        ("stall]", "stall"),
+        ("quix vinegar,quix, quix wine}", "quix vinegar"),
+        ("quix, quix wine}", "quix"),
+        ("quix wine}", "quix wine"),
+        ("qall]", "qall"),
     ]
 
 
@@ -206,14 +208,12 @@ def test_the_order_of_lines_ids_and_times_do_not_make_another_unit(tmp_path: Pat
     assert "line 1" in finding.message
 
 
-def test_copies_in_other_files_name_the_first(tmp_path: Path) -> None:
+def test_recipes_may_have_units_in_common(tmp_path: Path) -> None:
     findings = found(tmp_path, "\n" + CHOP, CHOP, CHOP + CHOP)
     assert [(f.code, Path(f.source.file).name, f.source.line) for f in findings] == [
-        ("shared-unit", "1.txt", 1),
-        ("shared-unit", "2.txt", 1),
         ("duplicate-unit", "2.txt", 7),
     ]
-    assert all("0.txt:2" in finding.message for finding in findings[:2])
+    assert "already on line 1," in findings[0].message
 
 
 def test_a_merged_file_is_spoken_of_by_its_own_lines(tmp_path: Path) -> None:
@@ -254,10 +254,20 @@ def test_dead_cycles() -> None:
 
 
 def test_a_kitchen_breaks_a_cycle(tmp_path: Path) -> None:
-    text = "O\ttap\nS\toff\nM\topen\nO\ttap\nS\ton\n//\nO\ttap\nS\ton\nM\tshut\nO\ttap\nS\toff\n//\n"
+    text = "O\tgate\nS\toff\nM\topen\nO\tgate\nS\ton\n//\nO\tgate\nS\ton\nM\tshut\nO\tgate\nS\toff\n//\n"
     assert codes(found(tmp_path, text)) == ["dead-cycle"]
-    for name, kitchen in (("k.txt", "O\ttap\nS\toff\n"), ("k.json", '[{"label": "tap", "states": ["off"]}]')):
+    for name, kitchen in (
+        ("k.txt", "O\tgate\nS\toff\n"),
+        ("k.json", '[{"label": "gate", "states": ["off"]}]'),
+    ):
         assert found(tmp_path, text, kitchen, names=("a.txt", name)) == []
+
+
+def test_a_utensil_is_at_hand(tmp_path: Path) -> None:
+    text = "O\ttap\nS\toff\nM\topen\nO\ttap\nS\ton\n//\nO\ttap\nS\ton\nM\tshut\nO\ttap\nS\toff\n//\n"
+    assert found(tmp_path, text) == []
+    inside = text.replace("S\to", "S\tin\t[wall]\nS\to")
+    assert codes(found(tmp_path, inside + "O\twall\nM\twet\nO\twall\nS\twet\n//\n")) == ["dead-cycle"]
 
 
 @given(st.lists(st.tuples(st.text("abcdef", max_size=3), st.text("abcdef", max_size=2)), max_size=9))
@@ -291,7 +301,7 @@ def test_without_a_dead_cycle_everything_can_be_made(units: list[tuple[str, str]
 def test_a_few_missing_flags_are_told_of_once(tmp_path: Path) -> None:
     flagged = "O\tonion\t0\nM\tchop\nO\tonion\t0\nS\tchopped\n//\n"
     bare = "O\ttea\nM\tstir\nO\ttea\nS\thot\n//\n"
-    (finding,) = found(tmp_path, flagged + bare + flagged.replace("chop", "dic"))
+    (finding,) = found(tmp_path, flagged + bare + flagged.replace("chop", "dice").replace("diceped", "diced"))
     assert (finding.code, finding.source.line, finding.source.column) == ("missing-flag", 6, 3)
     assert finding.message.startswith("2 of 6 object lines have no motion flag")
     assert found(tmp_path, bare + flagged) == []  # as many with as without
@@ -336,9 +346,9 @@ def test_a_kitchen_of_another_network_is_told_of_once(tmp_path: Path) -> None:
 
 def test_json_is_linted_like_text(tmp_path: Path) -> None:
     unit = {
-        "input_nodes": [{"label": "caf\u00e9", "states": ["hot"]}],
+        "input_nodes": [{"label": "caf\u00e9", "states": ["hot"]}, {"label": "cup"}],
         "motion_node": "pour",
-        "output_nodes": [{"label": "cup", "ingredients": ["caff\u00e8"]}],
+        "output_nodes": [{"label": "cup", "ingredients": ["qu\u00e8q"]}],
     }
     text = json.dumps([unit, unit], indent=1)
     findings = found(tmp_path, text, names=("a.json",))
@@ -505,7 +515,7 @@ def test_folders(tmp_path: Path, cli: Cli) -> None:
     (tmp_path / "deep").mkdir()
     written(tmp_path / "deep", CHOP)
     written(tmp_path, CHOP)
-    assert cli("lint", tmp_path).out.split("\n")[-2] == "2 files: 1 note"
+    assert cli("lint", tmp_path).out.split("\n")[-2] == "2 files: nothing found"
 
 
 # The real corpus
@@ -525,8 +535,10 @@ def test_folders(tmp_path: Path, cli: Cli) -> None:
                 "empty-ingredient",
                 "time",
                 "no-motion",
-                "second-contents",
-                "second-relation",
+                "broken-chain",
+                "time-value",
+                "other-bracket",
+                "no-bracket",
             },
         ),
         ("dialects", {"no-motion", "id-of-two-names"}),

@@ -26,7 +26,9 @@ def name_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
             yield from _near(names, kind, name, meant)
         for name in names.counts[kind]:
             if (kind, name) not in said and name not in known.names[kind]:
-                yield from _misspelt(names, kind, name, known)
+                for finding in _misspelt(names, kind, name, known):
+                    said.add((kind, name))
+                    yield finding
     yield from _of_the_other_kind(names, known)
     if names.has_network:
         for name in names.mentions[Kind.OBJECT]:
@@ -69,7 +71,7 @@ def _misspelt(names: Names, kind: Kind, name: str, known: Vocabulary) -> Iterato
     for word in words_of(name):
         if word in known.words:
             continue
-        meant = near_word(word, known.near, verbs=kind is not Kind.OBJECT)
+        meant = near_word(word, known.near[kind], verbs=kind is not Kind.OBJECT)
         if meant is not None:
             message = f"{word!r} in the {kind} {name!r} is no word that is known; is it {meant!r}?"
             for sheet, index, _ in names.by_sheet(kind, name):

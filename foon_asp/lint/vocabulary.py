@@ -1,5 +1,6 @@
 """The names that FOONs know, the brackets of words, and what units with a motion do."""
 
+import unicodedata
 from collections import Counter
 from collections.abc import Iterator
 from functools import cached_property
@@ -37,6 +38,7 @@ class Vocabulary:
         for table in names.files.tables:
             if Path(table.file).name == _UTENSILS:
                 learned.utensils.update(line.strip() for line in table.lines if line.strip()[:1] not in "#")
+        learned.names[Kind.OBJECT] |= learned.utensils
         learned.habits = names.habits.of_motions()
         for word, mentions in names.mentions[Kind.WORD].items():
             counts = learned.brackets.setdefault(word, Counter())
@@ -64,9 +66,14 @@ class Vocabulary:
         return frozenset(word for names in self.names.values() for name in names for word in words_of(name))
 
     @cached_property
-    def near(self) -> dict[str, list[str]]:
-        """The words by themselves and by what is left of them when a letter is taken away."""
-        return by_what_is_left(self.words)
+    def near(self) -> dict[Kind, dict[str, list[str]]]:
+        """The words of each kind by themselves and by what is left of them when a letter is taken away."""
+        found = {}
+        for kind in Kind:
+            alike = (Kind.STATE, Kind.MOTION) if kind in {Kind.STATE, Kind.MOTION} else (kind,)
+            names = [name for each in alike for name in self.names[each]]
+            found[kind] = by_what_is_left({word for name in names for word in words_of(name)})
+        return found
 
     def usual_bracket(self, word: str) -> Bracket | None:
         """Give ``Relation`` or ``Contents`` for a word that stands with one of them nearly always."""
@@ -91,7 +98,9 @@ class Vocabulary:
 
 
 def words_of(name: str) -> Iterator[str]:
-    """Give the words of a name that are made of letters alone, small."""
+    """Give the words of a name that are made of letters alone, small and without accents."""
+    if not name.isascii():
+        name = "".join(c for c in unicodedata.normalize("NFD", name) if not unicodedata.combining(c))
     return (word for word in name.lower().replace("-", " ").split(" ") if word.isalpha())
 
 
