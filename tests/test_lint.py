@@ -354,7 +354,7 @@ def test_json_is_linted_like_text(tmp_path: Path) -> None:
     findings = found(tmp_path, text, names=("a.json",))
     assert codes(findings) == ["unknown-ingredient", "duplicate-unit"]
     line = text.split("\n")[findings[0].source.line - 1]
-    assert (line, line[findings[0].source.column - 1 :]) == (findings[0].excerpt, '"caff\\u00e8"'[1:])
+    assert (line, line[findings[0].source.column - 1 :]) == (findings[0].excerpt, '"qu\\u00e8q"'[1:])
 
 
 def test_names_in_json_may_hold_anything(tmp_path: Path) -> None:
