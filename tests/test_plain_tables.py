@@ -154,6 +154,13 @@ def test_lists_are_folded_to_the_terminal() -> None:
         assert folded(" 10  simmer    [data/FOON.txt:20] x") == " 10  simmer\n       [data/FOON.txt:20] x"
 
 
+def test_what_stands_over_and_under_a_table_is_not_folded_to_it() -> None:
+    shown_lines = shown(foon_asp.optima(foon_asp.load().problem("ice")), 120)
+    assert shown_lines[0] == "The best task trees (strict containers)"
+    assert shown_lines[-2] == "optimal: proved best by the objective named, whose figure is bold"
+    assert len(shown_lines[2]) < len(shown_lines[-2])  # the rule under the headings
+
+
 def test_at_75_columns_tables_are_tables() -> None:
     problem = foon_asp.load().problem("macaroni")
     front = foon_asp.pareto(problem)
