@@ -314,6 +314,20 @@ def test_known_cuts_that_fall_short_are_no_proof() -> None:
     assert found.value.actions == (1, 3)
 
 
+def test_known_cuts_whose_greedy_weights_fall_short_are_where_the_relaxation_begins(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # of three actions each pair is a landmark; the cheap two can be paid by what they share with the third
+    graph = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0])
+    monkeypatch.setattr(lower_bound._Node, "_separate", lambda _: False)
+    known = [[2], [1], [3]]
+    proof = Prover(graph, [1, 2, 3], costs(1, 1, 2), COUNT, known=known).prove([0, 1])
+    assert isinstance(proof, Packing)
+    assert {cut.objects: int(weight) for cut, (weight,) in proof.weights} == {(1,): 1, (3,): 1}
+    prover = Prover(graph, [1, 2, 3], costs(1, 1, 2), COUNT)
+    assert prover.prove([0, 1]) is None  # nothing else would have been found
+
+
 def test_known_cuts_before_no_target_are_not_weighed() -> None:
     proof = Prover(THREE, [2], costs(5, 9, 1, 1), COUNT, known=[[1], [2]]).prove([2])
     assert proof == Packing(((Cut((2,), (1, 2)), (Fraction(1),)),))

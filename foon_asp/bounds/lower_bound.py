@@ -182,12 +182,15 @@ class Prover:
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
         left = None if goal is None else minus(goal, self._total(used))
+        widened: Sequence[Cut] = ()
         if left is not None:
             before = set(cutter.targets)
-            packing = self._share_out(cutter.widened(cut) for cut in known if not before.isdisjoint(cut))
+            widened = [cutter.widened(cut) for cut in known if not before.isdisjoint(cut)]
+            packing = self._share_out(widened)
             if self._order.compare(self._order.total(weight for _, weight in packing.weights), left) >= 0:
                 return packing
         node = _Node(self, cutter, derivation, used, goal)
+        node.admit(widened)
         exact = node.relax(left)
         if exact is not None and node.suffices(exact.value, left):
             return node.packing(exact)
@@ -336,9 +339,14 @@ class _Node:
             cut = self._cutter.cut([*keep, *self._used], order)
             if cut is not None and sum(self.shares[self._places[a]] for a in cut.members) < _HIT:
                 missed[cut.members] = cut
-        for cut in missed.values():
-            row = [self._places[a] for a in cut.members]
-            self._cuts.append(cut)
-            self._rows.append(row)
-            self._covering.add(row)
+        self.admit(missed.values())
         return bool(missed)
+
+    def admit(self, cuts: Iterable[Cut]) -> None:
+        """Add cuts, all whose members the targets can need."""
+        for cut in cuts:
+            if self._places.keys() >= set(cut.members):
+                row = [self._places[a] for a in cut.members]
+                self._cuts.append(cut)
+                self._rows.append(row)
+                self._covering.add(row)
