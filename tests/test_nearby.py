@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
 from foon_asp.dataset.nearby import Nearby
 from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
@@ -15,9 +16,11 @@ from foon_asp.deadline import Deadline
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.questions import answer
 from foon_asp.questions.answer import answered_nearby
+from foon_asp.rules.constraint import RuleText
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles
 from tests.conftest import Cli
+from tests.constraint_oracle import random_rule, settings_of
 from tests.random_problems import SERIES, random_problem
 from tests.test_store import import_problem
 
@@ -147,7 +150,7 @@ def test_the_command_reads_near_the_goal(tmp_path: Path, cli: Cli, monkeypatch: 
     [
         ("--objective", "kitchen"),
         ("--reduce", "none"),
-        ("--rule", ':- use(U), motion(U,"fry").'),
+        ("--rule", ":- not 1 <= #count { U : use(U) }."),
         ("--items", "used-up"),
         ("--cross-check",),
         ("--", "--opt-strategy=bb"),
@@ -162,3 +165,47 @@ def test_other_questions_read_all_that_the_goal_needs(
     said = cli("solve", "--network", tmp_path / "stew.foon", "--goal", "stew", *words)
     assert said.code == 0, said.err
     assert "3 units" in said.out or "3 executions" in said.out
+
+
+@SERIES
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: Path) -> None:
+    compared = mattered = 0
+    for seed in range(75 // part):
+        rng = random.Random(seed)
+        problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
+        drawn = random_rule(rng, problem)
+        how = settings_of([drawn])
+        if not hold_for_parts(how):
+            continue
+        dataset = stored(problem, tmp_path)
+        near = dataset.nearby(problem.goals, rule.value, first=1)
+        if near is None:
+            continue
+        objectives = rng.choice(LISTS)
+        found = answered_nearby(near, objectives, how)
+        whole = near.whole()
+        expected, free = solve(whole, objectives, how), solve(whole, objectives)
+        assert found.status is expected.status, (seed, drawn, objectives)
+        if found.costs is not None and expected.costs is not None:
+            order = levels(objectives)
+            assert found.costs.key(order) == expected.costs.key(order), (seed, drawn, objectives)
+        compared += 1
+        mattered += (free.status, free.costs) != (expected.status, expected.costs)
+    assert compared > 25 // part
+    assert mattered > compared // 8
+
+
+@pytest.mark.parametrize(
+    ("text", "holds"),
+    [
+        (':- use(U), motion(U,"fry").', True),
+        (":- #count { U : use(U) } > 3.", True),
+        (':- not 1 <= #count { U : use(U), motion(U,"fry") }.', False),  # a part may lack it
+        (':- use(U), needs(U,O), not kitchen(O), motion(U,"fry").', False),  # more is at hand
+        (":- #count { O : available(O) } > 7.", False),
+        (":- use(U), motion(U,M), #count { V : motion(V,M) } < 2.", False),  # others are not there
+    ],
+)
+def test_rules_that_hold_for_parts(text: str, holds: bool) -> None:
+    assert hold_for_parts(Settings((RuleText(text),))) is holds

@@ -155,6 +155,21 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
 
 
+def hold_for_parts(settings: Settings) -> bool:
+    """Whether any part of a tree that keeps to the rules that are added keeps to them, too.
+
+    Also where there are no units but those of a part of the network, and where more is at hand. Raises as
+    :func:`assemble` does.
+    """
+    if settings.replaced is not None:
+        return False
+    rules = assemble(settings, lambda _: None).understood
+    if rules is None:
+        return not settings.constraints
+    varying = rules.varying({("kitchen", 1)})
+    return varying.local and varying.shrinking
+
+
 def asks_of_all(problem: Problem, settings: Settings) -> bool:
     """Whether rules that are added may be about units beyond what the goals can need.
 

@@ -165,7 +165,7 @@ def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settin
 
     What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
     is a tree of the whole network, and none there costs less; else more is read of what leads to what it
-    takes. In the end everything is read.
+    takes. In the end everything is read. Rules of the user's have to hold for parts of trees.
     """
     reporter = caller().reporter
     heard, alone = _OnlyWarnings(reporter), how._replace(session=None)
@@ -174,7 +174,7 @@ def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settin
         if found.status is Status.INFEASIBLE:  # and why is a question about all that could lead to the goals
             with reading():
                 problem = near.whole()
-            return answered(problem, objectives, how)
+            return answered_under(problem, objectives, how)
         lacking = [] if found.units is None else near.lacking(found.units)
         if lacking and found.status is Status.OPTIMAL:
             with reading():

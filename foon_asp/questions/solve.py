@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Reporter
+from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
@@ -56,13 +57,9 @@ def solve_and_more(
     )
     if not isinstance(problem, Problem):
         chosen = chosen_objectives(problem.problem, objectives)
-        plain = (
-            how.replaced is None
-            and how.reductions == ALL
-            and not (constraints or constants or clingo_options)
-        )
-        units_alone = all(each in Objective and not each.row.item for each in chosen)
-        if plain and units_alone and not (soft or certificate_file or cross_check):
+        plain = how.reductions == ALL and not (clingo_options or soft or certificate_file or cross_check)
+        only_units_add = all(each in Objective and not each.row.item for each in chosen)
+        if plain and only_units_add and hold_for_parts(how):
             return answered_nearby(problem, chosen, how)
         with reading():
             problem = problem.whole()
