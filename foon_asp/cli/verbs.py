@@ -22,6 +22,7 @@ _OTHERS: Final[Mapping[str, Entry]] = {
     "lint": Entry("Data", "Find what is wrong with networks, kitchens and lists of objects."),
     "vocabulary": Entry("Data", "Learn the names of FOONs, against which lint holds other files."),
     "fmt": Entry("Data", "Bring FOON files into canonical form."),
+    "lsp": Entry("Tools", "Serve an editor: findings while typing, completion, renaming and more."),
     "rename": Entry("Data", "Rename an object, a state or a motion everywhere, and show the change first."),
     "convert": Entry("Data", "Write FOON files in another dialect."),
     "merge": Entry("Data", "Merge FOONs into a universal FOON."),

@@ -67,19 +67,9 @@ class LintedFiles:
     def remarks(self) -> list[Diagnostic]:
         """Give what the reader has to say, with the severity of the catalog and only fixes that mend."""
         return [
-            remark._replace(severity=CATALOG[remark.code].severity, fix=self._fix(remark))
+            remark._replace(severity=CATALOG[remark.code].severity, fix=mending_fix(remark, self.reader))
             for remark in self._remarks
         ]
-
-    def _fix(self, remark: Diagnostic) -> str | None:
-        """Give the mended line; a line is written anew as a whole, which need not mend every remark on it."""
-        if remark.code == "missing-separator":
-            return f"{remark.excerpt}\n//"
-        if remark.fix is None or remark.fix == "//":
-            return remark.fix
-        mended = self.reader.parse(remark.fix)
-        left = [] if isinstance(mended, LineError) else [message for _, _, message in mended.remarks]
-        return remark.fix if remark.message not in left else None
 
     def _read(self, file: Path) -> None:
         text = self.reader.text(file, self._contents.get(file))
@@ -141,6 +131,17 @@ class LintedFiles:
         if unit == len(self.copies):
             self.copies.append([])
         self.copies[unit].append(Copy(len(self.sheets) - 1, index, len(inputs), len(outputs)))
+
+
+def mending_fix(remark: Diagnostic, reader: FoonReader) -> str | None:
+    """Give the mended line; a line is written anew as a whole, which need not mend every remark on it."""
+    if remark.code == "missing-separator":
+        return f"{remark.excerpt}\n//"
+    if remark.fix is None or remark.fix == "//":
+        return remark.fix
+    mended = reader.parse(remark.fix)
+    left = [] if isinstance(mended, LineError) else [message for _, _, message in mended.remarks]
+    return remark.fix if remark.message not in left else None
 
 
 def _written(line: Line) -> str:

@@ -19,6 +19,11 @@ class _Silence(NamedTuple):
     codes: frozenset[str]
 
 
+def silencing(code: str) -> str:
+    """Give the comment that silences a code on the next line."""
+    return f"# noqa: {code}"
+
+
 def unsilenced(findings: Iterable[Diagnostic], sheets: Iterable[Sheet]) -> Iterator[Diagnostic]:
     """Leave out what comments silence, and give a finding for a comment that silences nothing or no code.
 

@@ -125,6 +125,11 @@ def find_data(
     )
 
 
+def kitchen_file(folder: Path) -> Path | None:
+    """Give the kitchen of a folder, if it has one."""
+    return next((folder / name for name in _KITCHENS if (folder / name).is_file()), None)
+
+
 def network_files(path: Path) -> list[Path]:
     """Give the network files that a path stands for: itself, or those of a folder in order of name."""
     if not path.is_dir():

@@ -3,7 +3,7 @@
 import json
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from enum import StrEnum
 from pathlib import PurePath
 from typing import NamedTuple
@@ -69,6 +69,10 @@ class Renaming:
                 self.already += 1
                 self._ids[id_] += bool(id_)
             self.mentions += name_kind == kind and name == old
+
+    def learn_ids(self, ids: Mapping[str, int]) -> None:
+        """Note how often which ids stand with the new name, where that is known already."""
+        self._ids.update(ids)
 
     def not_understood(self, text: str, file: str) -> list[Diagnostic]:
         """Give the errors of lines that have the old name in them, and stay, as they are not understood."""

@@ -1,0 +1,241 @@
+"""The language server: what editors send, handed to the texts that are edited, and linting behind it."""
+
+import asyncio
+import contextlib
+import functools
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from lsprotocol import types
+from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol, default_converter
+from pygls.protocol.language_server import lsp_method
+from pygls.uris import to_fs_path
+
+from foon_asp import __version__
+from foon_asp.editor import answers
+from foon_asp.editor.edited_text import EditedText
+from foon_asp.editor.lint_worker import Findings, LintProcess
+from foon_asp.errors import UserError
+from foon_asp.network import NodePattern
+from foon_asp.text.data_folder import kitchen_file
+from foon_asp.text.object_list import read_object_list
+
+_COMPLETION = types.CompletionOptions(trigger_characters=["\t", "[", "{", ","])
+_FIXES = types.CodeActionOptions([types.CodeActionKind.QuickFix])
+_REST = 0.4  # seconds without a change, before a text is linted as a whole
+
+
+class _Protocol(LanguageServerProtocol):  # type: ignore[misc]
+    """Keeps texts in pieces, and not as a whole, which would be copied at every keystroke."""
+
+    def lsp_text_document__did_change(self, params: types.DidChangeTextDocumentParams) -> Iterator[Any]:
+        """Hand a change on."""
+        yield self.fm.features[types.TEXT_DOCUMENT_DID_CHANGE], (params,), None
+
+    lsp_text_document__did_change = lsp_method(types.TEXT_DOCUMENT_DID_CHANGE)(lsp_text_document__did_change)
+
+
+def _converter() -> Any:
+    """Make what turns answers into JSON; the long ones are plain values already."""
+    converter = default_converter()
+    plain = {
+        types.PublishDiagnosticsNotification: ("jsonrpc", "method", "params"),
+        types.DocumentSymbolResponse: ("jsonrpc", "id", "result"),
+        types.FoldingRangeResponse: ("jsonrpc", "id", "result"),
+    }
+    for kind, keys in plain.items():
+        converter.register_unstructure_hook(
+            kind, lambda message, keys=keys: {key: getattr(message, key) for key in keys}
+        )
+    return converter
+
+
+class Desk:
+    """The texts that are open, each with the linting of it that is under way."""
+
+    def __init__(self) -> None:
+        self.server = LanguageServer(
+            "foon-asp", __version__, protocol_cls=_Protocol, converter_factory=_converter
+        )
+        self.texts: dict[str, EditedText] = {}
+        self._timers: dict[str, asyncio.TimerHandle] = {}
+        self._lints: dict[str, LintProcess] = {}
+        self._complaint = ""
+        self._kitchens: dict[Path, tuple[float, list[NodePattern]]] = {}
+        for name, answer, *how in (
+            (types.TEXT_DOCUMENT_DID_OPEN, self.opened),
+            (types.TEXT_DOCUMENT_DID_CHANGE, self.changed),
+            (types.TEXT_DOCUMENT_DID_CLOSE, self.closed),
+            (types.TEXT_DOCUMENT_COMPLETION, self.completion, _COMPLETION),
+            (types.TEXT_DOCUMENT_HOVER, self.hover),
+            (types.TEXT_DOCUMENT_DEFINITION, self.makers),
+            (types.TEXT_DOCUMENT_PREPARE_RENAME, self.renameable),
+            (types.TEXT_DOCUMENT_RENAME, self.renamed, types.RenameOptions(prepare_provider=True)),
+            (types.TEXT_DOCUMENT_DOCUMENT_SYMBOL, self.outline),
+            (types.TEXT_DOCUMENT_FOLDING_RANGE, self.folds),
+            (types.TEXT_DOCUMENT_FORMATTING, self.formatted),
+            (types.TEXT_DOCUMENT_CODE_ACTION, self.fixes, _FIXES),
+        ):
+            self.server.feature(name, *how)(functools.partial(answer))  # a method takes no attributes
+
+    @property
+    def columns(self) -> answers.Columns:
+        """How the editor counts letters."""
+        return answers.Columns(types.PositionEncodingKind(self.server.workspace.position_encoding).value)
+
+    def opened(self, params: types.DidOpenTextDocumentParams) -> None:
+        """Take a text, and lint it."""
+        self.texts[params.text_document.uri] = EditedText(params.text_document.text)
+        self._lint_later(params.text_document.uri, 0)
+
+    def changed(self, params: types.DidChangeTextDocumentParams) -> None:
+        """Change a text, show what the pieces that are new say, and lint it once it rests."""
+        uri, columns = params.text_document.uri, self.columns
+        edited = self.texts[uri]
+        for change in params.content_changes:
+            where = getattr(change, "range", None)
+            if where is None:
+                edited = self.texts[uri] = EditedText(change.text)
+                continue
+            start, end = ((at.line, _letter(edited, columns, at)) for at in (where.start, where.end))
+            edited.change(start, end, change.text)
+        self.publish(uri)
+        self._lint_later(uri, _REST)
+
+    def closed(self, params: types.DidCloseTextDocumentParams) -> None:
+        """Forget a text."""
+        uri = params.text_document.uri
+        self._stop(uri)
+        self.texts.pop(uri, None)
+        self._send(uri, [])
+
+    def end(self) -> None:
+        """End the linting that is under way."""
+        for uri in list(self.texts):
+            self._stop(uri)
+
+    def completion(self, params: types.CompletionParams) -> types.CompletionList:
+        """Offer names."""
+        return answers.completion(*self._here(params))
+
+    def hover(self, params: types.HoverParams) -> types.Hover | None:
+        """Say who makes and needs a node."""
+        return answers.hover(*self._here(params), self.kitchen(params.text_document.uri))
+
+    def makers(self, params: types.DefinitionParams) -> list[types.Location]:
+        """Say where the makers of a node are."""
+        edited, columns, line, _ = self._here(params)
+        return answers.makers(edited, columns, params.text_document.uri, line)
+
+    def renameable(self, params: types.PrepareRenameParams) -> types.Range | None:
+        """Say what would be renamed."""
+        return answers.renameable(*self._here(params))
+
+    def renamed(self, params: types.RenameParams) -> types.WorkspaceEdit | None:
+        """Rename."""
+        edits = answers.renamed(*self._here(params), params.new_name)
+        if edits is None:
+            self._say(types.MessageType.Warning, f"{params.new_name!r} cannot be a name there")
+            return None
+        return types.WorkspaceEdit(changes={params.text_document.uri: edits})
+
+    def outline(self, params: types.DocumentSymbolParams) -> Any:
+        """Give the outline."""
+        return answers.symbols(self.texts[params.text_document.uri])
+
+    def folds(self, params: types.FoldingRangeParams) -> Any:
+        """Say what can be folded."""
+        return answers.folds(self.texts[params.text_document.uri])
+
+    def formatted(self, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+        """Bring a text into canonical form."""
+        return answers.formatted(self.texts[params.text_document.uri], self.columns)
+
+    def fixes(self, params: types.CodeActionParams) -> list[types.CodeAction]:
+        """Offer what mends findings."""
+        uri, lines = params.text_document.uri, params.range
+        edited = self.texts[uri]
+        return [*answers.quick_fixes(edited, self.columns, uri, lines.start.line, lines.end.line)]
+
+    def publish(self, uri: str) -> None:
+        """Send all findings about a text."""
+        self._send(uri, answers.diagnostics(self.texts[uri], self.columns))
+
+    def kitchen(self, uri: str) -> list[NodePattern] | None:
+        """Give the entries of the kitchen beside a text; ``None`` where there is none that can be read."""
+        path = to_fs_path(uri)
+        file = kitchen_file(Path(path).parent) if path else None
+        if file is None:
+            return None
+        with contextlib.suppress(OSError, UserError):
+            changed = file.stat().st_mtime
+            if self._kitchens.get(file, (None,))[0] != changed:
+                self._kitchens[file] = changed, [entry.pattern for entry in read_object_list(file)]
+            return self._kitchens[file][1]
+        return None
+
+    def _here(self, params: Any) -> tuple[EditedText, answers.Columns, int, int]:
+        """Give the text that is asked about, and the place in it."""
+        edited, columns, at = self.texts[params.text_document.uri], self.columns, params.position
+        line = min(at.line, len(edited.lines) - 1)
+        return edited, columns, line, columns.ours(edited.lines[line], at.character)
+
+    def _say(self, kind: types.MessageType, text: str) -> None:
+        self.server.window_show_message(types.ShowMessageParams(kind, text))
+
+    def _send(self, uri: str, found: list[dict[str, object]]) -> None:
+        self.server.protocol.notify(
+            types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, {"uri": uri, "diagnostics": found}
+        )
+
+    def _stop(self, uri: str) -> None:
+        if timer := self._timers.pop(uri, None):
+            timer.cancel()
+        if process := self._lints.pop(uri, None):
+            process.end()
+
+    def _lint_later(self, uri: str, seconds: float) -> None:
+        self._stop(uri)
+        self._timers[uri] = asyncio.get_running_loop().call_later(seconds, self._lint, uri)
+
+    def _lint(self, uri: str) -> None:
+        edited, loop = self.texts[uri], asyncio.get_running_loop()
+
+        def done(process: LintProcess, found: Findings | str) -> None:
+            with contextlib.suppress(RuntimeError):  # the server has ended
+                loop.call_soon_threadsafe(self._linted, uri, edited, process, found)
+
+        self._timers.pop(uri, None)
+        self._lints[uri] = LintProcess(to_fs_path(uri) or "untitled", edited.text, done)
+
+    def _linted(self, uri: str, edited: EditedText, process: LintProcess, found: Findings | str) -> None:
+        if self._lints.get(uri) is not process:
+            return  # it has changed since
+        self._lints.pop(uri).end()
+        if isinstance(found, str):
+            if found != self._complaint:
+                self._say(types.MessageType.Error, found)
+            self._complaint = found
+            return
+        self._complaint = ""
+        edited.linted(found)
+        self.publish(uri)
+
+
+def _letter(edited: EditedText, columns: answers.Columns, at: types.Position) -> int:
+    return columns.ours(edited.lines[at.line], at.character) if at.line < len(edited.lines) else 0
+
+
+def serve() -> None:
+    """Speak with an editor over standard input and output, until it ends."""
+    desk = Desk()
+    # streams of its own, since the server closes them
+    streams = (
+        os.fdopen(os.dup(stream.fileno()), mode) for stream, mode in ((sys.stdin, "rb"), (sys.stdout, "wb"))
+    )
+    desk.server.start_io(*streams)
+    desk.end()
