@@ -48,7 +48,7 @@ MAY_BE_LOADED = """
 asp: assembly optimum outcome postconditions prepared program settings solver
 bounds: coprime_base hypergraph landmark_cuts lexicographic
 cli: asking click_option exit_code held main named_path options output output_file progress
-    question_command verbs weighted_files
+    question_command verbs weighted_files whole_process
 dataset: dataset items names paths reading
 document: json_document
 encoding: own_encodings

@@ -14,10 +14,14 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Reporter, Settings, Status, solve
-from foon_asp.deadline import Deadline
+from foon_asp.cli.main import cli as commands
+from foon_asp.cli.options import begin
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective
 from foon_asp.proof.simulation import Verdict, simulate_for
+from foon_asp.questions.arguments import chosen_objectives
+from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.text.writer import write_units
 from tests.hard_problem import hard_problem
 
@@ -184,3 +188,27 @@ def test_a_program_may_be_dropped_while_a_process_is_taken() -> None:
     thread.start()
     thread.join(20)
     assert not thread.is_alive()
+
+
+def test_prices_of_a_large_network_are_not_looked_up_beyond_the_limit() -> None:
+    problem = hard_problem(4, 2, 1, 2)
+    with asked_by(Caller(Reporter(), deadline=Deadline(-1.0))), pytest.raises(LimitError):
+        chosen_objectives(problem, "units")
+
+
+def test_limits_count_from_the_beginning_of_a_process_that_is_there_for_one_command() -> None:
+    long_ago = time.monotonic() - 100
+    for obj, passed in ((long_ago, True), (None, False), ("a session", False)):
+        with commands.make_context("foon-asp", ["stats"], obj=obj):
+            assert begin(50, None).passed is passed
+
+
+def test_a_process_ends_as_usual_though_at_once() -> None:
+    code = "import atexit; from foon_asp.cli.whole_process import leave; atexit.register(print, 'last')"
+    ran = subprocess.run(
+        [sys.executable, "-c", f"{code}; print('first', end=' '); leave(3)"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (ran.returncode, ran.stdout, ran.stderr) == (3, "first last\n", "")

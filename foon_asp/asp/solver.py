@@ -170,7 +170,8 @@ class _Solver:
         self.heard.tree(incumbent)
         if first.reduced and first.reduced.settled:
             return self._optimal(incumbent)
-        return self._search(incumbent)
+        # at a limit, not even what clingo would be given is written
+        return self._limited(incumbent, ()) if self.deadline.passed else self._search(incumbent)
 
     def _under_rest(self, reduced: Reduced, wide: Wide, tree: Units) -> Outcome:
         """Find the best tree that keeps to rules that the reductions did not know of.

@@ -1,7 +1,6 @@
 """``foon-asp``: the verbs, and the exit code of every ending."""
 
 import contextlib
-import gc
 import os
 import sys
 import traceback
@@ -12,6 +11,7 @@ from foon_asp import __version__
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import drop_output, safe_streams, say_remarks
 from foon_asp.cli.verbs import GROUPS, VERBS, verb_command
+from foon_asp.cli.whole_process import BEGAN, keep, leave
 from foon_asp.deadline import LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped, note_line_end
@@ -61,22 +61,25 @@ def main(arguments: list[str] | None = None) -> None:
             note_line_end(word)
             note_line_end(word.partition("=")[2])
         say_remarks("--quiet" not in words[: words.index("--") if "--" in words else None])
-        code = _run(words)
+        code = _run(words, BEGAN if arguments is None else None)
         try:
             sys.stdout.flush()
         except (OSError, UserError) as error:
             code = _ended(error, debug=False)
         if code is not ExitCode.DONE:
             drop_output()
-    if arguments is None:  # the process ends: what it read is not to be looked through for garbage once more
-        gc.freeze()
+    if arguments is None:
+        leave(int(code))
     sys.exit(int(code))
 
 
-def _run(words: list[str]) -> ExitCode:
-    """Run a verb; report what went wrong, and give the exit code."""
+def _run(words: list[str], began: float | None) -> ExitCode:
+    """Run a verb; report what went wrong, and give the exit code.
+
+    Its limits count from when it ``began``, or from when they are made.
+    """
     try:
-        ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False)
+        ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
         return ExitCode(ended or 0)
     except Exception as error:
         return _ended(error, "--debug" in words)
@@ -86,6 +89,7 @@ def _run(words: list[str]) -> ExitCode:
 
 def _ended(error: BaseException, debug: bool) -> ExitCode:
     """Report on stderr how a command ended, and give its exit code."""
+    keep(error)  # with all that was at hand where it was raised
     say_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
         traceback.print_exception(error)

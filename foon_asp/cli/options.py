@@ -135,9 +135,11 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
 
 def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
-    """Start the limits of the current command."""
-    deadline = Deadline(time_limit, memory_limit)
-    click.get_current_context().meta[_DEADLINE] = deadline
+    """Start the limits of the current command: with the process, if that is there for it alone."""
+    context = click.get_current_context()
+    began = context.obj if isinstance(context.obj, float) else None
+    deadline = Deadline(time_limit, memory_limit, began)
+    context.meta[_DEADLINE] = deadline
     return deadline
 
 

@@ -17,6 +17,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
 from foon_asp.cli.output import console, fitted, write_data
 from foon_asp.cli.output_file import check_outputs
+from foon_asp.cli.whole_process import keep
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
@@ -90,6 +91,7 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
         check_outputs()
         try:
             found = ask(question, given, deadline, question_command)
+            keep(found)
         except NoTreeError as nothing:
             click.echo(str(nothing), err=True)
             return _CODES[nothing.ending]

@@ -22,9 +22,10 @@ Constants = Mapping[str, object] | Iterable[str]
 
 
 def chosen_objectives(problem: Problem, given: Objectives) -> tuple[Objective, ...]:
-    """Read objectives; ``success`` needs rates."""
+    """Read objectives; ``success`` needs rates, ``price`` that of each unit."""
     objectives = parse_objectives([given] if isinstance(given, str) else given, problem.measures)
-    problem.require_known_for(objectives)
+    with reading():
+        problem.require_known_for(objectives)
     return objectives
 
 

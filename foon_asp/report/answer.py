@@ -185,7 +185,7 @@ def steps(
         for o, origin in zip(network.inputs[unit], origins, strict=True):
             ((where, step),) = origin.items()
             said = {"step": f"step {step}", "later_step": f"step {step}, which is later"}.get(where, where)
-            if o in problem.flows[unit].uses:
+            if problem.items is not None and o in problem.flows[unit].uses:
                 said += ", used up"
             yield f"       {network.objects[o]}  ({said})"
         for o in network.outputs[unit]:
