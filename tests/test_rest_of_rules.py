@@ -192,6 +192,15 @@ def test_loose_ends_are_tied_until_none_is_left(monkeypatch: pytest.MonkeyPatch)
     assert looks.units[0] == first
 
 
+def test_of_a_part_of_a_network_units_keep_their_numbers() -> None:
+    whole = small(
+        *("junk: start > o", *BANNED, "mix: y > end", "cut: z > y", "chop: w > y", "rinse: s > z"),
+        *("steam: s > z", "dry: start > s", "air: start > s", "pour: start > w", "fill: never > w"),
+    )
+    part = replace(whole, network=whole.network.without((0,)))
+    assert says(asked(part)) == (Status.OPTIMAL, {2, 4, 9})
+
+
 @pytest.mark.parametrize(("name", "number"), [("_LOOSE", 2), ("_MANY", 4), ("_MANY", 9)])
 def test_where_loose_ends_take_too_long_all_units_are_looked_at(
     name: str, number: int, monkeypatch: pytest.MonkeyPatch
