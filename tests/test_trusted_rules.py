@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from foon_asp.asp import Settings, Status, solve
+from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.certificate import Coverage, certify_outcome
 from foon_asp.certificate.coverage import coverage
 from foon_asp.certificate.own_rules import check_with_clingo, with_own_rules
@@ -243,3 +243,16 @@ def test_clingo_says_what_of_it_is_not_true() -> None:
     never = own_rule(":- unit(0).")
     assert never is not None
     check_with_clingo(none, never, BOILED)
+
+
+def test_nothing_is_taken_on_trust_that_a_proof_does_not_need(monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = Settings((given_constraint(NO_ROTTING),))
+    outcome, found = certify_outcome(solve(BOILED, settings=settings), settings)
+    assert found is not None
+    assert (found.claim, trusted(found.content), outcome.proof) == ("optimal", None, Proof.CERTIFICATE)
+    # of rules that are not understood, there is nothing to trust, and only a bound
+    monkeypatch.setattr(Rules, "applied", lambda *_: None)
+    settings = Settings((given_constraint(NO_BOILING),))
+    outcome, found = certify_outcome(solve(BOILED, settings=settings), settings)
+    assert found is not None
+    assert (found.claim, trusted(found.content), outcome.proof) == ("bound", None, Proof.SOLVER)
