@@ -375,3 +375,13 @@ def test_clingo_that_does_not_finish_checks_nothing() -> None:
     check_with_clingo({"tree": [0], "objective": ["units", "mine"]}, owning(), kitchen)
     with pytest.raises(RefusedError, match="is not true"):
         check_with_clingo({"tree": None, "objective": []}, owning([[1], []]), kitchen)
+
+
+def test_what_a_rule_bars_counts_in_a_proof() -> None:
+    problem = small("cut: start > a", "bake: a > end", "fry: start > end")
+    before = {"rule": "before", "earlier_motion": "cut", "later_motion": "fry"}
+    found = certify(problem, (Objective.UNITS,), (0, 1), Coverage((before,)))
+    assert found is not None
+    assert (found.claim, found.content["rules"]) == ("optimal", [before])
+    with pytest.raises(NotBestError):
+        certify(problem, (Objective.UNITS,), (0, 1))

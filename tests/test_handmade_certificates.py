@@ -1025,6 +1025,10 @@ def test_what_a_limit_does_not_speak_of_carries_what_it_costs() -> None:
     assert refusal(PLAIN, **values, bound=["1"], proof=proof) == "the weights do not add up to enough"
     more = {"weights": [[0, ["3/2"]]], **limits}
     assert refusal(PLAIN, **values, bound=["1/2"], proof=more) == "unit or item 0 carries more than it costs"
+    for weight in ("0", "-1"):
+        wrong = {**proof, "limits": [[0, [weight]]]}
+        said = "a weight of a limit is not above zero"
+        assert refusal(PLAIN, **values, bound=["0"], proof=wrong) == said
     baked = {**values, "rules": no_pouring, "proof": {**more, "limits": [[1, ["1/2"]]]}}
     assert accepted(PLAIN, **baked, bound=["1"]).claim == "bound"
 
