@@ -135,8 +135,9 @@ PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
 """A unit as callers write it: motion, inputs and outputs."""
 
 
+@typed
 def build(
-    units: Network | Iterable[PlainUnit],
+    units: "Network | Iterable[PlainUnit]",  # a text, for what is no unit is said in other words
     *,
     kitchen: Names | None = None,
     goals: Names | None = None,
@@ -421,6 +422,7 @@ class Foon:
         """The labels that the container rule ``implied`` looks at."""
         return self._dataset.utensils
 
+    @typed
     def nodes(self, label: str) -> tuple[ObjectNode, ...]:
         """Give the object nodes that have a label.
 

@@ -182,8 +182,10 @@ def verify(
             content = proof.load_certificate(Path(certificate))
         except (OSError, UnicodeDecodeError) as error:
             raise UserError(f"{certificate}: cannot be read: {error}") from None
-    else:
+    elif isinstance(getattr(certificate, "content", None), Mapping):
         content = proof.read_certificate(certificate.text())
+    else:
+        raise UserError(f"found certificate={certificate!r}, expected a path or what certify found")
     dataset = (data if isinstance(data, Foon) else Foon.of(data)).dataset
     read = dataset.data
     rates = None if dataset.unrated else read.rates

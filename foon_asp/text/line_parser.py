@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import cast
 
+from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 from foon_asp.text.clean_line import clean_line, clean_node
 from foon_asp.text.line import Line, LineError, StateLine
@@ -54,12 +55,15 @@ def parse_node(notation: str) -> ObjectNode:
 
     Raises:
         LineError: for text that is not in the notation, with the column and what was expected.
+        UserError: for what is no text.
 
     Example:
         >>> node = foon_asp.parse_node("sweet potato; chopped; in [cutting board]")
         >>> node.label, sorted(node.states)
         ('sweet potato', ['chopped'])
     """
+    if not isinstance(notation, str):
+        raise UserError(f"found notation={notation!r}, expected text")
     notation = notation.rstrip(" ")
     return clean_node(notation) or cast(ObjectNode, _build("node", notation))
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from foon_asp.errors import UserError
 from foon_asp.network import Contents, FunctionalUnit, ObjectNode, Relation
 from foon_asp.text.line import Line, MotionLine, ObjectLine
+from foon_asp.typed import typed
 
 
 def write_line(line: Line) -> str:
@@ -46,6 +47,7 @@ def write_unit(unit: FunctionalUnit) -> str:
     return f"{inputs}M\t{unit.motion}\n{outputs}//\n"
 
 
+@typed
 def write_units(units: Iterable[FunctionalUnit], comments: Iterable[str] = ()) -> str:
     """Write functional units as FOON text.
 
