@@ -539,14 +539,21 @@ def test_pyperplan_finds_our_costs(foon: Foon, tmp_path: Path, goal: str) -> Non
     assert planned(problem, "units", tmp_path, with_pyperplan) == ours.units
 
 
-@needs_fast_downward
-@pytest.mark.parametrize("goal", ["ice", pytest.param("greek salad", marks=pytest.mark.slow)])
-def test_fast_downward_finds_plans_that_run(tmp_path: Path, goal: str) -> None:
+@pytest.mark.parametrize(
+    ("planner", "goal"),
+    [
+        pytest.param(with_fast_downward, "ice", marks=needs_fast_downward),
+        pytest.param(with_fast_downward, "greek salad", marks=[needs_fast_downward, pytest.mark.slow]),
+        pytest.param(with_pyperplan, "ice", marks=needs_pyperplan),
+        pytest.param(with_pyperplan, "macaroni", marks=[needs_pyperplan, pytest.mark.slow]),
+    ],
+)
+def test_planners_find_plans_that_run(planner: Callable[[Path], str], tmp_path: Path, goal: str) -> None:
     problem = foon_asp.load().problem(goal, items="used-up")
     ours = foon_asp.solve(problem).costs
     assert ours is not None
     foon_asp.export(problem, items="set").write(tmp_path)
-    (tmp_path / "plan").write_text(with_fast_downward(tmp_path))
+    (tmp_path / "plan").write_text(planner(tmp_path))
     read = foon_asp.read_plan(problem, tmp_path / "plan", names=tmp_path / "map.json")
     assert read.sound
     assert len(read.tree) >= ours.units
