@@ -1,5 +1,6 @@
 """Actions that another one can always stand in for."""
 
+from collections import Counter
 from collections.abc import Callable, Collection
 
 from foon_asp.reduce.graph import Graph
@@ -17,23 +18,28 @@ def undominated(graph: Graph, actions: Collection[int], cost: Callable[[int], in
     wanted = set(graph.goals).union(*needed.values())
     given = {a: frozenset(o for o in graph.gives[a] if o in wanted) for a in actions}
     left = set(actions)
-    makers: dict[int, list[int]] = {}
-    for action in sorted(actions):
+    takers = Counter(o for needs in needed.values() for o in needs)
+    made = Counter(o for gives in given.values() for o in gives)
+    # by what they give and the need that fewest have: one that stands in for another shares that need with it
+    makers: dict[tuple[int, int | None], list[int]] = {}
+    for action in actions:
+        need = min(needed[action], key=lambda o: (takers[o], o), default=None)
         for o in given[action]:
-            makers.setdefault(o, []).append(action)
+            makers.setdefault((o, need), []).append(action)
     for action in sorted(actions, key=lambda a: (cost(a), -a), reverse=True):
         gives = given[action]
         if not gives:
             left.discard(action)
             continue
-        rarest = min(gives, key=lambda o: (len(makers[o]), o))
+        rarest = min(gives, key=lambda o: (made[o], o))
         if any(
             other != action
             and other in left
             and needed[other] <= needed[action]
             and gives <= given[other]
             and cost(other) <= cost(action)
-            for other in makers[rarest]
+            for need in (None, *needed[action])
+            for other in makers.get((rarest, need), ())
         ):
             left.discard(action)
     return left
