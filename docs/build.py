@@ -49,6 +49,7 @@ PAGES = {
         "reference/schemas",
         "docs/formats",
         "docs/lint",
+        "docs/lint-judged",
         "docs/levels",
     ),
     "Why it is right": (

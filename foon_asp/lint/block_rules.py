@@ -1,12 +1,12 @@
 """What there is to say of object nodes line by line: second lists, and states said twice."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from foon_asp.lint.names import times
 from foon_asp.lint.sheet import Sheet
 from foon_asp.network import Contents, Relation
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.line import StateLine
+from foon_asp.text.line import ObjectLine, StateLine
 
 _PLACES = {"in", "on", "inside", "under", "below", "at", "into", "onto", "on top of"}
 
@@ -21,6 +21,7 @@ def block_findings(sheet: Sheet) -> Iterator[Diagnostic]:
         for written in sheet.distinct_lines
         if isinstance(written.line, StateLine)
     }
+    labels = {written.line.label for written in sheet.distinct_lines if isinstance(written.line, ObjectLine)}
     found: dict[tuple[str, str, str, str], list[int]] = {}  # where
     label = ""
     above: dict[str, str] = {}
@@ -34,7 +35,7 @@ def block_findings(sheet: Sheet) -> Iterator[Diagnostic]:
         if line in states:
             found.setdefault(("repeated-state", label, line, line), []).append(index)
         elif part:
-            if part in above:
+            if part in above and _conflict(above[part], line, labels):
                 code = "second-contents" if part[0] == "{" else "second-relation"
                 found.setdefault((code, label, above[part], line), []).append(index)
             above[part] = line
@@ -51,6 +52,13 @@ def _part(attribute: str | Relation | Contents) -> str:
     if isinstance(attribute, Relation):
         return "[" if attribute.word in _PLACES else "[" + attribute.word
     return ""
+
+
+def _conflict(first: str, second: str, labels: Collection[str]) -> bool:
+    """Whether two lines cannot both be true: of two places by different words, both have to be objects."""
+    word, one = first.split("\t")[1:3]
+    other_word, other = second.split("\t")[1:3]
+    return word == other_word or (one.strip("[]") in labels and other.strip("[]") in labels)
 
 
 def _message(code: str, label: str, first: str, second: str) -> str:

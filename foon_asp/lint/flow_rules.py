@@ -187,7 +187,7 @@ def _swapped(flow: _Flow) -> Iterator[Diagnostic]:
             continue
         back = [node for node in inputs if others(flow.taken, node, unit)]
         back_too = [node for node in outputs if others(flow.made, node, unit)]
-        if back and (back_too or len(back) == len(inputs)) and outputs:
+        if outputs and back and (back_too or len(back) == len(inputs) > 1):
             message = (
                 f"no unit makes what {network.motions[unit]!r} takes, and none takes what it makes; other "
                 f"units would, the other way round: are inputs and outputs swapped?"

@@ -61,6 +61,7 @@ class Habits:
         self.ingredients = {name for node in objects for name in held(node)}
         self.holders = {node.label for node in objects if node.contents}
         self.holders.update(place for node in objects for _, place in node.relations)
+        self.foods = self.ingredients - self.holders
 
     @cached_property
     def units(self) -> list[Changes]:
@@ -77,10 +78,11 @@ class Habits:
         gone = [
             node
             for node, found in inputs.items()
-            if found.label in self.ingredients.difference(after, self.holders)
+            if found.label in self.foods
+            and found.label not in after
             and not _comes_from(found, before)
+            and not _is_said(found.label, outputs.values())
         ]
-        known = words_in(before) | words_in({state for node in inputs.values() for state in node.states})
         lost: dict[int, list[str]] = {}
         gained: dict[int, list[str]] = {}
         keeps = False
@@ -94,11 +96,15 @@ class Habits:
                     node.label == name and held(node) and held(node) <= after for node in inputs.values()
                 )
             )
+            known = words_in(before)
             more = sorted(name for name in has - had - before if known.isdisjoint(words_in([name])))
             if missing and not more:
                 lost[node] = missing
             elif more and not missing:
                 gained[node] = more
+        if gone or not new:
+            return Changes(lost, gained, [], [] if new else gone, keeps)
+        known = words_in(before.union(*(node.states for node in inputs.values())))
         # a product stands in something, or something of its name or in it was there
         products = {name for node in outputs.values() for name in held(node)}
         fresh = [
@@ -114,7 +120,7 @@ class Habits:
             )
             and before.isdisjoint(held(outputs[node]))
         ]
-        return Changes(lost, gained, [] if gone else fresh, [] if new else gone, keeps)
+        return Changes(lost, gained, fresh, [], keeps)
 
     def of_motions(self) -> dict[str, Habit]:
         """Count what the units with each motion do."""
@@ -137,6 +143,12 @@ def _comes_from(node: ObjectNode, places: AbstractSet[str]) -> bool:
     """Whether a node is said to be from something that is there: water from a tap."""
     written = {state.removeprefix("from ") for state in node.states if state.startswith("from ")}
     return not places.isdisjoint(written.union(place for word, place in node.relations if word == "from"))
+
+
+def _is_said(name: str, nodes: Collection[ObjectNode]) -> bool:
+    """Whether a state of a node says where something is, as salted does of salt."""
+    words = [word for node in nodes for state in node.states for word in state.split(" ")]
+    return any(word.startswith(part[:_STEM]) for part in words_in([name]) for word in words)
 
 
 def _containers(

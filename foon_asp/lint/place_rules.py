@@ -21,7 +21,11 @@ def place_findings(names: Names) -> Iterator[Diagnostic]:
         for side, ids in enumerate(sides):
             nodes = [network.objects[node] for node in ids]
             said = [("unheld", *each) for each in _unheld(nodes, habits)]
-            said += [("other-place", *each) for each in _elsewhere(nodes, labels, habits)]
+            which = "outputs" if side else "inputs"
+            said += [
+                ("other-place", node, f"{what} the {which} have not, and {holder!r} contains it")
+                for node, what, holder in _elsewhere(nodes, labels, habits)
+            ]
             if not said:
                 continue
             blocks = list(sheet.blocks(copy.at))
@@ -35,16 +39,18 @@ def _unheld(nodes: Collection[ObjectNode], habits: Habits) -> Iterator[tuple[Obj
     """Give the one object that is in a container, and is not among its contents."""
     for holder in nodes:
         contents = held(holder)
-        alone = sum(node.label == holder.label for node in nodes) == 1
-        if not contents or not alone or holder.label in habits.ingredients:
+        if not contents or holder.label in habits.ingredients:
+            continue
+        if sum(node.label == holder.label for node in nodes) > 1:
             continue
         around = {place for _, place in holder.relations}
         inside = [node for node in nodes if ("in", holder.label) in node.relations]
         extra = [
             node
             for node in inside
-            if node.label in habits.ingredients
-            and node.label not in contents | habits.holders | around
+            if node.label in habits.foods
+            and node.label not in contents
+            and node.label not in around
             and not any(node.label in held(other) for other in nodes)
             and not any(held(other) for other in inside if other.label in contents)
             and not held(node)
@@ -60,7 +66,7 @@ def _unheld(nodes: Collection[ObjectNode], habits: Habits) -> Iterator[tuple[Obj
 
 def _elsewhere(
     nodes: Collection[ObjectNode], labels: Collection[str], habits: Habits
-) -> Iterator[tuple[ObjectNode, str]]:
+) -> Iterator[tuple[ObjectNode, str, str]]:
     """Give the objects in or on something that the unit has not, while something else contains them."""
     here = {node.label for node in nodes}
     for node in nodes:
@@ -73,5 +79,4 @@ def _elsewhere(
             if not holders or not habits.ingredients.isdisjoint(holders):
                 continue
             if words_in([place]).isdisjoint(words_in(holders)):
-                here_it_is = f"which the unit has not, and {holders[0]!r} contains it"
-                yield node, f"{node.label!r} is {word} {place!r}, {here_it_is}"
+                yield node, f"{node.label!r} is {word} {place!r}, which", holders[0]
