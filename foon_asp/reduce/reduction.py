@@ -6,10 +6,9 @@ import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
-from foon_asp.bounds.shared_costs import PARTS, SharedCosts, share_costs
 from foon_asp.problem import Objective, Problem
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.dominance import undominated
@@ -22,6 +21,9 @@ from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
 from foon_asp.reduce.upper_bound import following, improved, without_spare
 from foon_asp.reduce.wide import Wide, dear_left_out, rests
+
+if TYPE_CHECKING:  # few questions need it
+    from foon_asp.bounds.shared_costs import SharedCosts
 
 _LARGE = 40_000  # actions from which on it pays not to look at all of them
 _FIRST = 4000  # actions nearest to the goals, among which a tree is looked for before all others count
@@ -54,7 +56,7 @@ class Reduced(NamedTuple):
     cuts: Cuts | None
     interrupted: bool = False
     wide: Wide | None = None
-    shared: SharedCosts | None = None
+    shared: "SharedCosts | None" = None
 
 
 class Listener:
@@ -303,6 +305,8 @@ class _Reducer:
         known = [(cut.objects, cut.members) for cut in self.cuts.cuts] if self.cuts else []
         before = math.inf
         while _SMALL < len(self.left) < _WORTH * before and not self.expired():
+            from foon_asp.bounds.shared_costs import share_costs  # noqa: PLC0415 (few questions need it)
+
             before = len(self.left)
             goals, total = self.graph.goals, self._total(costs)
             shared = share_costs(self.graph, goals, self.left, costs, known, total, self.expired)
@@ -316,11 +320,13 @@ class _Reducer:
                 return True
         return False
 
-    def _shared(self, costs: ExactCosts, shared: SharedCosts) -> bool:
+    def _shared(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
         """Note a bound, and leave out what is dear by it; whether the tree is proved optimal.
 
         What trees cost is whole, so a part of 1 more than the next smaller cost is enough.
         """
+        from foon_asp.bounds.shared_costs import PARTS  # noqa: PLC0415 (few questions need it)
+
         total = self._total(costs)
         bound = min(-(-shared.bound // PARTS), total)
         if bound > self.bound:

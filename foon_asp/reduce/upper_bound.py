@@ -1,10 +1,13 @@
 """Trees that are good, found fast, with nothing in them that can be left out."""
 
 from collections.abc import Callable, Collection, Iterable
+from typing import TYPE_CHECKING
 
-from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
+
+if TYPE_CHECKING:  # few questions need it
+    from foon_asp.bounds.shared_costs import SharedCosts
 
 _FINE = 1000  # steps of shares that the estimates tell apart
 
@@ -47,7 +50,7 @@ def following(
     actions: Collection[int],
     tree: set[int],
     cost: Callable[[int], int],
-    shared: SharedCosts,
+    shared: "SharedCosts",
 ) -> set[int]:
     """Look for a cheaper tree that follows a relaxed solution; gives the same tree if none is found."""
     best = tree
