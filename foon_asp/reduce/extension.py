@@ -7,7 +7,6 @@ from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
 from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
-from foon_asp.reduce.wide import dear_left_out
 
 _FIRST = 500  # actions nearest to the required sets, among which an extension is looked for
 
@@ -30,9 +29,19 @@ def extended(graph: Graph, tree: Collection[int], cost: Callable[[int], int], mo
 def extensions(
     graph: Graph, free: Collection[int], cost: Callable[[int], int], limit: int, expired: Callable[[], bool]
 ) -> set[int]:
-    """Give the actions that an extension of costs up to a limit can have, as if others cost nothing."""
-    everything = range(len(graph.needs))
-    return dear_left_out(_towards_required(graph), everything, _free(free, cost), limit, expired)
+    """Give the actions that an extension of costs up to a limit can have, as if ``free`` ones cost nothing.
+
+    All on a way from an action of it to a required set is of the extension, too, so that counts in full.
+    """
+    towards, price = _towards_required(graph), _free(free, cost)
+    left = near(towards, range(len(graph.needs)), cost, limit, least=1)
+    while not expired():
+        made = derive(graph, left.union(free), price, added=False)
+        nearer = near(towards, left, cost, limit, made.before, least=1)
+        if len(nearer) == len(left):
+            break
+        left = nearer
+    return left
 
 
 def _towards_required(graph: Graph) -> Graph:

@@ -13,6 +13,7 @@ def near(
     limit: int,
     before: Mapping[int, int] | None = None,
     most: int | None = None,
+    least: int = 0,
 ) -> set[int]:
     """Give the allowed actions that a derivation without spare actions, of rests up to ``limit``, can have.
 
@@ -20,7 +21,7 @@ def near(
     actions to a goal, each needing what the one before gives, so the rests along the way count (no action
     that ``a`` builds upon is among them). With ``before``, the least rests of an action with all that it
     needs, those count instead of its own. Dijkstra's algorithm from the goals, which goes no farther than the
-    limit lets it, and only until it has ``most`` actions, if given.
+    limit lets it, and only until it has ``most`` actions, if given. No rest is below ``least``.
     """
     needs, makers, start = graph.needs, graph.makers, graph.start
     buckets: dict[int, list[int]] = {0: list(graph.goals)}
@@ -29,6 +30,8 @@ def near(
     kept: set[int] = set()
     while figures:
         figure = heappop(figures)
+        if figure + least > limit:
+            break
         for target in buckets[figure]:  # grows while it is walked through
             if target in reached:
                 continue
@@ -40,8 +43,8 @@ def near(
                 if total > limit:
                     continue
                 if before is not None:
-                    least = before.get(action)
-                    if least is None or figure + least > limit:
+                    taken = before.get(action)
+                    if taken is None or figure + taken > limit:
                         continue
                 kept.add(action)
                 if total not in buckets:
