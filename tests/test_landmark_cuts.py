@@ -124,19 +124,23 @@ def test_what_was_found_stands_when_time_is_up_or_ctrl_c_comes() -> None:
     assert found._replace(left={}) == (6, {}, ask(price, [3]).cuts[:2], False, True)
 
 
-def test_a_guide_is_asked_by_what_is_left_after_each_64_cuts() -> None:
-    # each of 130 targets by an action of its own; which is next goes by what the guide says
-    graph = Hypergraph(130, [[] for _ in range(130)], [[number] for number in range(130)], [])
+def test_a_guide_is_asked_by_what_is_left_after_64_cuts_and_one_for_each_target() -> None:
+    # targets that take three actions each, one after the other, and more targets that take one
     asked: list[list[int]] = []
+    costs = [1 + number % 3 for number in range(120)]
 
     def guide(rest: Callable[[int], int]) -> dict[int, int]:
-        asked.append([action for action in range(130) if not rest(action)])
+        asked.append([action for action in range(120) if not rest(action)])
         return {}
 
-    costs = [1 + number % 3 for number in range(130)]
-    found = landmark_cuts(graph, range(130), range(130), costs.__getitem__, {}, lambda: False, guide)
+    needs: list[list[int]] = [[number + 40] if number < 80 else [] for number in range(120)]
+    graph = Hypergraph(120, needs, [[number] for number in range(120)], [])
+    found = landmark_cuts(graph, range(40), range(120), costs.__getitem__, {}, lambda: False, guide)
     assert found.bound == sum(costs)
-    assert asked == [[*range(129, 65, -1)][::-1], [*range(2, 130)]]
+    assert asked == [[*range(40), *range(56, 80)]]
+    asked.clear()
+    found = landmark_cuts(graph, range(120), range(120), costs.__getitem__, {}, lambda: False, guide)
+    assert (found.bound, asked) == (sum(costs), [])
 
 
 def test_a_cut_goes_through_what_the_guide_says_to_be_dearest(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from foon_asp.bounds.hypergraph import Hypergraph
 
-_FRESH = 64  # cuts after which what is thought of how dear objects are is too old
+_FRESH = 64  # cuts, or one for each target, after which what is thought of how dear objects are is too old
 
 
 class WeightedCut(NamedTuple):
