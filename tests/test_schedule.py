@@ -280,6 +280,17 @@ def test_a_bowl_that_nothing_says_the_contents_of_is_any() -> None:
     assert timetable_fault(problem, plan_of(problem), [steps[0], seconds(10, 20, 1)], means) is not None
 
 
+def test_what_is_in_a_bowl_stays_when_something_else_is_put_into_it() -> None:
+    units = (
+        *("put: egg > egg; in [bowl]", "season: salt > salt; in [bowl]"),
+        "stir: egg; in [bowl] + salt; in [bowl] > dough",
+    )
+    problem = kitchen(units, ["egg", "salt"])
+    means = Means({motion: Duration(10) for motion in ("put", "season", "stir")}, 1, {"bowl": 2})
+    steps = [seconds(10 * n, 10 * n + 10, 1, BOWLS[0]) for n in range(3)]
+    assert timetable_fault(problem, plan_of(problem), steps, means) is None
+
+
 def test_how_many_tools_a_unit_asks_for() -> None:
     knife, clean, dirty = map(parse_node, ("knife", "knife; clean", "knife; dirty"))
     assert Asked((), (), (), ()).number == 0

@@ -66,9 +66,8 @@ class Wide:
     def total(self, units: Iterable[int]) -> int:
         """Give what a tree costs, with the items that it takes where these are counted."""
         tree = set(units)
-        if not self.graph.start and self.problem.kitchen:
-            needed = {o for unit in tree for o in self.problem.needs[unit]}
-            tree |= {self.graph.units + o for o in needed & self.problem.kitchen}
+        needed = {o for unit in tree for o in self.problem.needs[unit]}
+        tree |= {self.graph.units + o for o in needed & self.problem.kitchen}
         return sum(map(self.costs, tree))
 
     def nearest(self, most: int) -> frozenset[int]:
