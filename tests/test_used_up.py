@@ -712,7 +712,7 @@ def test_the_best_plans_in_order(seed: int) -> None:
 def test_the_best_plans_of_many_small_networks() -> None:
     found = Counter(map(hold_the_best_few, range(700)))
     assert found[-1] < 10
-    assert sum(found[number] for number in range(2, 7)) > 100
+    assert sum(found[number] for number in range(2, 7)) > 20
 
 
 def hold_a_front(seed: int, longest: int = 4) -> int:
