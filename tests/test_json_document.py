@@ -119,6 +119,7 @@ OTHERS = {
     "merge",
     "rename",
     "lsp",
+    "vocabulary",
     "import",
 }
 CASES = [

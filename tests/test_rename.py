@@ -116,6 +116,13 @@ def test_json_of_both_forms_with_its_ids() -> None:
     assert '"clean"' in renamed(text, "state", "empty", "clean", "a.json")
 
 
+def test_json_lines_with_plain_names() -> None:
+    text = '{"id": "go*", "inputs": ["a", "go*"], "outputs": ["b"], "price": 3}\n'
+    text += '{"id": "a", "inputs": ["b"], "outputs": []}\n'
+    assert renamed(text, "object", "a", "c") == text.replace('["a"', '["c"')
+    assert renamed(text, "motion", "go*", "run") == text.replace('"id": "go*"', '"id": "run"')
+
+
 def folder_of_data(folder: Path) -> dict[str, str]:
     texts = {
         "FOON.txt": "O\tpot\nM\tstir\nO\tpot\nS\thot\n//\n",

@@ -55,7 +55,8 @@ def ask(
         who = Caller(progress, session_here(), deadline, lenient=bool(given.get("lenient")))
         with asked_by(who):
             posed = _posed(question, command, given)
-        progress.begin()
+        if question.pose is not no_data or "time_limit" in {option.name for option in question.options}:
+            progress.begin()  # there is a tree to wait for
         with asked_by(who._replace(read_seconds=command.read_seconds)):
             how = parameters(question, given, Part.QUESTION | Part.COMMAND)
             found = [question.command(*about, **how) for about in posed]

@@ -19,12 +19,14 @@ class UnitDifference(NamedTuple):
     """One thing in which two units differ, however often it stands in them.
 
     ``kind`` is motion, label, state, relation, ingredient, input or output; the last two are whole object
-    nodes, in one-line notation. Where only one unit has it, the other text is empty.
+    nodes, in one-line notation. Where only one unit has it, the other text is empty. ``of`` is the label of
+    the object that it is said of first, empty for what is no part of an object.
     """
 
     kind: str
     left: str
     right: str
+    of: str = ""
 
     @property
     def is_slip(self) -> bool:
@@ -68,14 +70,15 @@ def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitD
             UnitDifference(side, "", str(node)) for j, node in enumerate(others) if j not in taken_there
         ]
     labels = {(d.left, d.right) for d in found if d.kind == "label"}
-    # a label that is another one is so as a container and as an ingredient, too
-    return tuple(
-        dict.fromkeys(
-            d
-            for d in found
-            if d.kind not in {"ingredient", "relation"} or (_object(d.left), _object(d.right)) not in labels
-        )
-    )
+    once: dict[tuple[str, str, str], UnitDifference] = {}
+    for each in found:
+        # a label that is another one is so as a container and as an ingredient, too
+        if (
+            each.kind not in {"ingredient", "relation"}
+            or (_object(each.left), _object(each.right)) not in labels
+        ):
+            once.setdefault(each[:3], each)
+    return tuple(once.values())
 
 
 def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit]) -> list[NearUnits]:
@@ -182,11 +185,12 @@ def _between(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
             sorted(name for part, name in (one - two).elements() if part == kind)
             for one, two in ((here, there), (there, here))
         )
+        of = "" if kind == "label" else node.label
         if len(ours) == len(theirs):
-            found += [UnitDifference(kind, *names) for names in zip(ours, theirs, strict=True)]
+            found += [UnitDifference(kind, *names, of) for names in zip(ours, theirs, strict=True)]
         else:
-            found += [UnitDifference(kind, name, "") for name in ours]
-            found += [UnitDifference(kind, "", name) for name in theirs]
+            found += [UnitDifference(kind, name, "", of) for name in ours]
+            found += [UnitDifference(kind, "", name, of) for name in theirs]
     return tuple(found)
 
 

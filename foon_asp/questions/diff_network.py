@@ -126,8 +126,8 @@ class NetworkDifference(Result):
                     "a": self._json(left, pair.left),
                     "b": self._json(right, pair.right),
                     "differences": [
-                        {"kind": kind, "a": one or None, "b": other or None}
-                        for kind, one, other in pair.differences
+                        {"kind": kind, "a": one or None, "b": other or None, "of": of or None}
+                        for kind, one, other, of in pair.differences
                     ],
                 }
                 for pair in self.near
@@ -223,7 +223,7 @@ class NetworkDifference(Result):
         return listed_unit_json(network, unit, self._source(network, unit))
 
 
-_HEADINGS = ("", "A", "B", "both", "Jaccard", "F1")
+_HEADINGS = ("agreement", "A", "B", "both", "Jaccard", "F1")
 
 
 @question(

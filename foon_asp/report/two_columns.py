@@ -68,10 +68,11 @@ def _pair(row: Row) -> str:
 
 
 def _said(difference: UnitDifference) -> str:
-    kind, left, right = difference
+    kind, left, right, of = difference
+    before = f"{_text(of)}: " if of else ""
     if left and right:
-        return f"{kind}: <b>{_text(left)}</b> in A, <b>{_text(right)}</b> in B"
-    return f"{kind} <b>{_text(left or right)}</b> only in {'A' if left else 'B'}"
+        return f"{before}{kind} <b>{_text(left)}</b> in A, <b>{_text(right)}</b> in B"
+    return f"{before}{kind} <b>{_text(left or right)}</b> only in {'A' if left else 'B'}"
 
 
 def _unit(column: Column | None, marked: set[tuple[str, str]]) -> str:

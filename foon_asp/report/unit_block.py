@@ -39,7 +39,8 @@ def kept_apart_text(network: Network) -> str:
 
 def difference_text(difference: UnitDifference) -> str:
     """Say in what two units differ."""
-    kind, left, right = difference
+    kind, left, right, of = difference
+    before = f"{of}: " if of else ""
     if left and right:
-        return f"{kind}: {left!r} in A, {right!r} in B"
-    return f"{kind} {left or right!r} only in {'A' if left else 'B'}"
+        return f"{before}{kind} {left!r} in A, {right!r} in B"
+    return f"{before}{kind} {left or right!r} only in {'A' if left else 'B'}"

@@ -14,7 +14,7 @@ from foon_asp.text.json_layout import TOKEN, check_json
 from foon_asp.text.json_value import json_line
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine, name_of
 from foon_asp.text.line_parser import parse_line, parse_node
-from foon_asp.text.plain_file import is_json
+from foon_asp.text.plain_file import is_json, is_neutral
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.writer import write_line
 
@@ -62,7 +62,7 @@ class Renaming:
     def learn(self, text: str, file: str) -> None:
         """Count the names of a file and note their ids; raises :class:`InputError` for JSON that is none."""
         kind, old, new = self.rename
-        if is_json(text):
+        if is_json(text) and not is_neutral(text):
             check_json(text, file)
         for name_kind, name, id_ in mentioned(text, file, self.reader):
             if name_kind == kind and name == new:
@@ -309,8 +309,9 @@ def _json_names(text: str) -> list[_JsonName]:
             level.ids[level.key] = token.strip('"'), match.span()
         elif token[0] == '"' and (kind := _json_kind(level)):
             written = str(json.loads(token, strict=False))
-            name = written.strip(" ") if kind is not NameKind.MOTION else written.strip(" ").rstrip("* ")
-            rest = "*" if kind is NameKind.MOTION and written.strip(" ").endswith("*") else ""
+            composite = kind is NameKind.MOTION and level.key != "id" and written.rstrip(" ").endswith("*")
+            name = written.strip(" ").rstrip("* ") if composite else written.strip(" ")
+            rest = "*" if composite else ""
             level.names.append((level.key, _JsonName(kind, name, *match.span(), rest)))
     return found
 
@@ -331,10 +332,10 @@ def _is_state_line(found: _JsonName) -> bool:
 def _json_kind(level: _Level) -> NameKind | None:
     """Say of what kind a text is, by the keys over it."""
     key = level.key
-    if key in {"motion_label", "motion_node"}:
+    if key in {"motion_label", "motion_node", "id"}:
         return NameKind.MOTION
     if key in _STATES or key == "state_label" or (key == "label" and level.owner in _STATES):
         return NameKind.STATE
-    if key in _LABELS or key in {"container", "ingredients", *_RELATED}:
+    if key in _LABELS or key in {"container", "ingredients", "inputs", "outputs", *_RELATED}:
         return NameKind.OBJECT
     return None
