@@ -143,7 +143,6 @@ def test_what_the_other_forms_cannot_hold_is_refused(cli: Cli, tmp_path: Path) -
     assert (tree.code, tree.out) == (2, "")
     with pytest.raises(UserError, match="no inputs"):
         foon_asp.write_units(foon_asp.load(file).network)
-    assert "plain names, which are not renamed" in cli("rename", "bread", "loaf", str(file)).err
     two = written(
         tmp_path,
         '[{"input_nodes": [{"label": "a", "states": ["b"]}, {"label": "a; b"}], "motion_node": "m",'

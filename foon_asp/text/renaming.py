@@ -8,7 +8,6 @@ from enum import StrEnum
 from pathlib import PurePath
 from typing import NamedTuple
 
-from foon_asp.errors import UserError
 from foon_asp.network import Contents, ObjectNode, Relation, Source
 from foon_asp.text.diagnostics import Diagnostic, Rename, Severity
 from foon_asp.text.json_layout import TOKEN, check_json
@@ -204,18 +203,13 @@ class Renaming:
 
 
 def mentioned(text: str, file: str, reader: FoonReader) -> Iterator[tuple[NameKind, str, str]]:
-    """Give every mention of a name in a file, with its kind and the id that stands with it, if any.
-
-    Raises :class:`UserError` for a network of plain names, which are one text each.
-    """
+    """Give every mention of a name in a file, with its kind and the id that stands with it, if any."""
     table = TABLES.get(PurePath(file).name)
     if table:
         for line in _lines(text):
             if line.strip() and line[:1] != "#":
                 yield table, line.partition("\t")[0].strip(), ""
         return
-    if is_neutral(text, file):
-        raise UserError(f"{file}: found plain names, which are not renamed: they are one text each")
     if is_json(text):
         for found in _json_names(text):
             state = reader.parse(f"S\t{found.name}") if _is_state_line(found) else None
