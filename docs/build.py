@@ -33,6 +33,7 @@ PAGES = {
         "docs/plans",
         "docs/schedules",
         "docs/view",
+        "docs/editor",
         "docs/drawing",
         "docs/batch",
         "docs/store",

@@ -18,7 +18,7 @@ _RARE = "rare(M) :- motion(_,M), #count { U : motion(U,M) } < 3."
         (("at_most_units",), "reduced"),
         (("require_motion:required_motion=fry", "--explain", "forbid_motion"), "required"),
         (("at_most_units:max_units=3",), "cut"),
-        (("require_intermediate", "-c", "required_intermediate=dough"), "bounded"),
+        (("require_intermediate", "-c", "required_intermediate=dough"), "required"),
         (("before", "--rule", ":- #count { U : use(U) } = 3."), "bounded"),
         (("--rule", f"{_RARE} :- not use(U) : motion(U,M), rare(M)."), "required"),
         (("--rule", ':- object(O), label(O,"ice"), not available(O).'), "plain"),
