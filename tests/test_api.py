@@ -29,7 +29,7 @@ from foon_asp.text.data_folder import find_data
 from tests.conftest import CORPUS, Cli, Ran
 from tests.random_problems import random_problem
 
-pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
+pytestmark = pytest.mark.sampled(4)  # by default some cases of each test: there are many
 
 KITCHEN = bundled_kitchen()
 

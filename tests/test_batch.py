@@ -34,7 +34,7 @@ from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli, valid
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 LINES = """
 {"goal": ["ice", "macaroni"], "objective": ["units", "success,units"], "containers": ["strict", "implied"]}

@@ -23,6 +23,8 @@ from foon_asp.search import SEARCHES
 from tests.conftest import Cli
 from tests.test_command_line import KITCHEN, NETWORK, RATES
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 U, S = Objective.UNITS, Objective.SUCCESS
 
 

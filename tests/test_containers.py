@@ -44,6 +44,8 @@ from tests.conftest import Cli
 from tests.handmade_certificate import before_rules, check, older
 from tests.random_problems import random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 WATER = ObjectNode.of("water", [], [("in", "pot")])
 POT = ObjectNode.of("pot", [], [], [("contains", ["water"])])
 HOT = ObjectNode.of("hot water")

@@ -24,7 +24,7 @@ from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import names, steady, texts
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 TEXT = """\
 # Source:\thttps://example.org/tea.mp4

@@ -36,6 +36,8 @@ from tests.hard_problem import hard_problem
 from tests.random_problems import random_objectives, random_problem
 from tests.test_exact_success import two_ways
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 RULES = list(ContainerRule)
 Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
 

@@ -20,6 +20,8 @@ from tests.conftest import ROOT, Cli, valid
 from tests.example_package import foon_example
 from tests.packages import Packages, install
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 EXAMPLE = Path(foon_example.__file__).parent
 PAGE = ROOT / "docs" / "entry-points.md"
 PROJECT = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())["project"]

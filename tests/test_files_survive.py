@@ -17,7 +17,7 @@ from foon_asp.report.whole_file import write_whole
 from foon_asp.resources import bundled_kitchen
 from tests.conftest import Cli
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 UNIT = "O\ta\nM\tmix\nO\tb\n//\n"
 QUESTION = '{"goal": "ice"}'

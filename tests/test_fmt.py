@@ -16,7 +16,7 @@ from foon_asp.text.reader import FoonReader, ReadUnit
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import steady, texts
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 CLEAN = "# soup\n//\nO1\twater\t1\nS2\tin\t[pot]\n\nM3\theat*\t0:10\t0:20\nO1\twater\t0\nS5\thot\n//\n"
 # What annotators slip on, and what is meant.

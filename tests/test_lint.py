@@ -22,7 +22,7 @@ from foon_asp.text.reader import FoonReader
 from tests.conftest import CORPUS, Cli
 from tests.text.foon_strategies import steady, texts
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 CHOP = "O\tonion\nS\twhole\nM\tchop\nO\tonion\nS\tchopped\n//\n"
 

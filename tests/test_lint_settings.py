@@ -16,6 +16,8 @@ from foon_asp.report.line_diff import line_diff
 from foon_asp.text.diagnostics import InputError
 from tests.conftest import ROOT, Cli, valid
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 SLIP = "O\tonion\nS\tin [gamelle]\nM\tchop\nO\tonion\nS\tchopped\n//\n"
 CHOPPED = "O\tonion\nS\tchopped\nM\tfry\nO\tonion\nS\tfried\nS\tchopped\n//\n"
 NEAR = f"{CHOPPED}O\tonion\nS\tchoppped\nM\tstir\nO\tonion\nS\tmixed\n//\n"

@@ -30,6 +30,8 @@ from tests import oracle
 from tests.conftest import CORPUS, ROOT, Cli
 from tests.random_problems import MOTIONS, random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 RULES = list(ContainerRule)
 MINE = "cost(mine,U,N) :- inputs(U,N)."
 

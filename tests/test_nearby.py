@@ -98,7 +98,7 @@ def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: 
 @pytest.mark.parametrize("rule", list(ContainerRule))
 def test_random_problems(rule: ContainerRule, part: int, tmp_path: Path) -> None:
     compared = read_again = impossible = 0
-    for seed in range(60 // part):
+    for seed in range(36 // part):
         problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
         dataset = stored(problem, tmp_path)
         for goals in {
@@ -119,9 +119,9 @@ def test_random_problems(rule: ContainerRule, part: int, tmp_path: Path) -> None
                 compared += 1
                 read_again += len(found.problem.network) > before
                 impossible += found.status is Status.INFEASIBLE
-    assert compared > 300 // part
+    assert compared > 180 // part
     assert read_again > compared // 4
-    assert impossible > 5
+    assert impossible > 2
 
 
 def test_the_command_reads_near_the_goal(tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,7 +171,7 @@ def test_other_questions_read_all_that_the_goal_needs(
 @pytest.mark.parametrize("rule", list(ContainerRule))
 def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: Path) -> None:
     compared = mattered = 0
-    for seed in range(75 // part):
+    for seed in range(45 // part):
         rng = random.Random(seed)
         problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
         drawn = random_rule(rng, problem)
@@ -192,7 +192,7 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
             assert found.costs.key(order) == expected.costs.key(order), (seed, drawn, objectives)
         compared += 1
         mattered += (free.status, free.costs) != (expected.status, expected.costs)
-    assert compared > 25 // part
+    assert compared > 15 // part
     assert mattered > compared // 8
 
 

@@ -19,6 +19,8 @@ from foon_asp.text.writer import write_units
 from tests.conftest import Cli
 from tests.text.foon_strategies import steady, units
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 
 def unit(text: str) -> FunctionalUnit:
     """Read ``motion: input + input → output``."""

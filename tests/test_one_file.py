@@ -12,6 +12,8 @@ from foon_asp.problem import reach
 from foon_asp.resources import bundled_kitchen
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 RECIPE = """\
 O\tstove
 S\toff

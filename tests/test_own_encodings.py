@@ -11,6 +11,8 @@ from foon_asp.encoding.own_encodings import digest, is_own
 from foon_asp.resources import encodings_folder
 from tests.conftest import Cli
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 OURS = Path(__file__).resolve().parent.parent / "encodings"
 
 

@@ -43,6 +43,8 @@ from tests.test_exact_success import two_ways
 from tests.test_optimum import assert_agrees
 from tests.test_pareto import assert_agrees as assert_front_agrees
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 BY = (Objective.PRICE,)
 RULES = list(ContainerRule)
 FAMILIES = {"sums": PRICES, "free": FREE, "tiny": TINY, "huge": HUGE, "long": LONG}

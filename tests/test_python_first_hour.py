@@ -17,6 +17,8 @@ from foon_asp.errors import FoonWarning
 from tests.conftest import Cli
 from tests.hard_problem import hard_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 ENDLESS = "p(0). p(f(X)) :- p(X). :- use(U), p(f(U))."
 LATE = 2.5  # seconds, on a busy machine; alone it is less than one
 UNITS: list[Any] = [

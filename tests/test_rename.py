@@ -20,6 +20,8 @@ from foon_asp.text.writer import write_units
 from tests.conftest import Cli
 from tests.text.foon_strategies import steady, units
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 IDS = (
     "# bowl\n//\nO5\tbowl\t0\nS1\tempty\nO9\tsalt\t1\nS2\tin\t[bowl]\nM3\tpour*\t<0:12-0:14>\n"
     "O5\tbowl \t0\nS4\tcontains\t{ salt,bowl}\nO7\tdish\nM\n"

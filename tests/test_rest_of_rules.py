@@ -30,6 +30,8 @@ from tests.random_problems import MOTIONS, random_problem
 from tests.test_constraint_meanings import small
 from tests.test_solver import Answer, Searches
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS, Objective.KITCHEN)
 
 

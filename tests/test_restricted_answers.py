@@ -19,6 +19,8 @@ from foon_asp.reduce import Wide
 from foon_asp.rules.constraint import given_constraint
 from tests.test_reductions import LISTS, Measured, posed
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 
 class Rule(NamedTuple):
     """A rule about units by number, and whether a set of units keeps to it."""

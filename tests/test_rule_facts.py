@@ -19,6 +19,8 @@ from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 TOAST = """//
 O\tbread
 S\tsliced

@@ -24,7 +24,7 @@ from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import find_goal
 from tests.conftest import Cli
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 MACARONI = ["solve", "--goal", "macaroni"]
 ICE = ["solve", "--goal", "ice"]

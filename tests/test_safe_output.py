@@ -23,7 +23,7 @@ from foon_asp.problem import Objective
 from foon_asp.report.comparison_table import comparisons_csv
 from tests.conftest import Cli
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 UNSAFE = [
     *map(chr, (*range(9), *range(11, 32), *range(0x7F, 0xA0))),

@@ -33,6 +33,8 @@ from tests.conftest import ROOT, Cli
 from tests.schedule_oracle import least_time
 from tests.used_up_oracle import random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 needs_solver = pytest.mark.skipif(
     importlib.util.find_spec("ortools") is None, reason="OR-Tools is not installed (foon-asp[schedule])"
 )

@@ -29,7 +29,7 @@ from tests.conftest import Cli
 from tests.hard_problem import hard_problem
 from tests.random_problems import random_problem
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 RULES = list(ContainerRule)
 PLAIN = SearchSettings()

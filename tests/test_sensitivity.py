@@ -34,6 +34,8 @@ from tests.random_problems import (
 from tests.stopped_search import stopped_after
 from tests.test_alternatives import choosing
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 RULES = list(ContainerRule)
 Way = tuple[str, ...]
 

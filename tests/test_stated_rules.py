@@ -30,6 +30,8 @@ from tests.conftest import ROOT, Cli
 from tests.handmade_certificate import forbid
 from tests.random_problems import random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 LIBRARY = encodings_folder() / "constraints"
 CRUSH = ':- use(U), motion(U,"crush").'
 POUND = ':- use(U), motion(U,"pound").'

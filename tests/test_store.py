@@ -34,7 +34,7 @@ from foon_asp.text.writer import write_units
 from tests.conftest import ROOT, Cli, Ran
 from tests.random_problems import random_problem
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 KITCHEN = ROOT / "data" / "kitchen"
 

@@ -24,6 +24,8 @@ from tests.constraint_oracle import keeps
 from tests.random_problems import MOTIONS, random_problem
 from tests.test_constraint_meanings import small
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 NO_CRUSHING = ':- use(U), motion(U,"crush").\n'
 DRAINING = ':- not use(U) : motion(U,"drain").\n'
 

@@ -28,6 +28,8 @@ from foon_asp.text.item_list import read_stays, read_stock
 from tests.conftest import Cli
 from tests.used_up_oracle import UTENSILS, key, plans, random_problem, stays
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 # --- The rule.
 
 

@@ -15,6 +15,8 @@ from tests import oracle
 from tests.conftest import ROOT, Cli
 from tests.random_problems import random_problem
 
+pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+
 
 def network_problem(kitchen: str, goal: str, *units: str) -> Problem:
     """Make a problem of units ``a+b>c``; kitchen and goal are labels."""

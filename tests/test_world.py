@@ -24,7 +24,7 @@ from foon_asp.text.object_list import read_object_list
 from foon_asp.text.reader import FoonReader
 from tests.conftest import ROOT, Cli
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 UNIT = "O\tnöt → x\nM\tmix\nO\tb\n//\n"
 

@@ -16,7 +16,7 @@ from foon_asp.text.reader import FoonReader, ReadUnit
 from foon_asp.text.writer import write_line, write_units
 from tests.text.foon_strategies import steady, texts, unit_texts, units
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
+pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
 
 CORPUS = Path(__file__).resolve().parents[3] / "shared" / "corpus"
 
