@@ -93,6 +93,15 @@ def test_shares_are_halves_where_three_landmarks_overlap() -> None:
     assert share_costs(graph, [0], range(3), lambda _: 1, (), 2, lambda: False) is None
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_costs_that_no_float_can_hold(seed: int) -> None:
+    graph, targets, costs = asked(seed)
+    costs = [cost * 10**400 + cost for cost in costs]
+    found = share_costs(graph, targets, range(len(costs)), costs.__getitem__, (), 10**430, lambda: False)
+    assert found is not None
+    require_holds(graph, targets, costs, found)
+
+
 @pytest.mark.parametrize("rule", ContainerRule)
 @pytest.mark.parametrize("seed", range(25))
 def test_answers_are_those_of_the_plain_program(

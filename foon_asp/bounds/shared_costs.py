@@ -77,7 +77,8 @@ class _Sharing:
         self._costs = [cost(a) for a in self._actions]
         self._dearest = max(self._costs, default=1)
         self._random = random.Random(0)
-        self._covering = Covering([c / self._dearest for c in self._costs])
+        self._relative = [c / self._dearest for c in self._costs]  # the costs may be too great for floats
+        self._covering = Covering(self._relative)
         self._rows: list[tuple[int, ...]] = []
         self._cuts: list[frozenset[int]] = []
 
@@ -111,7 +112,7 @@ class _Sharing:
     def _separate(self, x: list[float], expired: Callable[[], bool]) -> bool:
         """Add cuts that a relaxed solution misses, each beside those before; whether there are any."""
         shares, chance = list(x), self._random.random
-        cutter, costs = self._cutter, self._costs
+        cutter, costs = self._cutter, self._relative
         found = False
         for _ in range(_CUTS):
             if expired():
