@@ -62,6 +62,13 @@ def test_what_an_extension_up_to_a_cost_can_have() -> None:
     assert up_to(0, 3) == set()
 
 
+def test_a_dear_extension_in_hand_hides_no_cheaper_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reduction_module, "extended", lambda *_: {0, 4, 5, 6})
+    problem = replace(MADE, restriction=Restriction(lambda _: False, (frozenset({3, 6}),)))
+    reduced = reduce(problem, UNITS, frozenset({Reduction.DEAR}))
+    assert {0, 1, 3} <= {*reduced.units} or {1, 2, 3} <= {*reduced.units}
+
+
 def test_of_a_large_required_set_the_units_stay_that_lack_least() -> None:
     graph = requiring({0, 1, 3, 5, 6}, {2, 4})
     one, other = graph.required

@@ -73,6 +73,15 @@ def test_the_best_tree_of_so_many_cuts(most: int, units: int) -> None:
     assert outcome.costs.units == units
 
 
+@pytest.mark.parametrize(("cuts", "boils", "units"), [(1, 1, None), (1, 2, 6), (2, 1, 5)])
+def test_a_tree_within_one_limit_may_be_beyond_another(cuts: int, boils: int, units: int | None) -> None:
+    limits = {"cut": cuts, "boil": boils}
+    rules = [given_constraint(f"at_most_motion:limited_motion={m},max_uses={n}") for m, n in limits.items()]
+    outcome = solve(THREE, settings=Settings(tuple(rules)))
+    assert outcome.status is (Status.OPTIMAL if units else Status.INFEASIBLE)
+    assert (outcome.costs.units if outcome.costs else None) == units
+
+
 def test_what_a_price_allows_is_what_it_adds_to_a_tree_within_the_limit() -> None:
     by = levels((Objective.UNITS,))
     wide = reduce(THREE, by, rest=True).wide
