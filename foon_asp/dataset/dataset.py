@@ -316,10 +316,9 @@ class Dataset:
         """
         return ask(self.data, goals, containers, self, items)
 
-    def nearby(self, goals: Sequence[int], containers: str) -> "Nearby | None":
+    def nearby(self, goals: Sequence[int], containers: str) -> "Problem | Nearby":
         """Ask for goals that can need many units, of which some need not be read; here all are."""
-        del goals, containers
-        return None
+        return self.problem(goals, containers)
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()

@@ -272,16 +272,15 @@ class StoredDataset(Dataset):
         cone = self._cone(goals, containers, items)
         return self._posed(cone, containers, items)
 
-    def nearby(self, goals: Sequence[int], containers: str, first: int = FIRST) -> Nearby | None:
+    def nearby(self, goals: Sequence[int], containers: str, first: int = FIRST) -> Problem | Nearby:
         """Ask for goals that can need many units, of which at ``first`` so many are read.
 
-        ``None`` where they need no more than these, or what is at hand is not known yet.
+        Gives the problem where they need no more than these. Where no kitchen was given, all that they need
+        is read, since what is taken to be at hand is listed.
         """
-        if not self.has_kitchen:
-            return None
-        cone = self._cone(goals, containers, None, first)
+        cone = self._cone(goals, containers, None, first if self.has_kitchen else None)
         if not cone.open:
-            return None
+            return self._posed(cone, containers, None)
         return Nearby(
             cone,
             lambda cone: self._posed(cone, containers, None),

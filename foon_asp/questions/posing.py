@@ -76,9 +76,7 @@ def one_problem_or_nearby(
     dataset = command.dataset
     if items == "lasting" and (goals_named or not dataset.goals_from):
         with command.reading():
-            near = dataset.nearby(dataset.goals(goals_named), containers)
-        if near is not None:
-            return (near,)
+            return (dataset.nearby(dataset.goals(goals_named), containers),)
     return one_problem(command, goals_named, containers, items, stock, stays)
 
 
