@@ -114,7 +114,7 @@ def small_cones(store: Path, largest: int) -> dict[str, int]:
     cones: dict[str, int] = {}
     for entry in opened.goals:
         goal = find_goal(entry.pattern.label, opened, opened.goals)
-        units = len(opened.cone([goal], ContainerRule.STRICT, opened.utensils))
+        units = len(opened.cone([goal], ContainerRule.STRICT, opened.utensils).units)
         if units <= largest:
             cones[entry.pattern.label] = units
     return cones

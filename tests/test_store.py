@@ -158,7 +158,7 @@ def cone_problem(store: Path, problem: Problem, own_kitchen: bool) -> Problem:
     """Ask the same of the store: with the kitchen that is in it, or with one given by id."""
     opened = Store(store)
     at_hand = None if own_kitchen else problem.kitchen.__contains__
-    part = opened.cone(problem.goals, problem.containers, problem.utensils, at_hand)
+    part = opened.part_of(opened.cone(problem.goals, problem.containers, problem.utensils, at_hand))
     numbers = part.object_numbers
     kitchen = frozenset(place for place, o in enumerate(numbers) if o in problem.kitchen)
     goals = tuple(numbers.index(goal) for goal in problem.goals)
@@ -290,7 +290,7 @@ def test_a_question_reads_what_it_is_about(tmp_path: Path) -> None:
         import_files(DataFiles((file,), kitchen), store)
         opened = Store(store)
         goal = find_goal(SOUP_NODE, opened)
-        assert len(opened.cone([goal], ContainerRule.STRICT, frozenset())) == 3
+        assert len(opened.cone([goal], ContainerRule.STRICT, frozenset()).units) == 3
         counts.append(len(opened._file._blocks))
     assert counts[0] == counts[1] < 12
 
@@ -687,7 +687,7 @@ def everything(store: Path) -> list[object]:
         network.sources,
     ]
     goal = find_goal(SOUP_NODE, opened, opened.goals)
-    cone = opened.cone([goal], ContainerRule.IMPLIED, opened.utensils)
+    cone = opened.part_of(opened.cone([goal], ContainerRule.IMPLIED, opened.utensils))
     answers += [kitchen, goal, cone.unit_numbers, cone.inputs, opened.rates, opened.utensils, opened.goals]
     answers += [
         opened.kitchen_items(),
@@ -752,7 +752,7 @@ def test_a_missing_block_is_damage(soup: tuple[DataFiles, Path]) -> None:
     database.close()
     opened = Store(store)
     with pytest.raises(UserError, match="block 0 of producers is missing"):
-        opened.cone([find_goal(SOUP_NODE, opened)], ContainerRule.STRICT, frozenset())
+        opened.part_of(opened.cone([find_goal(SOUP_NODE, opened)], ContainerRule.STRICT, frozenset()))
 
 
 @pytest.mark.parametrize("number", [0, VERSION + 1, 999])

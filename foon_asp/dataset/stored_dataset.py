@@ -294,7 +294,7 @@ class StoredDataset(Dataset):
         began = time.perf_counter()
         # of what may run out, more may have to be made
         counted = {self._store.object_id(node) for node in (items.stock if items else ())}
-        cone = self._store.cone_of(
+        cone = self._store.cone(
             goals,
             container_rule(containers),
             self.utensils,

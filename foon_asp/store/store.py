@@ -181,25 +181,16 @@ class Store:
         containers: ContainerRule,
         utensils: frozenset[str],
         in_kitchen: Callable[[int], bool] | None = None,
-    ) -> Network:
-        """Read the units that goals can need: backwards through all producers, stopping at the kitchen.
+        most: int | None = None,
+    ) -> Cone:
+        """Find the units that goals can need: backwards through all producers, stopping at the kitchen.
 
         ``utensils`` are what the container rule looks at, ``in_kitchen`` says of a node whether it is at
         hand (in the store's kitchen if ``None``). Whatever tree for these goals is best in the whole
-        network, without a unit to spare, is one of this part. Producers are units with a node among their
-        outputs, whether or not the rule has them make it: the part may be larger than need be.
+        network, without a unit to spare, is one of them. Producers are units with a node among their
+        outputs, whether or not the rule has them make it: there may be more than need be. With ``most``,
+        about as many are found at first.
         """
-        return self.part_of(self.cone_of(goals, containers, utensils, in_kitchen))
-
-    def cone_of(
-        self,
-        goals: Iterable[int],
-        containers: ContainerRule,
-        utensils: frozenset[str],
-        in_kitchen: Callable[[int], bool] | None = None,
-        most: int | None = None,
-    ) -> Cone:
-        """Find the units that goals can need, as for :meth:`cone`, or about ``most`` of them."""
         cone = Cone(
             goals,
             self._producers,
