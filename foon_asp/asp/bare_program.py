@@ -74,6 +74,14 @@ def bare_program(
     return _written(program, first.facts + write_objectives(first.levels) + penalty)
 
 
+def printed_program(
+    problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
+) -> BareProgram:
+    """Write a question like :func:`bare_program`; with rules that may ask for it, of all units there are."""
+    ruled = settings.constraints or settings.encodings or soft
+    return bare_program(problem.whole if ruled else problem, objectives, settings, soft)
+
+
 def bare_plans(
     outcome: Outcome, objectives: Sequence[Objective], settings: Settings
 ) -> tuple[BareProgram | None, dict[int, tuple[int, int]]]:

@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from foon_asp.asp import Settings
-from foon_asp.asp.bare_program import bare_program
+from foon_asp.asp.bare_program import printed_program
 from foon_asp.cli import options
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
@@ -74,8 +74,7 @@ def command(
     dataset = options.read_dataset(**data)  # type: ignore[arg-type]
     chosen = parse_objectives(objectives, dataset.measures)
     goals, how = dataset.goals(goals_named), items_of(dataset, items, stock, stays)
-    everything = bool(constraints or encodings or soft)
-    problem = dataset.problem(goals, containers, everything=everything, items=how)
+    problem = dataset.problem(goals, containers, items=how)
     if dataset.goals_from and not goals_named:
         if len(goals) > 1:
             named = "".join(f"\n  --goal {shlex.quote(notation(goal))}" for goal in dataset.assumed_goals())
@@ -83,7 +82,7 @@ def command(
         click.echo("\n".join(goal_lines(dataset, problem.goal_nodes)), err=True)
     if not dataset.has_kitchen:
         click.echo("\n".join(kitchen_lines(problem)), err=True)
-    facts = bare_program(problem, chosen, Settings(constraints, encodings), soft).text
+    facts = printed_program(problem, chosen, Settings(constraints, encodings), soft).text
     if format_ == "json":
         lines = facts.rstrip("\n").split("\n")  # a name may hold what other letters end a line
         click.echo(json_text(document("facts", problem, chosen, facts=lines)), nl=False)

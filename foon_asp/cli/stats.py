@@ -9,12 +9,10 @@ import click
 from foon_asp.cli import options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import fitted
-from foon_asp.network import LEVELS, network_at_level
-from foon_asp.network.statistics import count
+from foon_asp.dataset.statistics import count_levels
 from foon_asp.questions.contract import TABLES
 from foon_asp.report.frame import document_text
 from foon_asp.report.statistics_table import statistics_json, statistics_text
-from foon_asp.text.data_folder import kitchen_nodes
 
 
 @click.command("stats")
@@ -42,12 +40,7 @@ def command(
         folder, networks = paths[0], ()
     dataset = options.read_dataset(folder=folder, network=networks, level=3, **data)
     read = dataset.data
-    levels = []
-    for level in LEVELS:
-        at_level = network_at_level(read.network, level)
-        kitchen = kitchen_nodes(at_level, read.kitchen_items) if read.kitchen_items else None
-        levels.append(count(at_level, kitchen))
-    told = read.network, levels, bool(read.kitchen_items)
+    told = read.network, count_levels(read), bool(read.kitchen_items)
     if format_ == "text":
         click.echo(fitted(partial(statistics_text, *told)), nl=False)
     else:
