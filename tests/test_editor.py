@@ -79,26 +79,58 @@ def test_a_keystroke_reads_one_unit() -> None:
     text.change((6 * 20 + 5, 0), (6 * 20 + 5, 2), "")  # without its separator, two units are one
     assert len(text.pieces) == len(before) - 1
     assert text.pieces[21:] == before[22:]
-    assert [finding.code for _, finding in text.all_findings()] == ["second-motion"]
+    assert [finding.code for _, finding in text.findings(0, len(text.lines))] == ["second-motion"]
+
+
+SHEET = Sheet("a.txt", ["S\twhole"] * 60_000, FoonReader())
+
+
+def lint_finding(line: int) -> Any:
+    return SHEET.finding("near-name", "x", line, "whole")
+
+
+def told(text: EditedText) -> list[tuple[int, int, int, str]]:
+    """Give the findings that an editor is told of, with their lines and columns."""
+    answers = pytest.importorskip("foon_asp.editor.answers", reason="pygls is not installed (foon-asp[lsp])")
+    parts = list(answers.diagnostics(text, answers.Columns("utf-16")))
+    ranges = [(each["range"], each["code"]) for each in json.loads(f"[{','.join(filter(None, parts))}]")]
+    assert all(place["start"]["line"] == place["end"]["line"] for place, _ in ranges)
+    return [
+        (place["start"]["line"], place["start"]["character"], place["end"]["character"], code)
+        for place, code in ranges
+    ]
+
+
+def test_findings_that_were_told_move_with_their_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pygls", reason="pygls is not installed (foon-asp[lsp])")
+    monkeypatch.setattr("foon_asp.editor.answers._PART", 7)
+    text = EditedText(many(60))
+    text.linted((6 * n + 1, lint_finding(6 * n + 1)) for n in range(0, 60, 2))
+    place = (2, 7, "near-name")  # of "whole"
+    assert told(text) == [(6 * n + 1, *place) for n in range(0, 60, 2)]
+    text.change((6 * 20 + 1, 0), (6 * 20 + 1, 0), "S\t\U0001f52a\nM\n")  # two lines more, in a new piece
+    after = [(6 * n + 1, *place) for n in range(0, 20, 2)], [(6 * n + 3, *place) for n in range(22, 60, 2)]
+    assert told(text) == [*after[0], (122, 0, 1, "syntax"), *after[1]]
+    text.change((0, 0), (6 * 20, 0), "")
+    assert [line for line, *_ in told(text)][:2] == [2, 15]
+    text.linted([(3, lint_finding(3))])  # what was told before is forgotten
+    assert [line for line, *_ in told(text)] == [3]
 
 
 @pytest.mark.slow
 def test_ten_thousand_units_answer_a_keystroke_in_time() -> None:
     answers = pytest.importorskip("foon_asp.editor.answers", reason="pygls is not installed (foon-asp[lsp])")
     text, columns = EditedText(many(10_000)), answers.Columns("utf-16")
-    text.linted((6 * n, lint_finding()) for n in range(0, 10_000, 20))
+    text.linted((6 * n, lint_finding(6 * n)) for n in range(10_000))
+    assert len(told(text)) == 10_000
     seconds = []
     for n in range(10):
         start = time.process_time()
         text.change((600 * n + 1, 7), (600 * n + 1, 7), "x")
-        assert answers.diagnostics(text, columns)
+        assert any(answers.diagnostics(text, columns))
         assert answers.completion(text, columns, 600 * n + 1, 4).items
         seconds.append(time.process_time() - start)
     assert min(seconds) < 0.1
-
-
-def lint_finding() -> Any:
-    return Sheet("a.txt", ["O\tx"], FoonReader()).finding("near-name", "x", 0)
 
 
 @pytest.mark.parametrize(
@@ -116,7 +148,7 @@ def test_what_a_new_unit_says_is_what_linting_says_of_it(tmp_path: Path, text: s
     here.change((0, 0), (0, 0), text)
     file = tmp_path / "a.txt"
     linted = [(f.source.line - 1, f.code, f.fix) for f in lint([file], {file: text.encode()})]
-    said = [(line, f.code, f.fix) for line, f in here.all_findings()]
+    said = [(line, f.code, f.fix) for line, f in here.findings(0, len(here.lines))]
     assert (code in {c for _, c, _ in said}) if code else said == []
     assert set(said) <= set(linted)
 
@@ -188,10 +220,22 @@ def test_a_session_in_an_editor(client: LanguageClient, tmp_path: Path) -> None:
     outline = text.whole("documentSymbol")
     assert [(unit["name"], unit["detail"]) for unit in outline] == [("chop", "→ onion"), ("put", "→ pot")]
     assert [(unit["startLine"], unit["endLine"]) for unit in text.whole("foldingRange")] == [(0, 5), (7, 12)]
-    # typing: the findings are there at once, and those of the whole text when it rests
+    # typing: the findings are there when it pauses, and those of the whole text when it rests
     text.change((9, 0), (9, 0), "O7\tpan\tx\n")
     assert (9, "motion-flag") in codes(client.findings())
     assert {(9, "motion-flag"), (9, "id-of-two-names")} <= {*codes(client.findings())}
+
+    def told_while_typing() -> list[Any]:
+        """Type five lines that cannot be read, and ask at each; give what was told before the last answer."""
+        for _ in range(5):
+            text.change((0, 0), (0, 0), "zzz\n")
+            text.ask("completion", 6, 0)
+        told = [*client.told]
+        while sum(code == "syntax" for _, code in codes(client.findings())) < text.text.count("zzz"):
+            pass
+        return told
+
+    assert any(told_while_typing() == [] for _ in range(3))  # thrice, should the machine stand still
 
 
 def test_completion_knows_kinds_counts_and_ids(client: LanguageClient, tmp_path: Path) -> None:

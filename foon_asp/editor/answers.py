@@ -8,15 +8,17 @@ from lsprotocol import types
 
 from foon_asp.editor.edited_text import EditedText
 from foon_asp.editor.name_place import name_at, typed_at
-from foon_asp.editor.piece import Name, Piece
+from foon_asp.editor.piece import Name, Piece, Told
 from foon_asp.lint.noqa import silencing
 from foon_asp.network import NodePattern, counted
 from foon_asp.text.diagnostics import Diagnostic, InputError, Rename, Severity
 from foon_asp.text.formatter import format_text
+from foon_asp.text.json_value import json_line
 from foon_asp.text.plain_file import split_lines
 from foon_asp.text.renaming import NameKind, Renaming, is_name
 
 _OFFERED = 100  # names: what is typed next leaves fewer
+_PART = 500  # findings that are put together before something else may be asked
 _SHOWN = 8  # units in what is shown of a node
 _LEVELS = {Severity.ERROR: 1, Severity.WARNING: 2, Severity.NOTE: 3}
 _COMPLETED = {
@@ -62,27 +64,40 @@ class Columns:
         )
 
 
-def diagnostics(edited: EditedText, columns: Columns) -> list[dict[str, object]]:
-    """Give all findings, as plain values: there may be thousands, at every keystroke."""
-    shown = []
-    for line, finding in edited.all_findings():
-        text = edited.lines[line] if line < len(edited.lines) else ""
-        start = min(finding.source.column - 1, len(text))
-        end = start + len(re.match(r"[^\t\[\]{},]*", text[start:])[0])  # type: ignore[index]
-        begin, behind = columns.theirs(text, start), columns.theirs(text, max(end, min(start + 1, len(text))))
-        shown.append(
-            {
-                "range": {
-                    "start": {"line": line, "character": begin},
-                    "end": {"line": line, "character": behind},
-                },
-                "severity": _LEVELS[finding.severity],
-                "code": finding.code,
-                "source": "foon-asp",
-                "message": finding.message,
-            }
-        )
-    return shown
+def diagnostics(edited: EditedText, columns: Columns) -> Iterator[str]:
+    """Give all findings in JSON, some at a time, since there may be thousands.
+
+    What a piece says is put together once, and moves with its lines.
+    """
+    parts: list[str] = []
+    for first, piece in zip(edited.starts, edited.pieces, strict=True):
+        if piece.told is None:
+            piece.told = [_told(edited, columns, first, *each) for each in piece.findings]
+        for at, start, end, rest in piece.told:
+            line = first + at
+            place = (
+                f'{{"start":{{"line":{line},"character":{start}}},"end":{{"line":{line},"character":{end}}}}}'
+            )
+            parts.append(f'{{"range":{place},{rest}')
+        if len(parts) >= _PART:
+            yield ",".join(parts)
+            parts = []
+    if parts:
+        yield ",".join(parts)
+
+
+def _told(edited: EditedText, columns: Columns, first: int, at: int, finding: Diagnostic) -> Told:
+    text = edited.lines[first + at] if first + at < len(edited.lines) else ""
+    start = min(finding.source.column - 1, len(text))
+    end = start + len(re.match(r"[^\t\[\]{},]*", text[start:])[0])  # type: ignore[index]
+    said = {
+        "severity": _LEVELS[finding.severity],
+        "code": finding.code,
+        "source": "foon-asp",
+        "message": finding.message,
+    }
+    begin, behind = columns.theirs(text, start), columns.theirs(text, max(end, min(start + 1, len(text))))
+    return Told(at, begin, behind, json_line(said)[1:])
 
 
 def completion(edited: EditedText, columns: Columns, line: int, column: int) -> types.CompletionList:
@@ -237,7 +252,7 @@ def symbols(edited: EditedText) -> list[dict[str, object]]:
         if piece.motion is None or not piece.blocks:
             continue
         at, motion = piece.motion
-        made = " + ".join(dict.fromkeys(node.label for node in piece.makes()))
+        made = " + ".join(dict.fromkeys(node.label for node in piece.makes))
         end = {"line": start + len(piece.lines) - 1, "character": 0}
         listed.append(
             {
@@ -322,9 +337,8 @@ def quick_fixes(
     edited: EditedText, columns: Columns, uri: str, first: int, last: int
 ) -> Iterator[types.CodeAction]:
     """Offer what mends the findings on some lines, and to silence them."""
-    here = [(line, each) for line, each in edited.all_findings() if first <= line <= last]
     silenced = set()
-    for line, finding in islice(here, _OFFERED):
+    for line, finding in islice(edited.findings(first, last), _OFFERED):
         title, edits = _mending(edited, columns, line, finding)
         if edits:
             yield _action(title, uri, edits, is_preferred=not finding.unsafe and finding.rename is None)

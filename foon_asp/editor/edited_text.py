@@ -24,7 +24,7 @@ class Found(NamedTuple):
 class EditedText:
     """The lines of a text in the pieces between its separators, and an index of the names and nodes in it.
 
-    ``findings`` are those of JSON, which is not read piece by piece.
+    JSON is not read piece by piece: it has one piece without lines, for its findings.
     """
 
     def __init__(self, text: str) -> None:
@@ -33,7 +33,6 @@ class EditedText:
         self.end = "\r\n" if "\r\n" in text else "\n"
         self.lines = split_lines(text)
         self.pieces: list[Piece] = []
-        self.findings: list[tuple[int, Diagnostic]] = []
         self.counts: Counter[Name] = Counter()
         self.holding: Counter[str] = Counter()
         self.ids: defaultdict[Name, Counter[str]] = defaultdict(Counter)
@@ -41,8 +40,7 @@ class EditedText:
         self.needers: defaultdict[ObjectNode, dict[Piece, None]] = defaultdict(dict)
         self._starts: list[int] = []
         self._motions = 0
-        if not self.is_json:
-            self._put(0, 0, self._cut(self.lines))
+        self._put(0, 0, self._cut([] if self.is_json else self.lines))
 
     @property
     def text(self) -> str:
@@ -99,23 +97,19 @@ class EditedText:
 
     def linted(self, findings: Iterable[tuple[int, Diagnostic]]) -> None:
         """Take note of the findings about the present text, each with the index of its line."""
-        if self.is_json:
-            self.findings = list(findings)
-            return
         for piece in self.pieces:
-            piece.findings = []
+            piece.findings, piece.told = [], None
         for line, finding in findings:
             place = self._piece_at(min(line, len(self.lines) - 1))
-            listed = self.pieces[place].findings
-            assert listed is not None
-            listed.append((line - self.starts[place], finding))
+            self.pieces[place].findings.append((line - self.starts[place], finding))
 
-    def all_findings(self) -> Iterator[tuple[int, Diagnostic]]:
-        """Give every finding with the index of its line; of pieces that are new, what the reader says."""
-        yield from self.findings
-        for start, piece in zip(self.starts, self.pieces, strict=True):
-            if piece.findings:
-                yield from ((start + line, finding) for line, finding in piece.findings)
+    def findings(self, first: int, last: int) -> Iterator[tuple[int, Diagnostic]]:
+        """Give every finding about some lines with its line; of pieces that are new, what the reader says."""
+        pieces = slice(self._piece_at(first), self._piece_at(last) + 1)
+        for start, piece in zip(self.starts[pieces], self.pieces[pieces], strict=True):
+            for line, finding in piece.findings:
+                if first <= start + line <= last:
+                    yield start + line, finding
 
     def _piece_at(self, line: int) -> int:
         return bisect_right(self.starts, line) - 1
@@ -153,7 +147,7 @@ class EditedText:
             self.holding[word] += sign
         for name, id_ in piece.ids:
             self.ids[name][id_] += sign
-        for index, nodes in ((self.makers, piece.makes()), (self.needers, piece.needs())):
+        for index, nodes in ((self.makers, piece.makes), (self.needers, piece.needs())):
             for node in nodes:
                 if sign > 0:
                     index[node][piece] = None

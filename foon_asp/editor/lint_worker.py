@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Callable
+from io import BufferedReader
 from pathlib import Path
 from typing import Any
 
@@ -29,21 +30,23 @@ class LintProcess(PythonProcess):
         self.beside(self._speak, file, text, done)
 
     def _speak(self, file: str, text: str, done: Callable[["LintProcess", Findings | str], None]) -> None:
+        found: Findings = []
         try:
-            left = memoryview(json_line({"file": file, "text": text}).encode())
+            left = memoryview(f"{json_line(file)}\n{text}".encode("utf-8", "replace"))
             while left:
                 left = left[self._out.write(left) or 0 :]
             self._out.close()
-            parts = []
-            while part := self._in.read(1 << 20):
-                parts.append(part)
-            answer: Any = read_json(b"".join(parts))
+            for line in BufferedReader(self._in):
+                # one by one, so that the editor gets its answers meanwhile
+                if "error" in (said := read_json(line)):
+                    done(self, str(said["error"]))
+                    return
+                if "whole" in said:
+                    done(self, found)
+                    return
+                found.append(_finding(file, said))
         except (OSError, ValueError):
             return  # it was ended
-        if "error" in answer:
-            done(self, str(answer["error"]))
-        else:
-            done(self, [_finding(file, each) for each in answer["findings"]])
 
 
 def _finding(file: str, said: dict[str, Any]) -> tuple[int, Diagnostic]:
@@ -55,30 +58,28 @@ def _finding(file: str, said: dict[str, Any]) -> tuple[int, Diagnostic]:
 
 
 def serve() -> None:
-    """Lint the text on standard input, and write the findings to standard output."""
-    asked = read_json(sys.stdin.buffer.read())
-    file = Path(asked["file"])
-    answer: dict[str, object]
+    """Lint the text on standard input, behind a line with its name; write the findings, each on a line."""
+    file = Path(read_json(sys.stdin.buffer.readline()))
+    said: list[dict[str, object]]
     try:
-        found = find_settings([file]).applied(lint([file], {file: asked["text"].encode("utf-8", "replace")}))
+        found = find_settings([file]).applied(lint([file], {file: sys.stdin.buffer.read()}))
     except UserError as error:
-        answer = {"error": str(error)}
+        said = [{"error": str(error)}]
     else:
-        answer = {
-            "findings": [
-                {
-                    "line": max(1, each.source.line),
-                    "column": max(1, each.source.column),
-                    "severity": each.severity,
-                    "code": each.code,
-                    "message": each.message,
-                    "text": each.excerpt,
-                    "fix": each.fix,
-                    "unsafe": each.unsafe,
-                    "rename": each.rename,
-                }
-                for each in found
-            ]
-        }
-    sys.stdout.buffer.write(json_line(answer).encode())
+        said = [
+            {
+                "line": max(1, each.source.line),
+                "column": max(1, each.source.column),
+                "severity": each.severity,
+                "code": each.code,
+                "message": each.message,
+                "text": each.excerpt,
+                "fix": each.fix,
+                "unsafe": each.unsafe,
+                "rename": each.rename,
+            }
+            for each in found
+        ]
+        said.append({"whole": True})
+    sys.stdout.buffer.writelines(f"{json_line(each)}\n".encode() for each in said)
     sys.stdout.flush()

@@ -25,6 +25,15 @@ class Name(NamedTuple):
     name: str
 
 
+class Told(NamedTuple):
+    """A finding as an editor is told of it: a line of a piece, its start and end there, and more JSON."""
+
+    line: int
+    start: int
+    end: int
+    rest: str
+
+
 class Block(NamedTuple):
     """An object node: from which line of a piece to before which, and whether the unit makes it."""
 
@@ -37,15 +46,29 @@ class Block(NamedTuple):
 class Piece:
     """Lines up to a separator, which is the last of them, unless the text ends there.
 
-    ``findings`` are those of the last linting, by index of the line; ``None`` when the piece is newer.
+    ``makes`` has the nodes that the unit makes: those among its outputs that it does not need.
+    ``findings`` are those of the last linting, by index of the line, and ``told`` is how an editor is told of
+    them; ``None`` where that is still to be put together.
     """
 
-    __slots__ = ("blocks", "findings", "holding", "ids", "is_closed", "lines", "motion", "names")
+    __slots__ = (
+        "blocks",
+        "findings",
+        "holding",
+        "ids",
+        "is_closed",
+        "lines",
+        "makes",
+        "motion",
+        "names",
+        "told",
+    )
 
     def __init__(self, lines: Sequence[str], is_closed: bool, reader: FoonReader) -> None:
         self.lines = tuple(lines)
         self.is_closed = is_closed
-        self.findings: list[tuple[int, Diagnostic]] | None = None
+        self.findings: list[tuple[int, Diagnostic]] = []
+        self.told: list[Told] | None = None
         self.motion: tuple[int, str] | None = None
         self.names: list[Name] = []
         self.ids: list[tuple[Name, str]] = []
@@ -77,11 +100,8 @@ class Piece:
             elif isinstance(parsed, MotionLine) and self.motion is None:
                 self.motion = index, parsed.motion
         self.blocks = tuple(blocks)
-
-    def makes(self) -> Iterator[ObjectNode]:
-        """Give the nodes that the unit makes: those among its outputs that it does not need."""
         needed = set(self.needs())
-        return (block.node for block in self.blocks if block.is_output and block.node not in needed)
+        self.makes = tuple(each.node for each in blocks if each.is_output and each.node not in needed)
 
     def needs(self) -> Iterator[ObjectNode]:
         """Give the nodes that the unit needs."""

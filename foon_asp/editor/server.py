@@ -5,6 +5,7 @@ import contextlib
 import functools
 import os
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -22,15 +23,34 @@ from foon_asp.editor.lint_worker import Findings, LintProcess
 from foon_asp.errors import UserError
 from foon_asp.network import NodePattern
 from foon_asp.text.data_folder import kitchen_file
+from foon_asp.text.json_value import json_line
 from foon_asp.text.object_list import read_object_list
+from foon_asp.text.reader import FoonReader
 
 _COMPLETION = types.CompletionOptions(trigger_characters=["\t", "[", "{", ","])
 _FIXES = types.CodeActionOptions([types.CodeActionKind.QuickFix])
+_PAUSE = 0.25  # seconds in which the editor says nothing, before findings are sent
 _REST = 0.4  # seconds without a change, before a text is linted as a whole
 
 
 class _Protocol(LanguageServerProtocol):  # type: ignore[misc]
-    """Keeps texts in pieces, and not as a whole, which would be copied at every keystroke."""
+    """Keeps texts in pieces, and not as a whole, which would be copied at every keystroke.
+
+    ``heard`` is when the editor last said something.
+    """
+
+    heard = 0.0
+
+    def handle_message(self, message: Any) -> None:
+        """Hear what the editor says."""
+        self.heard = asyncio.get_running_loop().time()
+        super().handle_message(message)
+
+    def tell(self, message: str) -> None:
+        """Send what is JSON already."""
+        body = message.encode()
+        with contextlib.suppress(BrokenPipeError):  # then what the editor says has ended, too
+            self.writer.write(b"Content-Length: %d\r\n\r\n%b" % (len(body), body))
 
     def lsp_text_document__did_change(self, params: types.DidChangeTextDocumentParams) -> Iterator[Any]:
         """Hand a change on."""
@@ -43,7 +63,6 @@ def _converter() -> Any:
     """Make what turns answers into JSON; the long ones are plain values already."""
     converter = default_converter()
     plain = {
-        types.PublishDiagnosticsNotification: ("jsonrpc", "method", "params"),
         types.DocumentSymbolResponse: ("jsonrpc", "id", "result"),
         types.FoldingRangeResponse: ("jsonrpc", "id", "result"),
     }
@@ -62,7 +81,8 @@ class Desk:
             "foon-asp", __version__, protocol_cls=_Protocol, converter_factory=_converter
         )
         self.texts: dict[str, EditedText] = {}
-        self._timers: dict[str, asyncio.TimerHandle] = {}
+        self._timers: dict[str, asyncio.Handle] = {}
+        self._telling: dict[str, asyncio.Handle] = {}
         self._lints: dict[str, LintProcess] = {}
         self._complaint = ""
         self._kitchens: dict[Path, tuple[float, list[NodePattern]]] = {}
@@ -93,7 +113,7 @@ class Desk:
         self._lint_later(params.text_document.uri, 0)
 
     def changed(self, params: types.DidChangeTextDocumentParams) -> None:
-        """Change a text, show what the pieces that are new say, and lint it once it rests."""
+        """Change a text, say what the new pieces say when it pauses, and lint it when it rests."""
         uri, columns = params.text_document.uri, self.columns
         edited = self.texts[uri]
         for change in params.content_changes:
@@ -103,8 +123,8 @@ class Desk:
                 continue
             start, end = ((at.line, _letter(edited, columns, at)) for at in (where.start, where.end))
             edited.change(start, end, change.text)
-        self.publish(uri)
         self._lint_later(uri, _REST)
+        self.publish(uri)
 
     def closed(self, params: types.DidCloseTextDocumentParams) -> None:
         """Forget a text."""
@@ -162,8 +182,10 @@ class Desk:
         return [*answers.quick_fixes(edited, self.columns, uri, lines.start.line, lines.end.line)]
 
     def publish(self, uri: str) -> None:
-        """Send all findings about a text."""
-        self._send(uri, answers.diagnostics(self.texts[uri], self.columns))
+        """Send all findings about a text when the editor asks nothing; anew if that was under way."""
+        if waiting := self._telling.pop(uri, None):
+            waiting.cancel()
+        self._tell(uri, answers.diagnostics(self.texts[uri], self.columns), [])
 
     def kitchen(self, uri: str) -> list[NodePattern] | None:
         """Give the entries of the kitchen beside a text; ``None`` where there is none that can be read."""
@@ -187,16 +209,29 @@ class Desk:
     def _say(self, kind: types.MessageType, text: str) -> None:
         self.server.window_show_message(types.ShowMessageParams(kind, text))
 
-    def _send(self, uri: str, found: list[dict[str, object]]) -> None:
-        self.server.protocol.notify(
-            types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, {"uri": uri, "diagnostics": found}
-        )
+    def _tell(self, uri: str, parts: Iterator[str], found: list[str]) -> None:
+        """Put findings together, part by part, while nothing is asked; then send them."""
+        loop = asyncio.get_running_loop()
+        self._telling.pop(uri, None)
+        if (left := self.server.protocol.heard + _PAUSE - loop.time()) > 0:
+            self._telling[uri] = loop.call_later(left, self._tell, uri, parts, found)
+        elif part := next(parts, None):
+            self._telling[uri] = loop.call_soon(self._tell, uri, parts, [*found, part])
+        else:
+            self._send(uri, found)
+
+    def _send(self, uri: str, found: list[str]) -> None:
+        told = f'{{"uri":{json_line(uri)},"diagnostics":[{",".join(found)}]}}'
+        method = types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
+        self.server.protocol.tell(f'{{"jsonrpc":"2.0","method":"{method}","params":{told}}}')
 
     def _stop(self, uri: str) -> None:
-        if timer := self._timers.pop(uri, None):
-            timer.cancel()
+        """Stop what is under way about a text."""
+        for waiting in (self._timers, self._telling):
+            if uri in waiting:
+                waiting.pop(uri).cancel()
         if process := self._lints.pop(uri, None):
-            process.end()
+            _end(process)
 
     def _lint_later(self, uri: str, seconds: float) -> None:
         self._stop(uri)
@@ -215,7 +250,7 @@ class Desk:
     def _linted(self, uri: str, edited: EditedText, process: LintProcess, found: Findings | str) -> None:
         if self._lints.get(uri) is not process:
             return  # it has changed since
-        self._lints.pop(uri).end()
+        _end(self._lints.pop(uri))
         if isinstance(found, str):
             if found != self._complaint:
                 self._say(types.MessageType.Error, found)
@@ -226,12 +261,18 @@ class Desk:
         self.publish(uri)
 
 
+def _end(process: LintProcess) -> None:
+    """End a process beside, since that may take a while."""
+    threading.Thread(target=process.end, daemon=True).start()
+
+
 def _letter(edited: EditedText, columns: answers.Columns, at: types.Position) -> int:
     return columns.ours(edited.lines[at.line], at.character) if at.line < len(edited.lines) else 0
 
 
 def serve() -> None:
     """Speak with an editor over standard input and output, until it ends."""
+    FoonReader().parse("S x")  # the first line that is not as it should be takes longer
     desk = Desk()
     # streams of its own, since the server closes them
     streams = (
