@@ -391,6 +391,37 @@ def test_the_rows_of_limits() -> None:
     assert none.program.upper[:4] == [None, None, None, 0]
 
 
+def test_the_rows_of_plans_that_are_known() -> None:
+    bound = CountBound(KITCHEN, beside=[{0: 1, 2: 3}, {2: 3, 3: 2}])
+    model = _Model(bound, [])
+    assert (model.program.lower[8:], model.program.upper[8:]) == ([0, 0], [1, 1])
+    often = [({2: 1, 8: -3}, 0), ({}, -2), ({4: -1, 8: -1}, -1), ({3: 1, 9: -2}, 0), ({}, -1)]
+    assert rows(model)[13:] == [*often, ({8: -1, 9: -1}, -1)]
+    model.program.cap(2, 5)
+    model.program.cap(3, 1)
+    model.tighten()
+    assert rows(model)[14] == ({8: 3, 2: -1}, -2)  # 2 at most, or 5
+    assert rows(model)[17] == ({3: -1}, -1)
+    for counts, told, held in (
+        ({2: 3}, (0, 0), (2, 3, 8)),
+        ({2: 4}, (0, 0), (2, 3, 8)),
+        ({2: 3}, (1, 0), None),
+        ({2: 2, 3: 1}, (0, 0), None),
+        ({2: 3, 3: 2}, (1, 0), (3, 2, 9)),
+    ):
+        assert model.held(counts, [0.0] * 8 + [float(each) for each in told]) == held
+
+
+def test_the_rows_of_what_plans_have_to_be_as_good_as() -> None:
+    units, cheap = Measure([1, 1, 1, 1]), Measure([1, 2, 0, 0])
+    bound = CountBound(KITCHEN, within=[whole(cheap, 3), whole(units, 4)])
+    assert rows(bound._model([units]))[13:] == [
+        ({0: -1, 1: -2}, -3),
+        (dict.fromkeys(range(4), -1), -4),
+    ]
+    assert bound._model([units]).program.upper[:4] == [3, 1, 4, 4]
+
+
 def test_how_many_executions_there_can_be_in_all() -> None:
     limited = flows("3>0", "3>1", start={3: 4})
     assert CountBound(limited).most_executions() == 4
@@ -501,6 +532,72 @@ def test_what_is_looked_at_first_in_a_part() -> None:
         parts([2, 2, 1, 1], units)
 
 
+def test_what_is_executed_as_often_as_in_a_known_plan_counts_as_such() -> None:
+    bound = CountBound(flows(">0", ">1", targets=(0, 1)), beside=[{0: 2, 1: 1}])
+    level = whole(Measure([1, 1]), 9)
+    model = _Model(bound, [level.measure])
+    parts = list(bound._branches(model, [3, 1, 1, 1, 0], (), level, lambda _: True))
+    assert parts == [
+        ([0] * 5, [1, None, 1, 1, 1]),
+        ([2, 0, 0, 0, 1], [None, None, 1, 1, 1]),
+    ]
+
+
+def test_counts_that_are_found_are_not_those_of_a_known_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    ways = flows(">0", ">1", "100>0", targets=(0, 1))
+    # that each is executed a little would do if it were not asked whether it is executed at all
+    assert CountBound(ways, beside=[{0: 1, 1: 1}]).counts([UNITS]) == {1: 1, 2: 1}
+    monkeypatch.delattr(WholeProgram, "whole_optimum")  # not needed where counts are whole
+    assert CountBound(ways).counts([Measure([1, 1, 2])]) == {0: 1, 1: 1}
+
+
+def test_it_is_proved_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Counts] = []
+
+    def is_better(counts: Counts) -> bool:
+        asked.append(counts)
+        return len(asked) == 9
+
+    eating = flows("3>0", "3>1", start={3: 2})
+    caps, tighten_root = list[int](), CountBound._tighten_root
+
+    def tightened(bound: CountBound, model: _Model, objective: Mapping[int, int], cutoff: int) -> None:
+        caps.append(cutoff)
+        tighten_root(bound, model, objective, cutoff)
+
+    monkeypatch.setattr(CountBound, "_tighten_root", tightened)
+    bound = CountBound(eating)
+    bound.none_is_left(Measure([1, 1]), is_better)
+    assert (asked[0], sorted(map(sorted, map(dict.items, asked)))) == (
+        {0: 1},  # the fewest first
+        [[(0, 1)], [(0, 1), (1, 1)], [(0, 2)]],
+    )
+    assert (bound.proved, caps) == (0, [2])  # what is proved is of another measure, and no bound
+    for found in (bound, CountBound(flows(">0"))):  # as often as wanted
+        with pytest.raises(BetterError):
+            found.none_is_left(Measure([1, 1]), lambda _: True)
+    assert caps == [2, 2]
+    CountBound(flows("1>0", ">2")).none_is_left(Measure([1, 1]), is_better)
+    asked.clear()
+    monkeypatch.setattr(counts_module, "_MOST_UNCAPPED", 5)
+    with pytest.raises(Stopped):
+        CountBound(flows(">0", ">2", targets=(0, 2))).none_is_left(Measure([1, 1]), is_better)
+    assert asked[0] == {0: 1, 1: 1}
+    assert 2 <= len(asked) <= 3
+
+
+def test_more_landmarks_are_looked_for_at_the_root_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, separate = list[bool](), CountBound._separate
+
+    def separated(bound: CountBound, x: Sequence[float], model: _Model, at_root: bool) -> bool:
+        asked.append(at_root)
+        return separate(bound, x, model, at_root)
+
+    monkeypatch.setattr(CountBound, "_separate", separated)
+    proves(CountBound(flows(">0"), derivation=[0]), whole(Measure([1]), 3))
+    assert asked == [True, True, False, False]
+
+
 def test_actions_that_cannot_be_executed_twice_are_found_at_the_root(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -597,6 +694,36 @@ def test_all_counts_that_may_be_better_are_asked_for_and_no_others(seed: int) ->
             hold(made, level_of(first, some), None, limits)
         else:
             hold(made, level_of(first, some), level_of(second, other), limits)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_all_that_is_as_good_and_not_known_is_asked_for(seed: int) -> None:
+    choose, some = Random(seed), 0
+    while some < 8:
+        made = random_flows(choose)
+        size = len(made.asks)
+        known = possible(made)
+        if len(known) < 4:
+            continue
+        some += 1
+        first, second = (random_measure(choose, size) for _ in range(2))
+        limit = level_of(second, Fraction(choose.randint(4, 18), 2))
+        if limit.measure.exact is not None and choose.random() < 0.5:
+            limit = limit._replace(strict=True)
+        last = whole(Measure([choose.randint(1, 2) for _ in range(size)]), choose.randint(2, _LONGEST))
+        levels = [level_of(first, Fraction(choose.randint(4, 18), 2)), last]
+        beside = [counts for counts, _ in choose.sample(known, choose.randint(0, 3)) if counts]
+        as_good = [
+            counts
+            for counts, taken in known
+            if all(cost_of(each.measure, counts, taken) <= each.cost for each in (*levels, limit))
+            and not (limit.strict and cost_of(second, counts, taken) == limit.cost)
+            and not any(all(counts.get(a, 0) >= n for a, n in each.items()) for each in beside)
+        ]
+        asked: list[Counts] = []
+        derivation = choose.choice(((), runnable(made)))
+        CountBound(made, (), (), derivation, [limit], beside).every(levels, asked.append)
+        assert sorted(sorted(c.items()) for c in asked) == sorted(sorted(c.items()) for c in as_good)
 
 
 def test_a_circle_that_is_met_later_is_left_out_as_well() -> None:

@@ -37,6 +37,14 @@ def test_a_relaxed_solution_and_the_bound_that_it_proves(capfd: pytest.CaptureFi
     assert capfd.readouterr() == ("", "")
 
 
+def test_the_parts_of_an_open_row_are_told_later() -> None:
+    later = program(2)
+    assert (later.open_row((1, 0), 2), later._rows) == (0, [({1: 0, 0: 0}, 2)])
+    assert later.row({0: 1}, 0) == 1
+    later.change(0, {0: 4})
+    assert later.solve({0: 1}) == Solved([0.5, 0.0], Fraction(1, 2))
+
+
 def test_no_solution_is_proved_by_weights_and_never_taken_on_trust() -> None:
     assert program(1, ({0: 1}, 2), ({0: 1}, 0), upper={0: 1}).solve({0: 1}) == NONE
     assert program(2, ({0: 3, 1: -1}, 1), ({0: -3, 1: 1}, 1)).solve({}) == NONE

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.whole_program import WholeProgram
+from foon_asp.bounds.whole_program import Solved, WholeProgram
 
 Counts = dict[int, int]
 """How often each action is executed; those that are not are left out."""
@@ -230,7 +230,7 @@ class CountBound:
         Costs of the last level are whole numbers. Raises :class:`Stopped`.
         """
         *before, last = levels
-        worse = last._replace(cost=last.cost + 1, most=last.most + 1)
+        worse = last._replace(cost=last.cost + 1)
 
         def asked(counts: Counts) -> bool:
             ask(counts)
@@ -267,29 +267,35 @@ class CountBound:
             most = cutoff = level.most if rounded else math.ceil(level.cost) - 1
             model.cap(level.measure, most)
             self._tighten_root(model, objective, most)
-        first = list(model.program.lower), list(model.program.upper)
+        lower, upper = list(model.program.lower), list(model.program.upper)
         number = 0
-        waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, 0, number, first)]
+        waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, sum(lower), number, (lower, upper))]
         while waiting:
-            self._check()
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
             if not before:
                 self.proved = max(self.proved, bound)
+            solved = self._solved(model, objective, cutoff)
+            if solved.x is None:
+                continue
+            for lower, upper in self._branches(model, solved.x, before, level, is_better):
+                number += 1
+                executions = sum(lower[: self._size])
+                heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
+            if number > (_MOST_UNCAPPED if uncapped else _MOST_PARTS):
+                raise Stopped
+
+    def _solved(self, model: "_Model", objective: Mapping[int, int], cutoff: float) -> Solved:
+        """Solve the relaxation of a part with all landmarks that it misses; no ``x`` where it has no plan."""
+        while True:
+            self._check()
             model.tighten()
             solved = model.program.solve(objective, cutoff)
             if solved.bound > cutoff or solved.bound == math.inf:
-                continue
+                return solved._replace(x=None)
             if solved.x is None:
                 raise Stopped  # floats say that there is nothing, and no whole numbers do
-            if self._add_landmark(solved.x, model) or self._separate(solved.x, model, at_root=False):
-                heappush(waiting, (bound, 0, number, (model.program.lower, model.program.upper)))
-                continue
-            for part in self._branches(model, solved.x, before, level, is_better):
-                number += 1
-                executions = sum(part[0][: self._size])
-                heappush(waiting, (max(bound, solved.bound), executions, -number, part))
-            if number > (_MOST_UNCAPPED if uncapped else _MOST_PARTS):
-                raise Stopped
+            if not self._add_landmark(solved.x, model) and not self._separate(solved.x, model, at_root=False):
+                return solved
 
     def _model(self, measures: Sequence[Measure], far: bool = False) -> "_Model":
         every = (*measures, *(level.measure for level in self._within))
@@ -461,7 +467,7 @@ class _Model:
         self._far, self._size, self._many = far, size, bound._many
         for _ in range(size):
             program.column(0, 1)  # whether an action is executed at all
-        self._loose = [program.row({size + a: 0, a: 0}, 0) for a in range(size)]
+        self._loose = [program.open_row((size + a, a), 0) for a in range(size)]
         for a in range(size):
             program.row({a: 1, size + a: -1}, 0)
         self._classes: dict[int, list[int]] = {}
@@ -514,7 +520,7 @@ class _Model:
         if (action, count) not in self._often:
             column = self.program.column(0, 1)
             self.program.row({action: 1, column: -count}, 0)
-            self._often[action, count] = column, self.program.row({column: 0, action: 0}, 1 - count)
+            self._often[action, count] = column, self.program.open_row((column, action), 1 - count)
         return self._often[action, count][0]
 
     def held(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
@@ -562,7 +568,7 @@ class _Model:
             program.change(row, {} if most is None else {self._size + action: most, action: -1})
         for (action, count), (column, row) in self._often.items():
             most = self._most(action)
-            program.change(row, {} if most is None else {column: max(most - count + 1, 0), action: -1})
+            program.change(row, {} if most is None else {column: most - count + 1, action: -1})
 
     def _most(self, action: int) -> int | None:
         most = self.program.upper[action]

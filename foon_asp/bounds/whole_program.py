@@ -1,7 +1,7 @@
 """A linear program over whole numbers: solved in floats by HiGHS, bounded in whole numbers."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -54,6 +54,10 @@ class WholeProgram:
         """Add a row, and give its number."""
         self._rows.append((parts, least))
         return len(self._rows) - 1
+
+    def open_row(self, columns: Iterable[int], least: int) -> int:
+        """Add a row of some columns whose parts are told later, and give its number."""
+        return self.row(dict.fromkeys(columns, 0), least)
 
     def change(self, row: int, parts: dict[int, int]) -> None:
         """Change the parts of the columns that a row has; without parts, all become 0."""
