@@ -1,15 +1,17 @@
 """Costs shared out among all cuts: bounds that hold whatever floats say, held against brute force."""
 
 import random
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations
 
 import pytest
 
 from foon_asp.asp import Settings, solve
+from foon_asp.bounds import shared_costs
+from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.relaxation import Covering
-from foon_asp.bounds.shared_costs import PARTS, SharedCosts, share_costs
+from foon_asp.bounds.relaxation import Covering, Relaxed
+from foon_asp.bounds.shared_costs import PARTS, SharedCosts, _Sharing, share_costs
 from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, levels
 from foon_asp.reduce import ALL, NONE, Reduction, reduction
@@ -100,6 +102,86 @@ def test_costs_that_no_float_can_hold(seed: int) -> None:
     found = share_costs(graph, targets, range(len(costs)), costs.__getitem__, (), 10**430, lambda: False)
     assert found is not None
     require_holds(graph, targets, costs, found)
+
+
+class Told:
+    """In place of HiGHS: says a value for each solution, the same shares in all, and weights."""
+
+    def __init__(self, values: Sequence[float], shares: list[float], weights: Sequence[float] = ()) -> None:
+        self._values, self._shares, self._weights = values, shares, weights
+        self.solved = 0
+        self.rows: list[tuple[int, ...]] = []
+
+    def add(self, row: tuple[int, ...]) -> None:
+        self.rows.append(row)
+
+    def solve(self) -> Relaxed:
+        self.solved += 1
+        return Relaxed(self._values[self.solved - 1], self._shares, [], [])
+
+    def weights(self) -> list[float]:
+        return [*self._weights, *[0.0] * (len(self.rows) - len(self._weights))]
+
+
+def told(monkeypatch: pytest.MonkeyPatch, targets: int, told: Told, enough: int) -> int:
+    """Share out costs of 2 among targets of one action each, and give how many cuts were asked for."""
+    asked, find = list[tuple[int, ...]](), Cutter.cut
+
+    def cut(cutter: Cutter, keep: tuple[int, ...], order: list[int]) -> Cut | None:
+        asked.append(keep)
+        return find(cutter, keep, order)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(shared_costs, "Covering", lambda _: told)
+        patched.setattr(Cutter, "cut", cut)
+        every = range(targets)
+        graph = Hypergraph(targets + 1, [[]] * targets, [[a + 1] for a in every], [0])
+        goals = range(1, targets + 1)
+        share_costs(graph, goals, every, lambda _: 2, (), enough, lambda: len(asked) > 999)
+    return len(asked)
+
+
+def test_cuts_are_looked_for_until_they_bring_little(monkeypatch: pytest.MonkeyPatch) -> None:
+    # by the dearest action, 101 would be enough: a hundredth of what lacks, and no more, has to come of eight
+    for values, solved in (([0.0] * 30, 9), ([0.0] * 8 + [1.0] * 30, 17), ([0.0, 101.0, 101.0], 2)):
+        relaxation = Told(values, [0.0] * 50)
+        assert told(monkeypatch, 50, relaxation, 202) == 40 * (solved - 1)
+        assert (relaxation.solved, len(relaxation.rows)) == (solved, 40 * (solved - 1))
+    relaxation = Told([0.0] * 9, [0.998] * 3)
+    assert told(monkeypatch, 3, relaxation, 202) == 8 * 4  # the fourth is known
+    assert sorted(relaxation.rows) == sorted([(0,), (1,), (2,)] * 8)
+    relaxation = Told([0.0], [0.999] * 3)
+    assert (told(monkeypatch, 3, relaxation, 202), relaxation.rows) == (1, [])
+    sharing = _Sharing(Hypergraph(2, [[]], [[1]], [0]), [1], [0], lambda _: 1)
+    assert sharing._separate([0.0], lambda: True) is False
+    assert (sharing._separate([0.0], lambda: False), sharing._rows) == (True, [(0,)])
+
+
+def test_dear_actions_are_cut_first() -> None:
+    sharing = _Sharing(Hypergraph(3, [[], [1]], [[1], [2]], [0]), [2], range(2), [1, 10].__getitem__)
+    for _ in range(9):
+        assert sharing._separate([0.0, 0.0], lambda: False)
+    assert sharing._rows == [(1,), (0,)] * 9
+
+
+def test_weights_are_those_wanted_and_what_is_left_goes_to_the_greatest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    relaxation = Told([0.0], [0.5, 0.25, 0.0, 0.0, 1.0], [0.5, 0.75, -1.0, 0.0, 1 / 3, 2 / 3])
+    monkeypatch.setattr(shared_costs, "Covering", lambda _: relaxation)
+    graph = Hypergraph(2, [[]] * 5, [[1]] * 5, [0])
+    rows: list[Collection[int]] = [(0, 1), (1, 2, 9), (2, 3), (2,), (4,), (4,)]
+    known = [({place}, members) for place, members in enumerate(rows)]
+    found = share_costs(graph, [1], range(5), lambda _: 12, known, 99, lambda: True)
+    weights = {0: 3, 1: 9, 2: 3, 4: 4, 5: 8}
+    left = {0: 9, 1: 0, 2: 0, 3: 9, 4: 0}
+    assert found == SharedCosts(
+        27 * PARTS,
+        {a: rest * PARTS for a, rest in left.items()},
+        [(frozenset({place}), weight * PARTS) for place, weight in weights.items()],
+        {0: 0.5, 1: 0.25, 2: 0.0, 3: 0.0, 4: 1.0},
+    )
+    assert relaxation.rows == [(0, 1), (1, 2), (2, 3), (2,), (4,), (4,)]
 
 
 @pytest.mark.parametrize("rule", ContainerRule)

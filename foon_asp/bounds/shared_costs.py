@@ -9,6 +9,7 @@ whatever they were.
 import math
 import random
 from collections.abc import Callable, Collection, Iterable
+from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.bounds.cut import Cutter
@@ -16,7 +17,6 @@ from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.relaxation import Covering
 
 PARTS = 720720  # of 1: most weights are simple fractions
-_FINE = 2**60  # in how many parts floats are read
 _HIT = 0.999  # a landmark of a greater share is taken to be hit
 _CUTS = 40  # that one relaxed solution is asked for
 _STALLED = 8  # solutions after which a bound that hardly grows counts as the best there is
@@ -119,7 +119,8 @@ class _Sharing:
                 return False
             order = sorted(cutter.actions, key=lambda a: (-shares[a], costs[a] * (0.5 + chance())))
             cut = cutter.cut((), order)
-            if cut is None or sum([shares[a] for a in cut.members]) >= _HIT:
+            assert cut is not None  # without actions no target is reached
+            if sum([shares[a] for a in cut.members]) >= _HIT:
                 break
             found = True
             self._add(frozenset(self._objects[o] for o in cut.objects), cut.members)
@@ -130,9 +131,8 @@ class _Sharing:
     def _shared(self, x: list[float]) -> SharedCosts:
         left = [c * PARTS for c in self._costs]
         weights = [0] * len(self._rows)
-        wanted = [
-            round(max(w, 0.0) * _FINE) * self._dearest * PARTS // _FINE for w in self._covering.weights()
-        ]
+        of_1 = self._dearest * PARTS
+        wanted = [max(0, round(Fraction(w) * of_1)) for w in self._covering.weights()]
         dearest_first = sorted(range(len(wanted)), key=lambda row: -wanted[row])
         for limit in (wanted, None):  # what is left by rounding goes to whom it helps
             for row in dearest_first:
@@ -140,13 +140,12 @@ class _Sharing:
                 weight = min(left[a] for a in members)
                 if limit is not None:
                     weight = min(weight, limit[row])
-                if weight:
-                    weights[row] += weight
-                    for a in members:
-                        left[a] -= weight
+                weights[row] += weight
+                for a in members:
+                    left[a] -= weight
         return SharedCosts(
             sum(weights),
-            dict(zip(self._actions, left, strict=True)),
-            [(cut, weight) for cut, weight in zip(self._cuts, weights, strict=True) if weight],
-            dict(zip(self._actions, x, strict=True)),
+            {a: left[n] for n, a in enumerate(self._actions)},
+            [(cut, weights[row]) for row, cut in enumerate(self._cuts) if weights[row]],
+            {a: x[n] for n, a in enumerate(self._actions)},
         )
