@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import pytest
 
+from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic
-from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Proof, Prover
+from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Packing, Proof, Prover
 
 COUNT = Lexicographic([None])
 NOBODY: frozenset[int] = frozenset()
@@ -174,3 +175,27 @@ def test_what_is_proved_is_true_of_every_derivation(part: int) -> None:
             assert case.cost(cheaper) < case.cost(worst)
             met["cheaper"] += 1
     assert met.keys() >= {"Packing", "Hopeless", "Broken", "limits", "none", "cheaper"}
+
+
+def test_what_is_used_is_not_asked_about_again() -> None:
+    # the cheapest two make a target each, and only once both are used is it known that this breaks a rule
+    case = Case(
+        Hypergraph(3, [[], [], []], [[1], [2], [1, 2]], [0]),
+        [1, 2],
+        [(Fraction(1),), (Fraction(1),), (Fraction(3),)],
+        [({2: Fraction(1)}, Fraction(1))],
+        NotAll([frozenset({0, 1})]),
+    )
+    proof = case.prover().prove([2])
+    assert isinstance(proof, Branch)
+    assert isinstance(proof.using, Branch)
+    assert (proof.action, proof.using.action, proof.using.using) == (0, 1, Broken(0))
+    hold(case, proof, Fraction(3), Counter())
+
+
+def test_a_limit_that_leaves_nothing_is_proved_without_branching() -> None:
+    half = {0: Fraction(2)}, Fraction(1)
+    case = Case(Hypergraph(2, [[]], [[1]], [0]), [1], [(Fraction(1),)], [half], NotAll([]))
+    # to go beyond the limit costs 1, which is what the landmark weighs more than it may take of it
+    weight, limit = ((Fraction(2),), (Fraction(1),))
+    assert case.prover(free=True).prove_none() == Packing(((Cut((1,), (0,)), weight),), ((0, limit),))

@@ -314,6 +314,12 @@ def test_known_cuts_that_fall_short_are_no_proof() -> None:
     assert found.value.actions == (1, 3)
 
 
+def test_known_cuts_with_actions_of_no_use_are_left_out_of_the_relaxation() -> None:
+    graph = Hypergraph(3, [[], []], [[1], [2]], [0])
+    proof = Prover(graph, [1], costs(2, 1), COUNT, known=[[1, 2]]).prove([0])
+    assert proof == Packing(((Cut((1,), (0,)), (Fraction(2),)),))
+
+
 def test_known_cuts_whose_greedy_weights_fall_short_are_where_the_relaxation_begins(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

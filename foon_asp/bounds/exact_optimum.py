@@ -113,15 +113,16 @@ class _Basis:
 
     def leaving(self, number: int, is_row: bool) -> tuple[int, bool]:
         """Give the column or row that first falls to zero as a column comes in or a row becomes slack."""
-        if is_row:
-            side = {row: (Fraction(-(row == number)),) for row in self._matrix}
-        else:
-            side = {row: (self._rows[row].get(number, _ZERO),) for row in self._matrix}
+        gains = [
+            Fraction(-(row == number)) if is_row else parts.get(number, _ZERO)
+            for row, parts in enumerate(self._rows)
+        ]
+        side = {row: (gains[row],) for row in self._matrix}
         fall = {column: value for column, (value,) in _solve(self._matrix, side).items()}
         limits = [(self.x[c] / f, False, c) for c, f in fall.items() if f > 0]
         for row, space in enumerate(self.slack):
             lost = sum((value * fall[c] for c, value in self._rows[row].items() if c in fall), _ZERO)
-            lost -= _ZERO if is_row else self._rows[row].get(number, _ZERO)
+            lost -= gains[row]
             if lost > 0:  # never in a tight row
                 limits.append((space / lost, True, row))
         _, leaves_row, leaving = min(limits)  # there is one, as no cost is below 0

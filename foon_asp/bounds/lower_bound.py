@@ -322,8 +322,8 @@ class _Node:
 
     def taken(self) -> list[int]:
         """Give the actions that the relaxed solution takes, with those that are used anyway."""
-        shares = enumerate(self.shares[: len(self._actions)])
-        return sorted({self._actions[place] for place, x in shares if round(x)} | self._used)
+        shares = zip(self._actions, self.shares, strict=False)  # after those of actions come those of limits
+        return sorted({action for action, x in shares if round(x)} | self._used)
 
     def _separate(self) -> bool:
         """Look for cuts whose landmarks have shares of less than 1; whether there were any."""
