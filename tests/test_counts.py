@@ -510,8 +510,8 @@ def test_what_is_looked_at_first_in_a_part() -> None:
     units = whole(Measure([1, 1]), 9)
 
     def parts(x: list[float], level: Level, *before: Level) -> list[tuple[list[int], list[int | None]]]:
-        model = _Model(bound, [each.measure for each in (*before, level)])
-        return list(bound._branches(model, x, before, level, lambda counts: counts == {0: 2, 1: 2}))
+        model, levels = _Model(bound, [each.measure for each in (*before, level)]), (*before, level)
+        return list(bound._branches(model, x, levels, lambda counts: counts == {0: 2, 1: 2}))
 
     none, once = [None, None, 1, 1], [0, 0, 0, 0]
     # what is most nearly half executed
@@ -520,13 +520,13 @@ def test_what_is_looked_at_first_in_a_part() -> None:
     # what is executed and does not count as such
     assert parts([0.9999999, 3, 1, 0], units) == [(once, [None, 0, 1, 1]), ([0, 1, 0, 1], none)]
     # counts of which the exact cost is too much: others of the classes
-    assert parts([3, 1, 1, 1, 3], Level(exact, Fraction(4), 9)) == [
+    assert parts([3, 1, 1, 1, 3], Level(exact, Fraction(4), 9, strict=True)) == [
         ([0] * 5, [*none, 2]),
         ([0, 0, 0, 0, 4], [*none, None]),
     ]
     assert len(parts([3, 1, 1, 1, 3], units, Level(exact, Fraction(3), 9))) == 2
     # counts that have no order: others
-    assert len(parts([3, 1, 1, 1, 3], Level(exact, Fraction(5), 9))) == 4
+    assert len(parts([3, 1, 1, 1, 3], Level(exact, Fraction(5), 9, strict=True))) == 4
     assert len(parts([3, 1, 1, 1, 3], units, Level(exact, Fraction(4), 9))) == 4
     with pytest.raises(BetterError):
         parts([2, 2, 1, 1], units)
@@ -536,7 +536,7 @@ def test_what_is_executed_as_often_as_in_a_known_plan_counts_as_such() -> None:
     bound = CountBound(flows(">0", ">1", targets=(0, 1)), beside=[{0: 2, 1: 1}])
     level = whole(Measure([1, 1]), 9)
     model = _Model(bound, [level.measure])
-    parts = list(bound._branches(model, [3, 1, 1, 1, 0], (), level, lambda _: True))
+    parts = list(bound._branches(model, [3, 1, 1, 1, 0], [level], lambda _: True))
     assert parts == [
         ([0] * 5, [1, None, 1, 1, 1]),
         ([2, 0, 0, 0, 1], [None, None, 1, 1, 1]),

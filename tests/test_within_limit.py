@@ -1,13 +1,17 @@
 """A limit on how many of some units a tree has, by prices, against all trees there are."""
 
 import random
+from collections.abc import Callable, Sequence
 
 import pytest
 
-from foon_asp.asp import Settings, Status, solve
-from foon_asp.problem import Objective, levels
-from foon_asp.reduce import reduce, reduction
-from foon_asp.reduce.within_limit import limited
+from foon_asp.asp import Outcome, Settings, Status, solve
+from foon_asp.asp.solver import Reporter, _Solver
+from foon_asp.deadline import Deadline
+from foon_asp.problem import Costs, Objective, levels
+from foon_asp.reduce import Wide, reduce, reduction
+from foon_asp.reduce import within_limit as module
+from foon_asp.reduce.within_limit import Limited, limited
 from foon_asp.rules.constraint import given_constraint
 from tests.test_constraint_meanings import small
 from tests.test_reductions import LISTS, posed
@@ -101,3 +105,103 @@ def test_what_a_price_allows_is_what_it_adds_to_a_tree_within_the_limit() -> Non
     none = limited(wide, by, frozenset({0, 2, 3}), {0, 2}.__contains__, 0, lambda: False)
     assert none is not None
     assert none.tree is None
+
+
+# --- Step by step, with what the prices say put in their place.
+
+
+class Prices:
+    """Notes which limits are asked about; of some it says what it is told to."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, **said: Limited | BaseException | None) -> None:
+        self.asked: list[int] = []
+        self.found: list[Limited] = []
+        self._said = said
+        monkeypatch.setattr(module, "limited", self)
+        self.looked_up: list[tuple[Wide, int | None]] = []
+        up_to = _Solver._up_to
+
+        def noted(
+            solver: _Solver, wide: Wide, tree: frozenset[int], ended: None, allowed: int | None = None
+        ) -> Outcome:
+            self.looked_up.append((wide, allowed))
+            return up_to(solver, wide, tree, ended, allowed)
+
+        monkeypatch.setattr(_Solver, "_up_to", noted)
+
+    def __call__(
+        self,
+        wide: Wide,
+        objectives: Sequence[Objective],
+        tree: frozenset[int],
+        counts: Callable[[int], bool],
+        most: int,
+        expired: Callable[[], bool],
+    ) -> Limited | None:
+        assert not expired()
+        assert sum(map(counts, tree)) > most
+        self.asked.append(most)
+        said = self._said.get(f"of_{most}", limited(wide, objectives, tree, counts, most, expired))
+        if isinstance(said, BaseException):
+            raise said
+        if said is not None:
+            self.found.append(said)
+        return said
+
+
+def within(**limits: int) -> Settings:
+    """Limit motions; the last letter of a name, if it is a figure, only tells two limits of one apart."""
+    rules = (
+        f"at_most_motion:limited_motion={name.rstrip('12')},max_uses={most}" for name, most in limits.items()
+    )
+    return Settings(tuple(map(given_constraint, rules)))
+
+
+def test_limits_that_the_best_tree_keeps_to_have_no_price(monkeypatch: pytest.MonkeyPatch) -> None:
+    prices = Prices(monkeypatch)
+    heard: list[int] = []
+
+    class Listening(Reporter):
+        def tree(self, costs: Costs) -> None:
+            heard.append(costs.units)
+
+    outcome = solve(THREE, (Objective.UNITS,), within(mix=1, cut=2), Listening())
+    [found] = prices.found
+    assert (outcome.status, prices.asked) == (Status.OPTIMAL, [2])
+    assert (heard[0], heard[-1]) == (len(found.tree or ()), 5)
+    assert prices.looked_up == [(found.wide, found.allowed)]
+
+
+def test_where_the_price_of_a_limit_tells_nothing_the_next_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    prices = Prices(monkeypatch, of_2=None)
+    outcome = solve(THREE, settings=within(cut1=2, cut2=1))
+    assert outcome.costs is not None
+    assert (outcome.status, outcome.costs.units, prices.asked) == (Status.OPTIMAL, 6, [2, 1])
+    assert [wide for wide, _ in prices.looked_up] == [found.wide for found in prices.found]
+
+
+def test_a_tree_that_breaks_another_limit_is_not_taken_from_a_price(monkeypatch: pytest.MonkeyPatch) -> None:
+    wide = reduce(THREE, levels((Objective.UNITS,)), rest=True).wide
+    assert wide is not None
+    prices = Prices(monkeypatch, of_2=Limited(frozenset({0, 1, 6, 8, 9}), wide, 9))
+    outcome = solve(THREE, settings=within(cut1=2, cut2=1))
+    assert outcome.costs is not None
+    assert (outcome.status, outcome.costs.units, prices.asked) == (Status.OPTIMAL, 6, [2, 1])
+    assert [found.wide for found in prices.found][1:] == [wide for wide, _ in prices.looked_up]
+
+
+def test_that_no_tree_is_within_a_limit_is_the_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    wide = reduce(THREE, levels((Objective.UNITS,)), rest=True).wide
+    assert wide is not None
+    prices = Prices(monkeypatch, of_2=Limited(None, wide, 0))
+    monkeypatch.setattr(_Solver, "_run", None)  # nothing is searched
+    outcome = solve(THREE, settings=within(cut1=2, cut2=1))
+    assert (outcome.status, outcome.units, prices.asked) == (Status.INFEASIBLE, None, [2])
+
+
+def test_ctrl_c_while_a_price_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
+    Prices(monkeypatch, of_2=KeyboardInterrupt())
+    deadline = Deadline()
+    outcome = solve(THREE, settings=within(cut=2)._replace(deadline=deadline))
+    assert (outcome.status, outcome.units, deadline.interrupted) == (Status.UNKNOWN, None, True)
+    assert outcome.stopped == "ctrl-C while cutting the network"

@@ -221,8 +221,10 @@ class CountBound:
         ``is_better`` is asked of counts that would be: whether there is an order to execute them in that is.
         Raises :class:`BetterError` with them, and :class:`Stopped`.
         """
-        for place in range(len(levels)):
-            self._prove(levels[:place], levels[place], is_better)
+        for place, level in enumerate(levels):
+            before, rounded = levels[:place], level.measure.exact is not None
+            most = level.most if rounded else math.ceil(level.cost) - 1
+            self._prove(level.measure, most, is_better, before, [*before, level._replace(strict=True)])
 
     def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
         """Ask about all counts that may be those of a plan as good as the one in hand, by each level.
@@ -230,13 +232,7 @@ class CountBound:
         Costs of the last level are whole numbers. Raises :class:`Stopped`.
         """
         *before, last = levels
-        worse = last._replace(cost=last.cost + 1)
-
-        def asked(counts: Counts) -> bool:
-            ask(counts)
-            return False
-
-        self._prove(before, worse, asked)
+        self._prove(last.measure, last.most, ask, before, before)
 
     def none_is_left(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
         """Prove that there is no plan at all; counts of few executions, by their measure, are asked first.
@@ -244,29 +240,33 @@ class CountBound:
         ``is_better`` says whether some are those of a plan: then raises :class:`BetterError`. Raises
         :class:`Stopped` where nothing is proved.
         """
-        most, proved = self.most_executions(), self.proved
+        proved = self.proved
         try:
-            self._prove((), Level(measure, Fraction((most or 0) + 1), most or 0), is_better, most is None)
+            self._prove(measure, self.most_executions(), is_better)
         finally:
             self.proved = proved  # by another measure, maybe
 
     def _prove(
         self,
-        before: Sequence[Level],
-        level: Level,
-        is_better: Callable[[Counts], bool],
-        uncapped: bool = False,
+        measure: Measure,
+        most: int | None,
+        is_better: Callable[[Counts], bool | None],
+        before: Sequence[Level] = (),
+        levels: Sequence[Level] = (),
     ) -> None:
-        model = self._model([each.measure for each in (*before, level)])
-        for each in before:
-            model.limit(each)
-        rounded = level.measure.exact is not None
-        objective = model.objective(level.measure)
-        cutoff: float = math.inf
-        if not uncapped:
-            most = cutoff = level.most if rounded else math.ceil(level.cost) - 1
-            model.cap(level.measure, most)
+        """Ask about all counts that cost ``most`` at most, rounded down, if that is known.
+
+        They are as good by each level ``before``, by sums. Where these are rounded, ``levels`` say what they
+        cost exactly.
+        """
+        model = self._model([measure, *(level.measure for level in before)])
+        for level in before:
+            model.limit(level)
+        objective = model.objective(measure)
+        if most is not None:
+            model.cap(measure, most)
             self._tighten_root(model, objective, most)
+        cutoff = math.inf if most is None else most
         lower, upper = list(model.program.lower), list(model.program.upper)
         number = 0
         waiting: list[tuple[float | Fraction, int, int, _Bounds]] = [(0, sum(lower), number, (lower, upper))]
@@ -277,11 +277,11 @@ class CountBound:
             solved = self._solved(model, objective, cutoff)
             if solved.x is None:
                 continue
-            for lower, upper in self._branches(model, solved.x, before, level, is_better):
+            for lower, upper in self._branches(model, solved.x, levels, is_better):
                 number += 1
                 executions = sum(lower[: self._size])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
-            if number > (_MOST_UNCAPPED if uncapped else _MOST_PARTS):
+            if number > (_MOST_UNCAPPED if most is None else _MOST_PARTS):
                 raise Stopped
 
     def _solved(self, model: "_Model", objective: Mapping[int, int], cutoff: float) -> Solved:
@@ -336,9 +336,8 @@ class CountBound:
         self,
         model: "_Model",
         x: Sequence[float],
-        before: Sequence[Level],
-        level: Level,
-        is_better: Callable[[Counts], bool],
+        levels: Sequence[Level],
+        is_better: Callable[[Counts], bool | None],
     ) -> Iterator[_Bounds]:
         """Give the parts into which what is left is divided, after a look at what was found."""
         program = model.program
@@ -358,12 +357,11 @@ class CountBound:
             lower[self._size + idle] = 1
             yield lower, upper
             return
-        rounded = [each for each in (*self._within, *before, level) if each.measure.exact is not None]
+        rounded = [each for each in (*self._within, *levels) if each.measure.exact is not None]
         worse = [
             each
             for each in rounded
-            if (cost := _exact(each, counts)) > each.cost
-            or (cost == each.cost and (each is level or each.strict))
+            if (cost := _exact(each, counts)) > each.cost or (cost == each.cost and each.strict)
         ]
         held = model.held(counts, x)
         if held is not None:  # nothing says how often its action may be executed, and so that it holds
@@ -526,7 +524,7 @@ class _Model:
     def held(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
         """Give an action that is executed as often as its column does not say, how often, and the column."""
         for (action, count), (column, _) in self._often.items():
-            if counts.get(action, 0) >= count and not round(x[column]):
+            if action in counts and counts[action] >= count and not round(x[column]):
                 return action, count, column
         return None
 
