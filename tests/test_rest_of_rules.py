@@ -30,11 +30,10 @@ from tests.random_problems import MOTIONS, random_problem
 from tests.test_constraint_meanings import small
 from tests.test_solver import Answer, Searches
 
-pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
-
 OBJECTIVES = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS, Objective.KITCHEN)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("part", range(4))
 def test_what_is_found_near_the_goals_is_the_best_of_all(part: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(solver_module, "_NEAR", 1)

@@ -15,6 +15,7 @@ from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.session import Session
+from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.scales import Scales
 from foon_asp.errors import BugError, UserError
@@ -444,6 +445,15 @@ def test_without_time_there_is_a_tree_and_nothing_is_proved(
     assert outcome.bounds == bounds
     assert outcome.stopped == "the time limit of 0 s while cutting the network"
     assert outcome.costs == heard.trees[-1]
+
+
+def test_cuts_that_share_costs_are_those_of_the_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = ways(["0.5"], ["0.5", "0.5"])
+    [goal] = problem.goals
+    leave(monkeypatch, problem, (UNITS,), {0}, shared=SharedCosts(0, {}, [(frozenset({goal}), 1)], {}))
+    assert solve(problem).cuts == ((goal,),)
+    leave(monkeypatch, problem, (UNITS,), {0})
+    assert solve(problem).cuts == ()
 
 
 def test_reductions_that_were_interrupted_have_proved_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

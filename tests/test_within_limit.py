@@ -128,6 +128,14 @@ class Prices:
             return up_to(solver, wide, tree, ended, allowed)
 
         monkeypatch.setattr(_Solver, "_up_to", noted)
+        self.within: list[int] = []
+        within = Wide.within
+
+        def looked(wide: Wide, most: int, expired: Callable[[], bool]) -> frozenset[int]:
+            self.within.append(most)
+            return within(wide, most, expired)
+
+        monkeypatch.setattr(Wide, "within", looked)
 
     def __call__(
         self,
@@ -170,6 +178,7 @@ def test_limits_that_the_best_tree_keeps_to_have_no_price(monkeypatch: pytest.Mo
     assert (outcome.status, prices.asked) == (Status.OPTIMAL, [2])
     assert (heard[0], heard[-1]) == (len(found.tree or ()), 5)
     assert prices.looked_up == [(found.wide, found.allowed)]
+    assert prices.within == [found.allowed] != [found.wide.total(found.tree or frozenset())]
 
 
 def test_where_the_price_of_a_limit_tells_nothing_the_next_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -202,8 +202,10 @@ class _Solver:
         """Find the best tree by a price on what a rule limits; ``None`` where no price tells."""
         from foon_asp.reduce.within_limit import limited  # noqa: PLC0415 (of use with few rules)
 
-        rules = self.first.asked.understood if self.first.asked else None
-        for counts, most in rules.counted(self.problem) if rules else ():
+        asked = self.first.asked
+        assert asked is not None
+        assert asked.understood is not None
+        for counts, most in asked.understood.counted(self.problem):
             if sum(map(counts, tree)) <= most:
                 continue
             try:
