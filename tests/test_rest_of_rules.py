@@ -22,7 +22,7 @@ from foon_asp.grounding.grounded import Grounded
 from foon_asp.grounding.run import Run
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction
-from foon_asp.reduce import Reduced, Wide, reduce
+from foon_asp.reduce import NONE, Reduced, Wide, reduce
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.rules import Rules
 from tests import oracle
@@ -200,6 +200,7 @@ def test_of_a_part_of_a_network_units_keep_their_numbers() -> None:
     )
     part = replace(whole, network=whole.network.without((0,)))
     assert says(asked(part)) == (Status.OPTIMAL, {2, 4, 9})
+    assert says(solve(part, settings=Settings(reductions=NONE))) == (Status.OPTIMAL, {0, 1})
 
 
 @pytest.mark.parametrize(("name", "number"), [("_LOOSE", 2), ("_MANY", 4), ("_MANY", 9)])

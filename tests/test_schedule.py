@@ -35,6 +35,7 @@ from tests.used_up_oracle import random_problem
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
 
+each_case = pytest.mark.sampled(1)  # of those that take a millisecond
 needs_solver = pytest.mark.skipif(
     importlib.util.find_spec("ortools") is None, reason="OR-Tools is not installed (foon-asp[schedule])"
 )
@@ -160,6 +161,7 @@ def seconds(start: int, end: int, agent: int | None, *tools: Tool) -> TimedStep:
 GOOD = [seconds(0, 10, 1, BOWLS[0]), seconds(0, 20, 2, BOWLS[1]), seconds(20, 50, None, *BOWLS)]
 
 
+@each_case
 @pytest.mark.parametrize(
     ("changed", "fault"),
     [
@@ -202,6 +204,7 @@ def test_a_schedule_is_played_through(changed: dict[int, TimedStep], fault: str 
     assert re.search(fault or "", found or ""), found
 
 
+@each_case
 @pytest.mark.parametrize(
     ("starts", "fault"),
     [
@@ -227,6 +230,7 @@ def test_a_schedule_of_other_steps_does_not_hold() -> None:
     assert found == "there are 3 steps, and times for 2"
 
 
+@each_case
 @pytest.mark.parametrize(
     ("plan", "starts", "holds"),
     [
@@ -256,6 +260,7 @@ def test_no_copy_is_taken_that_is_gone_or_looked_at(
     assert found is None if holds else found is not None and "lacks a copy of egg; hard" in found
 
 
+@each_case
 @pytest.mark.parametrize(("bowl", "fault"), [(2, None), (1, "has no bowl for bowl; contains {egg}")])
 def test_what_was_in_a_bowl_is_gone(bowl: int, fault: str | None) -> None:
     units = (

@@ -6,7 +6,9 @@ from collections.abc import Callable, Sequence
 import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.asp.solver import Reporter, _Solver
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.prepared import prepare
+from foon_asp.asp.solver import Reporter, _Heard, _Solver
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective, levels
 from foon_asp.reduce import Wide, reduce, reduction
@@ -214,3 +216,20 @@ def test_ctrl_c_while_a_price_is_asked_about(monkeypatch: pytest.MonkeyPatch) ->
     outcome = solve(THREE, settings=within(cut=2)._replace(deadline=deadline))
     assert (outcome.status, outcome.units, deadline.interrupted) == (Status.UNKNOWN, None, True)
     assert outcome.stopped == "ctrl-C while cutting the network"
+
+
+def test_a_tree_that_a_price_finds_when_time_is_up_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    settings, by = within(cut=2), (Objective.UNITS,)
+    heard = _Heard(THREE, by, Reporter())
+    first = prepare(THREE, by, settings, assemble(settings, print), heard)
+    assert first.reduced is not None
+    assert first.tree is not None
+    wide = first.reduced.wide
+    assert wide is not None
+    solver = _Solver(first, by, heard, {})
+    solver.deadline = Deadline(0.0)
+    found = Limited(frozenset({0, 1, 7, 8, 9}), wide, 5)
+    monkeypatch.setattr(module, "limited", lambda *_: found)
+    outcome = solver._within_limits(wide, first.tree)
+    assert outcome is not None
+    assert (outcome.status, outcome.units) == (Status.FEASIBLE, (0, 1, 7, 8, 9))
