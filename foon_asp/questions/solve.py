@@ -124,7 +124,7 @@ def solve_and_more(
         "Options to pass to clingo unchanged.",
         Kind.OPTIONS,
         many=True,
-        metavar="[-- CLINGO OPTIONS]",
+        metavar="[RECIPE|DIR|STORE]... [-- CLINGO OPTIONS]",
         positional=True,
     ),
     formats=(*TABLES, "foon", "steps"),
