@@ -22,6 +22,7 @@ def plain(actions: Sequence[Action], goals: Iterable[int], start: Iterable[int] 
         start=frozenset(start),
         units=len(actions),
         goals=tuple(goals),
+        required=range(0),
     )
 
 

@@ -339,3 +339,21 @@ def test_own_rates_of_units_count() -> None:
     assert [costs.rate(a) for a in range(2)] == [Fraction(1, 2), Fraction(1, 3)]
     assert [costs(a) for a in range(2)] == [3 * LN_2 + 1, 3 * LN_3 + 1]
     assert prod(map(costs.rate, range(2))) == Fraction(1, 6)
+
+
+def test_a_price_is_on_units_that_count_and_a_limit_is_met_by_a_bound_or_a_tree() -> None:
+    costs = ExactCosts(posed("1", "1", "1", inputs=(1, 2, 3)), (INPUTS, KITCHEN, UNITS), range(6))
+    plain = [28 + 1, 56 + 1, 84 + 1, 7, 7, 7]
+    assert list(map(costs, range(6))) == plain
+    priced = costs.priced(lambda action: action != 1, 1000)
+    assert list(map(priced, range(6))) == [1029, 57, 1085, 7, 7, 7]
+    assert list(map(costs, range(6))) == plain
+    # more than all, which is a whole number of times what the first objective weighs
+    assert sum(plain) < costs.beyond == 28 * 7
+    assert [priced.met(Cuts(bound, {}, []), {0, 1}) for bound in (1085, 1086)] == [False, True]
+    limited = costs.priced(lambda action: action != 1, 1000, 1086)
+    assert [limited.met(Cuts(bound, {}, []), {0, 1}) for bound in (1085, 1086)] == [False, True]
+    assert [limited.met(Cuts(0, {}, []), tree) for tree in ({0}, {2, 3}, {0, 1})] == [True, False, False]
+    # where rates are rounded, no bound is looked at closer with a price
+    rounded = costs_of("1/2", "1/4").priced(lambda action: True, 5)
+    assert [rounded.met(Cuts(rounded(0) + more, {}, []), {0}) for more in (-1, 0)] == [False, True]

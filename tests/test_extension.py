@@ -1,28 +1,42 @@
 """What a tree takes more to have a unit of each required set: by hand, and by brute force."""
 
 import random
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fractions import Fraction
+from itertools import count, groupby
+from typing import Any
 
 import pytest
 
+from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels
-from foon_asp.reduce import ALL, Reduction, reduce
+from foon_asp.reduce import ALL, SAFE, ExactCosts, Reduction, reduce
 from foon_asp.reduce import extension as extension_module
 from foon_asp.reduce import reduction as reduction_module
 from foon_asp.reduce.extension import extended, extensions
 from foon_asp.reduce.graph import Graph, graph_of
+from foon_asp.reduce.reduction import at_costs
 from tests import oracle
 from tests.random_problems import random_problem
 from tests.test_constraint_meanings import small
+from tests.test_reduction import Heard
 
 UNITS = levels((Objective.UNITS,))
 # 3 needs what 1 makes, 6 what 4 and 5 make, and 7 what nobody has
-MADE = small(
+WAYS = (
     *("boil: start > end", "cut: start > a", "mix: a > end", "fry: a > p", "wash: start > s", "dry: s > t"),
     *("fold: t > q", "wait: never > r"),
 )
-(NEVER,) = (o for o, node in enumerate(MADE.network.objects) if node.label == "never")
-MADE = replace(MADE, kitchen=MADE.kitchen - {NEVER})
+
+
+def without_never(*units: str) -> Problem:
+    problem = small(*units)
+    (never,) = (o for o, node in enumerate(problem.network.objects) if node.label == "never")
+    return replace(problem, kitchen=problem.kitchen - {never})
+
+
+MADE = without_never(*WAYS)
 
 
 def requiring(*sets: set[int], problem: Problem = MADE) -> Graph:
@@ -60,6 +74,20 @@ def test_what_an_extension_up_to_a_cost_can_have() -> None:
     assert up_to(1, 1) == {3}  # what is free is there anyway
     assert up_to(1, 4, 5) == {6}
     assert up_to(0, 3) == set()
+
+
+def test_what_an_extension_uses_twice_costs_it_once() -> None:
+    # 4 needs two things that come of what 1 makes: 4 units, on ways of 3
+    fork = small(
+        *("boil: start > end", "wash: start > s", "cut: s > p", "fry: s > q", "mix: p, q > z"),
+        *("chop: start > t", "dry: t > z"),
+    )
+    graph = requiring({4}, problem=fork)
+    found = [extensions(graph, set(), lambda _: 1, limit, lambda: False) for limit in (2, 3, 4)]
+    assert found == [set(), {1, 2, 3, 4}, {1, 2, 3, 4}]
+    # but where a tree is looked for, it counts twice: 5 rather than 3 by estimates, which 6 is between
+    prices = [1, 1, 1, 1, 1, 2, 2].__getitem__
+    assert extended(requiring({4, 6}, problem=fork), {0}, prices, 99) == {0, 5, 6}
 
 
 def test_a_dear_extension_in_hand_hides_no_cheaper_one(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,3 +155,147 @@ def test_what_is_left_has_the_best_tree_with_a_unit_of_each_required_set(
         left_out += size - len(reduced.units)
     assert began > 10
     assert left_out > 20
+
+
+# --- In the course of the reductions.
+
+BEST = frozenset({0, 1, 3})  # 1 to 3 are as good, and found later
+# in a larger network more may be looked at for a tree
+EITHER = replace(
+    without_never(*WAYS, *(f"wait: never > x{n}" for n in range(19))),
+    restriction=Restriction(lambda _: False, (frozenset({3, 6}),)),
+)
+SUCCESS = levels((Objective.SUCCESS,))
+MOTIONS = ("boil", "cut", "mix", "fry", "wash", "dry", "fold", "wait")
+RATED = replace(EITHER, rates={motion: Fraction(9, 10 + n) for n, motion in enumerate(MOTIONS)})
+
+
+class Asking:
+    """Notes which extensions are asked for: what is free, and up to which cost."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.asked: list[tuple[set[int], int]] = []
+        monkeypatch.setattr(reduction_module, "extensions", self)
+
+    def __call__(
+        self, graph: Graph, free: set[int], costs: ExactCosts, limit: int, expired: Callable[[], bool]
+    ) -> set[int]:
+        self.asked.append((free, limit))
+        return extensions(graph, free, costs, limit, expired)
+
+
+def test_only_where_dear_units_are_left_out_and_sets_are_required_extensions_are_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asking = Asking(monkeypatch)
+    for reduction in Reduction:
+        reduce(EITHER, UNITS, ALL - {reduction})
+        assert len(asking.asked) == (reduction is not Reduction.DEAR)
+        asking.asked.clear()
+        reduce(EITHER, UNITS, frozenset({reduction}))
+        assert len(asking.asked) == (reduction is Reduction.DEAR)
+        asking.asked.clear()
+    reduce(EITHER, UNITS, ALL, rest=True)
+    reduce(MADE, UNITS)
+    reduce(replace(MADE, restriction=Restriction(lambda unit: unit == 0)), UNITS)
+    assert not asking.asked
+
+
+def test_extensions_may_cost_what_a_tree_for_the_goals_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
+    # 1 unit for the goal, and 3 with the required one
+    asking = Asking(monkeypatch)
+    for reductions, limit in ((ALL, 1), (frozenset({Reduction.DEAR}), 2)):
+        reduced = reduce(EITHER, UNITS, reductions)
+        assert reduced.tree == BEST
+        assert asking.asked.pop() == ({0, 1, 2, 3}, limit)
+    # products of rates are rounded, and units that do not lead to the goals have rates, too
+    reduced = reduce(RATED, SUCCESS, ALL)
+    assert reduced.tree == BEST
+    costs = ExactCosts(RATED, SUCCESS, range(len(RATED.network)))
+    [(free, limit)] = asking.asked
+    assert free >= {0, 1, 3}
+    assert limit == costs(1) + costs(3) - 1 + costs.doubt
+
+
+def test_what_is_found_for_the_goals_alone_is_no_tree_but_its_bound_holds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    heard = Heard()
+    assert reduce(EITHER, UNITS, listener=heard).tree == BEST
+    assert (heard.trees, heard.bounds) == ([{0, 1, 3}], [1, 3])
+    # a tree with what is required is looked for among a quarter of all units
+    asked: list[Any] = []
+    monkeypatch.setattr(reduction_module, "extended", lambda *given: asked.append(given[1:]))
+    assert reduce(EITHER, UNITS).tree == BEST
+    [(tree, _, most)] = asked
+    assert (tree, most, len(EITHER.network)) == ({0}, 6, 27)
+
+
+def test_cuts_are_guided_by_what_is_left_with_extensions(monkeypatch: pytest.MonkeyPatch) -> None:
+    fork = ("boil: start > end", "wash: start > s", "cut: s > p", "fry: s > q", "mix: p, q > z")
+    problem = without_never(*fork, *(f"wait: never > x{n}" for n in range(20)))
+    guides: list[dict[int, int]] = []
+
+    def cutting(*given: Any) -> Cuts:
+        guides.append(given[4])
+        return landmark_cuts(*given)
+
+    monkeypatch.setattr(reduction_module, "landmark_cuts", cutting)
+    asking = Asking(monkeypatch)
+    reduced = reduce(replace(problem, restriction=Restriction(lambda _: False, (frozenset({4}),))), UNITS)
+    assert (reduced.tree, len(asking.asked), len(guides)) == (frozenset(range(5)), 1, 2)
+    assert sorted(guides[1].values()) == [1, 1, 2, 2, 3, 3]
+
+
+def test_ctrl_c_leaves_a_tree_with_a_unit_of_each_required_set() -> None:
+    ended = []
+    for calls in range(99):
+        asked = count()
+
+        def expired(asked: Iterator[int] = asked, calls: int = calls) -> bool:
+            if next(asked) == calls:
+                raise KeyboardInterrupt
+            return False
+
+        reduced = reduce(EITHER, UNITS, SAFE, expired)
+        assert (reduced.tree, reduced.settled) == (BEST, False)
+        ended.append((reduced.interrupted, set(reduced.units) == set(BEST)))
+        if next(asked) < calls:
+            break
+    # before there are cuts all is begun anew; then the tree is all that is known, then what is left as well
+    assert [each for each, _ in groupby(ended)] == [
+        (False, False),
+        (True, True),
+        (True, False),
+        (False, False),
+    ]
+
+
+def test_where_time_is_up_with_the_extensions_the_tree_in_hand_is_all_that_is_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asking = Asking(monkeypatch)
+    reduced = reduce(EITHER, UNITS, SAFE, lambda: bool(asking.asked))
+    assert (reduced.tree, reduced.units) == (BEST, (0, 1, 3))
+    assert (reduced.interrupted, reduced.settled, len(asking.asked)) == (True, False, 1)
+
+
+def test_without_cuts_of_the_goals_alone_all_is_begun_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    struck = iter([True])
+
+    def cutting(*given: Any) -> Cuts:
+        return landmark_cuts(*given)._replace(interrupted=next(struck, False))
+
+    monkeypatch.setattr(reduction_module, "landmark_cuts", cutting)
+    asking = Asking(monkeypatch)
+    reduced = reduce(EITHER, UNITS)
+    assert (reduced.tree, reduced.settled, asking.asked) == (BEST, True, [])
+
+
+def test_the_same_is_asked_for_other_costs() -> None:
+    wide = reduce(EITHER, UNITS, rest=True).wide
+    assert wide is not None
+    found = at_costs(wide, UNITS, wide.costs.priced(lambda unit: unit == 3, 9), lambda: False)
+    assert (found.tree, found.bound, found.settled) == (frozenset({0, 4, 5, 6}), 4, True)
+    assert found.wide is not None
+    assert ({*found.wide.left}, found.wide.spare) == ({*wide.left}, False)

@@ -49,6 +49,25 @@ def test_what_is_near_is_what_it_is_defined_to_be(least: int) -> None:
     assert some > 50
 
 
+@pytest.mark.parametrize(("least", "asked"), [(0, [0, 1, 2]), (1, [0, 1])])
+def test_what_cannot_be_within_the_limit_is_not_asked_about(least: int, asked: list[int]) -> None:
+    row = plain([([2], [1]), ([3], [2]), ([4], [3]), ([], [4])], [1])
+    prices: list[int] = []
+
+    def rest(action: int) -> int:
+        prices.append(action)
+        return 1
+
+    assert near(row, range(4), rest, 2, least=least) == {0, 1}
+    assert prices == asked
+
+
+def test_one_that_is_too_dear_keeps_no_other_one_away() -> None:
+    graph = plain([([], [1]), ([], [1]), ([], [1])], [1])
+    assert near(graph, {0, 2}, [9, 1, 2].__getitem__, 5) == {2}
+    assert near(graph, range(3), [9, 1, 2].__getitem__, 5) == {1, 2}
+
+
 # 0, 1 and 2 give the goal; 3 and 4 what 0 needs, 5 what 1 needs, 6 what 5 needs
 ROW = plain([([2], [1]), ([3], [1]), ([], [1]), ([], [2]), ([], [2]), ([4], [3]), ([], [4])], [1])
 RESTS = {0: 1, 1: 2, 2: 5, 3: 1, 4: 0, 5: 1, 6: 1}

@@ -661,3 +661,25 @@ def test_a_large_network_is_not_looked_at_for_estimates(monkeypatch: pytest.Monk
     first, second = anew
     assert first is None
     assert second is not None
+
+
+def test_rounds_come_to_an_end_where_something_is_left_out_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    nothing = Cuts(0, {}, [])
+    rounds = 0
+
+    def one_less(_graph: Graph, left: Collection[int], *_: object) -> set[int]:
+        nonlocal rounds
+        rounds += 1
+        return {*left} - {max(left)}
+
+    monkeypatch.setattr(reduction, "landmark_cuts", lambda *_: nothing)
+    monkeypatch.setattr(reduction, "dear_left_out", one_less)
+    problem = plain_problem([([0], [1])] * 40, [1])
+    found = reduce(problem, UNITS, DEAR)
+    assert (rounds, len(found.units), found.settled) == (24, 16, False)
+    assert found.wide is not None
+    # fewer where other costs are tried
+    monkeypatch.setattr(reduction, "undominated", lambda _graph, left, _costs: left)
+    rounds = 0
+    found = reduction.at_costs(found.wide, UNITS, found.wide.costs, lambda: False)
+    assert (rounds, len(found.units), found.settled) == (6, 34, False)

@@ -155,7 +155,9 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
             names = list(map(str, objectives))
             worst = dearest(problem, found, names)
             monkeypatch.setattr(reduction, "without_spare", lambda *_, tree=worst: set(tree))
-            reducer = reduction._Reducer(problem, objectives, reductions, lambda: False, Listener())
+            reducer = reduction._Reducer(
+                problem, objectives, reductions, lambda: False, Listener(), spare=False, rest=False
+            )
             reduced = reducer.reduce(nullcontext)
             if not found:
                 assert reduced.tree is None

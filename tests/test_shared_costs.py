@@ -1,8 +1,9 @@
 """Costs shared out among all cuts: bounds that hold whatever floats say, held against brute force."""
 
 import random
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import combinations
+from typing import Any
 
 import pytest
 
@@ -10,12 +11,16 @@ from foon_asp.asp import Settings, solve
 from foon_asp.bounds import shared_costs
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.bounds.shared_costs import PARTS, SharedCosts, _Sharing, share_costs
 from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, levels
-from foon_asp.reduce import ALL, NONE, Reduction, reduction
+from foon_asp.reduce import ALL, NONE, ExactCosts, Listener, Reduced, Reduction, reduce, reduction
+from foon_asp.reduce.graph import Graph
+from tests.plain_graphs import Action, plain_problem
 from tests.random_problems import random_problem
+from tests.test_reduction import after
 
 
 def random_graph(rng: random.Random) -> Hypergraph:
@@ -33,8 +38,8 @@ def cheapest(graph: Hypergraph, targets: list[int], costs: list[int]) -> int:
     everything = range(len(graph.needs))
 
     def able() -> Iterator[int]:
-        for count in range(len(costs) + 1):
-            for chosen in combinations(everything, count):
+        for size in range(len(costs) + 1):
+            for chosen in combinations(everything, size):
                 reached = graph.reach(frozenset(everything) - set(chosen))
                 if all(reached[o] for o in targets):
                     yield sum(costs[a] for a in chosen)
@@ -205,3 +210,193 @@ def test_answers_are_those_of_the_plain_program(
             by = levels(objectives)
             assert outcome.costs.key(by) == plain.costs.key(by), reductions
             assert certify(problem, by, outcome.units, cuts=outcome.cuts) is not None
+
+
+# --- In the course of the reductions, of cuts that prove a bound of 1 and of what is told of shared costs.
+
+# The goal comes of two things, of three or of four, each of a unit of its own. TWIN does what the last of
+# MORE does, and of BOTH the first gives a thing of MORE and one of MOST, and takes what the other one gives.
+THINGS = [10, 11], [20, 21, 22], [30, 31, 32, 33]
+WAYS: list[Action] = [
+    way for things in THINGS for way in (*(([0], [thing]) for thing in things), (things, [1]))
+]
+WAYS += [WAYS[6], ([50], [20, 30]), ([0], [50])]
+FEW, MORE, MOST, TWIN, BOTH = map(frozenset, ([0, 1, 2], [3, 4, 5, 6], [7, 8, 9, 10, 11], [12], [13, 14]))
+BOUNDS, DEAR, DOMINATED = (frozenset({r}) for r in (Reduction.BOUNDS, Reduction.DEAR, Reduction.DOMINATED))
+FIRST = [(frozenset({1}), (2, 6, 11, 12))]  # the cut that is known at first
+Answer = tuple[int, dict[int, int]] | None  # a bound, and what is left of some units, in parts
+
+
+class Course(Listener):
+    """Reduces, and keeps what is heard of trees and bounds, how many are left, and the cuts known then."""
+
+    def __init__(self, *told: Answer) -> None:
+        self.told = told
+        self.trees: list[frozenset[int]] = []
+        self.bounds: list[int] = []
+        self.left: list[int] = []
+        self.known: list[object] = []
+        self.given: list[SharedCosts] = []
+        self.late = False
+
+    def tree(self, units: frozenset[int]) -> None:
+        self.trees.append(units)
+
+    def bound(self, costs: ExactCosts, bound: int) -> None:
+        self.bounds.append(bound)
+
+    def share(
+        self, graph: Graph, goals: object, left: set[int], costs: object, known: object, *rest: Any
+    ) -> SharedCosts | None:
+        enough, _ = rest
+        assert (goals, enough, self.late) == (graph.goals, len(self.trees[-1]), False)
+        told = self.told[len(self.left)]
+        self.left.append(len(left))
+        self.known.append(known)
+        if told is None:
+            return None
+        every = range(len(graph.needs))
+        found = SharedCosts(told[0], {**dict.fromkeys(every, 0), **told[1]}, [], dict.fromkeys(every, 0.0))
+        self.given.append(found)
+        return found
+
+    def reduce(
+        self,
+        monkeypatch: pytest.MonkeyPatch,
+        reductions: frozenset[Reduction],
+        objective: Objective = Objective.UNITS,
+        rates: str = "1",
+        *,
+        expired: Callable[[], bool] = lambda: False,
+        small: int = 0,
+        easy: int = 99,
+        hand: frozenset[int] | None = None,
+    ) -> Reduced:
+        [(objects, members)] = FIRST
+        first = Cuts(1, dict.fromkeys(members, 0), [WeightedCut(objects, members, members[0], 1)])
+        monkeypatch.setattr(reduction, "landmark_cuts", lambda *_: first)
+        monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
+        monkeypatch.setattr(reduction, "_SMALL", small)
+        monkeypatch.setattr(reduction, "_EASY", easy)
+        monkeypatch.setattr(shared_costs, "share_costs", self.share)
+        if hand:
+            monkeypatch.setattr(reduction, "without_spare", lambda *_: {*hand})
+        problem = plain_problem(WAYS, [1], rates=[rates] * len(WAYS))
+
+        def asked() -> bool:
+            self.late = expired()
+            return self.late
+
+        return reduce(problem, levels((objective,)), reductions, asked, self)
+
+
+@pytest.mark.parametrize(
+    ("bound", "settled", "heard"),
+    [
+        (1, False, [1]),
+        (PARTS, False, [1]),
+        (PARTS + 1, False, [1, 2]),
+        (2 * PARTS, False, [1, 2]),
+        (2 * PARTS + 1, True, [1, 3]),  # what trees cost is whole
+        (3 * PARTS, True, [1, 3]),
+        (5 * PARTS, True, [1, 3]),
+    ],
+)
+def test_the_tree_is_proved_optimal_where_nothing_is_below_what_it_costs(
+    bound: int, settled: bool, heard: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for reductions in (BOUNDS, BOUNDS | DOMINATED):
+        course = Course((bound, {}))
+        found = course.reduce(monkeypatch, reductions)
+        assert (found.tree, found.settled, found.bound) == (FEW, settled, heard[-1])
+        assert (course.trees, course.bounds, course.known) == ([FEW], heard, [FIRST])
+        assert found.shared == (course.given[0] if len(heard) > 1 else None)
+        assert ({*found.units} >= FEW | MOST) != settled
+    for reductions in (DEAR, DOMINATED) if bound <= 3 * PARTS else ():  # what is as good is wanted, too
+        course = Course((bound, {}))
+        found = course.reduce(monkeypatch, reductions)
+        assert (found.settled, found.bound, {*found.units} >= MOST) == (False, heard[-1], True)
+
+
+def test_where_rates_are_rounded_no_shared_costs_settle_anything(monkeypatch: pytest.MonkeyPatch) -> None:
+    doubt = (15 + 1) * 10**20  # of one rounded rate, which counts before 15 units
+    for more, stays in ((0, True), (1, False)):
+        told = 3 * PARTS, {11: (3 + doubt - 1) * PARTS - 3 * PARTS + more}
+        course = Course(told, *[None] * 2)
+        found = course.reduce(monkeypatch, BOUNDS | DEAR, Objective.SUCCESS)
+        assert found.costs is not None
+        assert found.costs.doubt == doubt
+        assert (found.settled, found.bound, found.tree) == (False, 3, FEW)
+        assert {*found.units} == {*range(15)} - (set() if stays else MOST)
+
+
+@pytest.mark.parametrize(
+    ("reductions", "most"), [(BOUNDS | DEAR, 0), (DEAR, PARTS), (BOUNDS, 99 * PARTS)], ids=str
+)
+def test_what_shared_costs_leave_more_of_than_is_to_be_gained_goes(
+    reductions: frozenset[Reduction], most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for more in (0, 1):
+        course = Course((2 * PARTS, {11: most + more}), None, None)
+        found = course.reduce(monkeypatch, reductions)
+        goes = more == 1 and Reduction.DEAR in reductions
+        assert {*found.units}.issuperset(MOST) == (not goes)
+        assert {*found.units} >= FEW | MORE
+        assert (found.settled, found.bound) == (False, 2)
+        # what is left is shared out again while that helps, and once more when cuts were found anew
+        assert course.known == ([FIRST, [], FIRST] if goes else [FIRST])
+
+
+def test_costs_are_shared_out_again_where_a_tenth_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    drop = {11: 9 * PARTS}
+    # 5 of 15 go, and then 1 of 10, which is not worth it, or 2
+    course = Course((PARTS, drop), (PARTS, {12: 9 * PARTS}), None)
+    found = course.reduce(monkeypatch, DEAR)
+    assert (course.left, course.known) == ([15, 10, 9], [FIRST, [], FIRST])
+    assert {*found.units} == FEW | MORE | BOTH
+    course = Course((PARTS, drop), (PARTS, {13: 9 * PARTS}), None, None)
+    found = course.reduce(monkeypatch, DEAR)
+    assert (course.left, course.known) == ([15, 10, 8, 8], [FIRST, [], [], FIRST])
+    assert {*found.units} == FEW | MORE | TWIN
+    # what is of no use then, as another one stands in for it, goes at once
+    course = Course((PARTS, drop), None, None)
+    course.reduce(monkeypatch, DEAR | DOMINATED)
+    assert course.left == [14, 8, 7]
+
+
+def test_few_units_are_not_shared_among(monkeypatch: pytest.MonkeyPatch) -> None:
+    for small, asked in ((14, [15]), (15, [])):
+        course = Course((PARTS, {}))
+        course.reduce(monkeypatch, DEAR, small=small)
+        assert course.left == asked
+
+
+def test_costs_are_shared_out_where_nothing_else_helps_and_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    # what another one stands in for goes first; where much is left there is a thorough round after
+    for easy in (0, 99):
+        course = Course((PARTS, {}))
+        course.reduce(monkeypatch, DOMINATED | DEAR, easy=easy)
+        assert course.left == [14]
+    course = Course()
+    assert course.reduce(monkeypatch, frozenset(Reduction), Objective.SUCCESS, "0").costs is None
+    # without cuts none are known
+    course = Course((PARTS, {}))
+    found = course.reduce(monkeypatch, DOMINATED)
+    assert (course.known, course.bounds, found.cuts) == ([[]], [1], None)
+
+
+def test_a_better_tree_on_the_way_counts_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    course = Course((2 * PARTS + 1, {}))
+    found = course.reduce(monkeypatch, BOUNDS, hand=MOST)
+    assert (found.tree, found.settled, course.trees) == (FEW, True, [MOST, FEW])
+
+
+def test_nothing_is_shared_out_when_time_is_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = 0
+    for last in range(99):
+        course = Course((PARTS, {11: 9 * PARTS}), *[(PARTS, {})] * 2)
+        course.reduce(monkeypatch, DEAR, expired=after(last))
+        calls += len(course.left)
+        if not course.late:
+            break
+    assert calls > last > 9

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
-from foon_asp.reduce.upper_bound import improved, replaceable, without_spare
+from foon_asp.reduce.upper_bound import following, improved, replaceable, without_spare
 from tests.plain_graphs import executes, plain, random_graph
 
 
@@ -107,6 +108,43 @@ def test_each_estimate_alone_leads_to_a_better_tree(
     cheap = [*prices, min(sum(prices[a] for a in way) for way in (SHARING, APART))].__getitem__
     for thorough in (False, True):
         assert improved(ROUTES, range(8), hand, cheap, rest, never, thorough) is hand
+
+
+@pytest.mark.parametrize(
+    ("prices", "shares", "left", "hand", "expected"),
+    [
+        # only what the relaxed solution lacks, added up (3005 and 3003), leads to what is apart
+        ([2, 3, 3, 4, 6, 3, 1], [2.0, 0.75, 0.25, 2.0, 0.5, 1.25, 1.25], [0, 1, 1, 0, 2, 2, 2], ONCE, APART),
+        # only costs with what is left of them do, 48 and 38, or 32 and 28 the dearest ways
+        ([4, 3, 4, 3, 1, 5, 5], [1.0, 2.0, 0, 0.75, 0.5, 0.0, 0.5], [9, 0, 9, 3, 9, 9, 9], ONCE, APART),
+        # only what it lacks does
+        ([1, 6, 1, 1, 1, 4, 1], [1.0, 0.75, 1.0, 0.25, 0.5, 1.0, 1.0], [0, 0, 0, 1, 3, 0, 5], ONCE, APART),
+        # thousandths are told apart
+        (
+            [1, 1, 1, 1, 2, 3, 3],
+            [0.9966] * 2 + [0.9974, 0.9991, 0.9966, 0.9982, 0.9991],
+            [30, 0, 30, 0, 0, 0, 0],
+            ONCE,
+            SHARING,
+        ),
+        # nothing is cheaper than what is in hand
+        (
+            [3, 1, 2, 6, 2, 3, 6],
+            [0.75, 0.25, 1.25, 1.0, 1.0, 0.75, 0.25],
+            [0, 2, 1, 3, 1, 5, 9],
+            SHARING,
+            SHARING,
+        ),
+    ],
+)
+def test_a_relaxed_solution_leads_to_a_better_tree(
+    prices: list[int], shares: list[float], left: list[int], hand: set[int], expected: set[int]
+) -> None:
+    relaxed = SharedCosts(0, dict(enumerate([*left, 9])), [], dict(enumerate([*shares, 0.0])))
+    price = [*prices, 20].__getitem__
+    found = following(ROUTES, range(8), hand, price, relaxed)
+    assert found == expected
+    assert (found is hand) == (hand == expected)
 
 
 # Twice: 1 of 2 (goals are 1 and 3), which costs 6 and 1; and 3 at once, or of 2 for 1.

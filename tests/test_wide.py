@@ -5,6 +5,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
@@ -14,11 +15,14 @@ from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, lev
 from foon_asp.reduce import Wide, reduce
 from foon_asp.reduce import reduction as reduction_module
 from foon_asp.reduce import wide as wide_module
+from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.exact_costs import ExactCosts
 from tests import oracle
 from tests.gap_problem import gap_problem
+from tests.plain_graphs import plain_problem
 from tests.random_problems import MOTIONS, random_problem
 from tests.test_constraint_meanings import small
+from tests.test_reduction import two_rows
 
 UNITS, KITCHEN, PRICE = Objective.UNITS, Objective.KITCHEN, Objective.PRICE
 
@@ -166,6 +170,80 @@ def test_all_items_together_count_less_than_one_unit() -> None:
     items = [len(problem.network) + o for o in problem.kitchen]
     assert exact(0) + sum(map(exact, items)) < exact(1) + exact(2)
     assert len(items) == 4
+
+
+def test_units_that_lead_to_no_goal_are_dear_by_all_of_a_way_and_others_by_what_they_need() -> None:
+    # 1 to 3 are one way to the goal, of which only 3 waits for nothing; 4 waits for what nobody has
+    row = without(
+        small("boil: start > end", "mix: a > end", "cut: b > a", "dry: start > b", "wait: never > a"), "never"
+    )
+    assert [within(wide_of(row), {*range(1, n)}) for n in (2, 3, 4)] == [{0}, {0}, {0, 1, 2, 3}]
+    assert [within(wide_of(row, spare=True), {*range(1, n)}) for n in (2, 3, 4)] == [
+        *({0}, {0, 3}, {0, 1, 2, 3}),
+    ]
+    # what cannot run has no costs where no unit is spare
+    rates = {"boil": 9, "mix": 8, "cut": 7, "dry": 6, "wait": 5}
+    rated = replace(row, rates={motion: Fraction(n, 10) for motion, n in rates.items()})
+    assert within(wide_of(rated, Objective.SUCCESS), {1, 2, 3}) == {0, 1, 2, 3}
+
+
+def test_what_rounding_makes_dearer_is_within_what_is_as_good() -> None:
+    problem = two_rows(-57)  # the first 5 are worse
+    wide = wide_of(problem, Objective.SUCCESS)
+    assert wide.total(range(5)) < wide.total(range(5, 10))
+    assert within(wide, range(5)) == {*range(10)}
+
+
+def test_what_is_left_out_one_by_one_is_no_longer_looked_for_after_six_rounds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wide = wide_of(plain_problem([([0], [1])] * 20, [1]))
+    looked = 0
+
+    def one_less(_graph: object, left: Collection[int], *_: object) -> set[int]:
+        nonlocal looked
+        looked += 1
+        return {*left} - {max(left)}
+
+    monkeypatch.setattr(wide_module, "dear_left_out", one_less)
+    assert within(wide, {0}) == {*range(14)}
+    assert looked == 6
+    # nor where time is up, or nothing is left out
+    looked = 0
+    assert wide.within(9, lambda: True) == {*range(19)}
+    assert looked == 1
+    monkeypatch.setattr(wide_module, "dear_left_out", lambda _graph, left, *_: one_less(0, [*left, 99]))
+    assert within(wide, {0}) == {*range(20)}
+    assert looked == 2
+
+
+def test_cuts_of_what_is_left_are_guided_by_its_costs(monkeypatch: pytest.MonkeyPatch) -> None:
+    # the goal comes of two things, each of the same one, or of a row of five
+    fork = ("wash: start > s", "cut: s > p", "fry: s > q", "mix: p, q > end")
+    row = ("dry: start > t", "fold: t > u", "wind: u > v", "coil: v > w", "bind: w > end")
+    wide = wide_of(small(*fork, *row))
+    asked = 0
+
+    def cutting(*given: Any) -> Cuts:
+        graph, _, among, costs, guide, *_, anew = given
+        nonlocal asked
+        asked += 1
+        assert guide == anew(costs) == derive(graph, among, costs, added=False).cost
+        assert guide != derive(graph, among, costs, added=True).cost
+        return landmark_cuts(*given)
+
+    monkeypatch.setattr(wide_module, "landmark_cuts", cutting)
+    assert within(wide, {0, 1, 2, 3}) == {0, 1, 2, 3}
+    assert asked
+
+
+def test_kitchen_items_are_no_units(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = small("mix: a, b > end", "cut: a > end")
+    wide = wide_of(problem, KITCHEN)
+    assert min(problem.kitchen) == 0
+    assert {*wide.actions_within(99, lambda: False)} > {2, 3}
+    assert within(wide, {0}) == wide.everything() == wide.nearest(9) == {0, 1}
+    assert (wide.total({0}), wide.total({1})) == (2 * wide.costs(2) + 1, wide.costs(2) + 1)
 
 
 # --- In the course of the reductions.

@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import pytest
 
@@ -9,12 +10,14 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.solver import Reporter, _Heard, _Solver
+from foon_asp.bounds.landmark_cuts import Cuts
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective, levels
-from foon_asp.reduce import Wide, reduce, reduction
+from foon_asp.reduce import ExactCosts, Reduced, Wide, reduce, reduction
 from foon_asp.reduce import within_limit as module
 from foon_asp.reduce.within_limit import Limited, limited
 from foon_asp.rules.constraint import given_constraint
+from tests.plain_graphs import plain_problem
 from tests.test_constraint_meanings import small
 from tests.test_reductions import LISTS, posed
 
@@ -233,3 +236,118 @@ def test_a_tree_that_a_price_finds_when_time_is_up_is_not_lost(monkeypatch: pyte
     outcome = solver._within_limits(wide, first.tree)
     assert outcome is not None
     assert (outcome.status, outcome.units) == (Status.FEASIBLE, (0, 1, 7, 8, 9))
+
+
+# --- What prices are asked for, and what is made of what is told of them. Every unit costs 1.
+
+PICK = plain_problem([([0], [1])] * 30, [1])
+UNITS = levels((Objective.UNITS,))
+Told = tuple[frozenset[int] | None, int, bool]  # a tree, a bound, and whether cuts are known
+
+
+def picked(counted: int, others: int) -> frozenset[int]:
+    """Give some units, of which those below 10 count."""
+    return frozenset([*range(counted), *range(10, 10 + others)])
+
+
+class Teller:
+    """Answers one question after the other, and notes the price of a unit that counts."""
+
+    def __init__(self, told: Sequence[Told]) -> None:
+        wide = reduce(PICK, UNITS, rest=True).wide
+        assert wide is not None
+        self.wide = wide  # the bound of its cuts is 1
+        self.anew = [replace(wide) for _ in told]
+        self.costs: list[ExactCosts] = []
+        self._told = told
+
+    @property
+    def prices(self) -> list[int]:
+        return [costs(0) - costs(10) for costs in self.costs]
+
+    def limited(self, most: int, monkeypatch: pytest.MonkeyPatch) -> Limited | None:
+        """Ask with a tree of 8 units, 5 of which count."""
+        monkeypatch.setattr(module, "at_costs", self)
+        return limited(self.wide, UNITS, picked(5, 3), lambda unit: unit < 10, most, lambda: False)
+
+    def __call__(
+        self, wide: Wide, objectives: Sequence[Objective], costs: ExactCosts, expired: Callable[[], bool]
+    ) -> Reduced:
+        assert (wide, objectives, expired()) == (self.wide, UNITS, False)
+        assert costs(10) == 1
+        tree, bound, known = self._told[len(self.costs)]
+        anew = self.anew[len(self.costs)] if known else None
+        self.costs.append(costs)
+        return Reduced(tree, (), False, None, bound, None, wide=anew)
+
+
+@pytest.mark.parametrize(
+    ("told", "prices", "tree", "known_by", "allowed"),
+    [
+        # a tree of 14 units within the limit: 6 more for 3 fewer that count
+        ([(picked(2, 12), 0, True), (picked(1, 13), 5, True)], [2], picked(2, 12), 0, 14),
+        # the bound is beyond the one known, by the price of two
+        ([(picked(2, 12), 0, True), (picked(1, 13), 6, True)], [2], picked(2, 12), 1, 14 + 2 * 2),
+        ([(picked(2, 12), 0, True), (None, 99, True)], [2], picked(2, 12), 0, 14),
+        ([(picked(2, 12), 0, True), (picked(2, 12), 99, False)], [2], picked(2, 12), 0, 14),
+        # a price is rounded up, and none is asked for where the tree within the limit is as good
+        ([(picked(2, 11), 0, True), (None, 0, False)], [2], picked(2, 11), 0, 13),
+        ([(picked(2, 7), 0, True), (None, 0, False)], [1], picked(2, 7), 0, 9),
+        ([(picked(2, 6), 0, True)], [], picked(2, 6), 0, 8),
+        ([(picked(1, 2), 0, True)], [], picked(1, 2), 0, 3),
+        # a dearer tree beyond the limit comes instead of the one before, but no cheaper one, nor one as dear
+        ([(picked(2, 12), 0, True), (picked(4, 5), 6, True), (None, 0, False)], [2, 3], picked(2, 12), 1, 18),
+        ([(picked(2, 12), 0, True), (picked(3, 5), 6, True)], [2], picked(2, 12), 1, 18),
+        ([(picked(2, 12), 0, True), (picked(3, 2), 6, True)], [2], picked(2, 12), 1, 18),
+        # a cheaper tree within the limit comes instead of the one before
+        ([(picked(2, 12), 0, True), (picked(2, 9), 6, True), (None, 0, False)], [2, 1], picked(2, 9), 1, 15),
+        # two prices are tried, and the one of the greatest bound is taken
+        (
+            [(picked(2, 12), 0, True), (picked(4, 5), 6, True), (picked(4, 6), 8, True)],
+            *([2, 3], picked(2, 12), 1, 14 + 2 * 2),
+        ),
+        (
+            [(picked(2, 12), 0, True), (picked(4, 5), 6, True), (picked(2, 11), 9, True)],
+            *([2, 3], picked(2, 11), 2, 13 + 2 * 3),
+        ),
+    ],
+)
+def test_prices_follow_from_what_was_told(
+    told: list[Told],
+    prices: list[int],
+    tree: frozenset[int],
+    known_by: int,
+    allowed: int,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    teller = Teller(told)
+    found = teller.limited(2, monkeypatch)
+    assert teller.prices == [31, *prices]  # the first is more than all units cost
+    wide = teller.anew[known_by] if known_by else teller.wide
+    assert found == Limited(tree, wide, allowed)
+
+
+@pytest.mark.parametrize("most", range(3))
+def test_a_limit_that_nothing_keeps_is_told_from_one_of_which_nothing_is_known(
+    most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    beyond = 31 * (most + 1)  # so much one more unit that counts costs, at a price beyond all units
+    for tree in (None, picked(most, 1), picked(most + 1, 1)):
+        teller = Teller([(tree, beyond, True)])
+        assert teller.limited(most, monkeypatch) == Limited(None, teller.wide, 0)
+        [costs] = teller.costs
+        assert [costs.met(Cuts(bound, {}, []), range(most + 1)) for bound in (beyond - 1, beyond)] == [0, 1]
+        assert costs.met(Cuts(0, {}, []), picked(most, 10))
+    for tree in (None, picked(most + 1, 0), picked(most + 1, 10)):
+        assert Teller([(tree, beyond - 1, True)]).limited(most, monkeypatch) is None
+    tree = picked(most, 1)
+    found = Teller([(tree, beyond - 1, True)]).limited(most, monkeypatch)
+    assert found is not None
+    assert (found.tree, found.allowed) == (tree, most + 1)
+
+
+def test_ctrl_c_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    teller = Teller([(picked(2, 12), 0, True)])
+    monkeypatch.setattr(module, "at_costs", lambda *given: teller(*given)._replace(interrupted=True))
+    with pytest.raises(KeyboardInterrupt):
+        limited(teller.wide, UNITS, picked(5, 3), lambda unit: unit < 10, 2, lambda: False)

@@ -22,7 +22,7 @@ class Graph(Hypergraph):
     units: int
     goals: tuple[int, ...]
     start: frozenset[int]
-    required: range = range(0)
+    required: range
 
     def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
         """Go backwards from the goals through all (allowed) actions, and stop at the start.

@@ -117,7 +117,7 @@ def at_costs(
 ) -> Reduced:
     """Ask the same for other costs; of what comes back, the tree, the bound and ``wide`` say something."""
     with _uncollected():
-        reducer = _Reducer(wide.problem, tuple(objectives), ALL, expired, Listener(), rest=True)
+        reducer = _Reducer(wide.problem, tuple(objectives), ALL, expired, Listener(), wide.spare, rest=True)
         reducer.costs = reducer.coarse = costs
         reducer.rounds = _FEW
         return reducer.reduce(nullcontext)
@@ -143,8 +143,8 @@ class _Reducer:
         reductions: frozenset[Reduction],
         expired: Callable[[], bool],
         listener: Listener,
-        spare: bool = False,
-        rest: bool = False,
+        spare: bool,
+        rest: bool,
         extended: bool = False,
     ) -> None:
         self.problem, self.objectives, self.reductions = problem, objectives, reductions
@@ -199,6 +199,8 @@ class _Reducer:
             self.reductions,
             self.expired,
             Bounds(self.listener),
+            self.spare,
+            self.rest,
             extended=True,
         )
         found = alone.reduce(guard)
@@ -214,9 +216,8 @@ class _Reducer:
             if found.interrupted:
                 raise KeyboardInterrupt
             limit = self._total(costs) - (Reduction.BOUNDS in self.reductions)
-            least = alone._total(costs) if found.settled else found.bound
             among = {*wide.actions_within(limit, self.expired), *self.tree}
-            among |= extensions(graph, among, costs, limit - least + costs.doubt, self.expired)
+            among |= extensions(graph, among, costs, limit - found.bound + costs.doubt, self.expired)
             if self.expired():
                 raise KeyboardInterrupt
             made = derive(graph, among, self.coarse, added=False)
@@ -303,8 +304,8 @@ class _Reducer:
     def _share_costs(self, costs: ExactCosts) -> bool:
         """Share costs out among all cuts at once, and leave out more; whether the tree is proved optimal."""
         known = [(cut.objects, cut.members) for cut in self.cuts.cuts] if self.cuts else []
-        before = math.inf
-        while _SMALL < len(self.left) < _WORTH * before and not self.expired():
+        before, settled = math.inf, False
+        while not settled and _SMALL < len(self.left) < _WORTH * before and not self.expired():
             from foon_asp.bounds.shared_costs import share_costs  # noqa: PLC0415 (few questions need it)
 
             before = len(self.left)
@@ -316,9 +317,8 @@ class _Reducer:
             tree = following(self.graph, self.left, self.tree, costs, shared)
             if tree is not self.tree:
                 self._take(tree)
-            if self._shared(costs, shared):
-                return True
-        return False
+            settled = self._shared(costs, shared)
+        return settled
 
     def _shared(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
         """Note a bound, and leave out what is dear by it; whether the tree is proved optimal.
@@ -333,14 +333,12 @@ class _Reducer:
             self.bound, self.shared = bound, shared
             self.listener.bound(costs, bound)
         only_better = Reduction.BOUNDS in self.reductions
-        if only_better and not costs.doubt and bound == total:
-            return True
         if Reduction.DEAR in self.reductions:
             limit = (total + costs.doubt - only_better) * PARTS - shared.bound
             self.left = dear_left_out(self.graph, self.left, shared.left.__getitem__, limit, self.expired)
         if Reduction.DOMINATED in self.reductions:
             self.left = undominated(self.graph, self.left, costs)
-        return False
+        return only_better and not costs.doubt and bound == total
 
     def _follow_added(self, costs: ExactCosts) -> None:
         """Take the tree to which estimates lead that add needs up, if it is better than the one in hand."""
