@@ -226,27 +226,27 @@ FORGED: dict[str, Forged] = {
         digests={**certificate(PLAIN)["digests"], "kitchen": "0" * 64}
     ),
     # --- kinds and order of values
-    "_object: expected an object": plain(proof=["weights"], stays=KIND),
-    "_object: expected the keys …": plain(digests={**certificate(PLAIN)["digests"], "more": ""}),
-    "_list: expected a list": plain(objective={"units": "units"}),
+    "read_object: expected an object": plain(proof=["weights"], stays=KIND),
+    "read_object: expected the keys …": plain(digests={**certificate(PLAIN)["digests"], "more": ""}),
+    "read_list: expected a list": plain(objective={"units": "units"}),
     "_names: expected names": plain(not_covered=[1], stays=KIND),
     "_names: expected names in order, each of them once": plain(not_covered=["b", "a"]),
     "_names: a name has half of a letter (a surrogate)": plain(rules=forbid(["\ud800"])),
-    "_numbers: expected ids of the network": plain(tree=[False]),
-    "_numbers: an id stands twice": plain(**BOUND, tree=[0, 0], costs=[2]),
-    "_numbers: expected ids in order": plain(cuts=[sorted([END, MIDDLE], reverse=True)]),
+    "read_numbers: expected ids of the network": plain(tree=[False]),
+    "read_numbers: an id stands twice": plain(**BOUND, tree=[0, 0], costs=[2]),
+    "read_numbers: expected ids in order": plain(cuts=[sorted([END, MIDDLE], reverse=True)]),
     "_pairs: expected a cut and its weight": plain(proof={"weights": [[0, ["1"], 2]]}, stays=KIND),
     "_pairs: expected the number of a cut": plain(proof={"weights": [["0", ["1"]]]}, stays=WORDS),
     "_pairs: expected cuts in order, each of them once": plain(
         proof={"weights": [[0, ["1/2"]], [0, ["1/2"]]]}
     ),
-    "_rules: it has more than … rules": plain(rules=forbid([f"sing {number:03}" for number in range(101)])),
-    "_rules: a rule is unknown": plain(rules=[{"rule": "sing"}], stays=KIND),
-    "_rules: a value of a rule is of another kind": plain(
+    "read_rules: it has more than … rules": plain(rules=forbid([f"sing {number:03}" for number in range(101)])),
+    "read_rules: a rule is unknown": plain(rules=[{"rule": "sing"}], stays=KIND),
+    "read_rules: a value of a rule is of another kind": plain(
         rules=[{"rule": "at_most_units", "max_units": True}]
     ),
-    "_rules: expected rules in order, each of them once": plain(rules=forbid(["sing", "dance"])[::-1]),
-    "_rules: rules of the user's own stand twice": plain(rules=[own([[[3], []]]), own([])]),
+    "read_rules: expected rules in order, each of them once": plain(rules=forbid(["sing", "dance"])[::-1]),
+    "read_rules: rules of the user's own stand twice": plain(rules=[own([[[3], []]]), own([])]),
     "_own: a file of rules has no printable name": plain(rules=[own([], name="mine.lp\nverified")]),
     "_own: a text of rules does not have its digest": plain(rules=[own([], sha256="0" * 64)]),
     "_own: expected two sets of units in a claim": plain(rules=[own([[[3]]])], stays=KIND),
@@ -309,20 +309,20 @@ FORGED: dict[str, Forged] = {
     # --- the tree
     "_tree: unit … of the tree lacks an input when it is its turn": plain(tree=[2]),
     "_tree: the tree does not make every goal": plain(tree=[], costs=[0], **NOTHING),
-    "_tree: a tree that never succeeds is no better than another": plain(
+    "_figures: a tree that never succeeds is no better than another": plain(
         objective=["success"],
         costs=["0"],
         cuts=[[NEVER.id("end")]],
         proof={"branch": {"unit": 0}, "without": HOPELESS, "using": {"weights": []}},
         at=NEVER,
     ),
-    "_tree: the success rate of the tree is too long a number to be written": plain(
+    "_figures: the success rate of the tree is too long a number to be written": plain(
         **{**SUCCESS, **NOTHING, "costs": [str(CHAIN.rates["go"] ** 8)]} if CHAIN.rates else {},
         goals=goal(CHAIN, "n8"),
         tree=[*range(8)],
         at=CHAIN,
     ),
-    "_tree: what the tree costs is too long a number to be written": plain(
+    "_figures: what the tree costs is too long a number to be written": plain(
         objective=["attempts"],
         goals=goal(LONG, "end"),
         tree=[0, 1],
@@ -451,7 +451,7 @@ FORGED: dict[str, Forged] = {
 
 # What turns another failure into a refusal, or is the refusal itself: taken out, nothing is accepted.
 NO_CHECKS = {
-    "_require: otherwise",
+    "require: otherwise",
     "read_certificate: not JSON: …",
     "verify: branches nested too deeply",
 }
@@ -479,7 +479,7 @@ def checks(tree: ast.AST, function: str = "") -> Iterator[Check]:
             said = node.exc.args[0]
         elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
             called = node.value.func
-            said = node.value.args[1] if isinstance(called, ast.Name) and called.id == "_require" else None
+            said = node.value.args[1] if isinstance(called, ast.Name) and called.id == "require" else None
         if said is not None and isinstance(node, ast.stmt):
             yield Check(f"{function}: {words(said)}", node)
         yield from checks(node, function)

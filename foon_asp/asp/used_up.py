@@ -182,6 +182,24 @@ def require_rules_of_plans(program: Program) -> None:
         )
 
 
+def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
+    """Give what some units do with what may run out, by their place; that of other units is left out."""
+    asked = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
+
+    def finite(ids: Sequence[int]) -> list[int]:
+        return [o for o in ids if o not in problem.endless and o in asked]
+
+    flows = [problem.flows[unit] for unit in units]
+    return Flows(
+        [finite(flow.asks) for flow in flows],
+        [finite(flow.uses) for flow in flows],
+        [finite(flow.adds) for flow in flows],
+        [[o for o in flow.asks if o in problem.endless] for flow in flows],
+        {o: problem.stock_of(o) or 0 for o in asked & problem.kitchen - problem.endless},
+        [goal for goal in problem.goals if goal not in problem.endless],
+    )
+
+
 class _ManyError(Exception):
     """Many counts have no order: clingo had better look at all of them at once."""
 
@@ -381,21 +399,8 @@ class _Counting:
         self._asked = -math.inf  # orders that were asked for in vain, where they are counted
         problem = solver.problem
         places = {unit: a for a, unit in enumerate(units)}
-        asked = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
-
-        def finite(ids: Sequence[int]) -> list[int]:
-            return [o for o in ids if o not in problem.endless and o in asked]
-
-        flows = [problem.flows[unit] for unit in units]
         self.bound = CountBound(
-            Flows(
-                [finite(flow.asks) for flow in flows],
-                [finite(flow.uses) for flow in flows],
-                [finite(flow.adds) for flow in flows],
-                [[o for o in flow.asks if o in problem.endless] for flow in flows],
-                {o: problem.stock_of(o) or 0 for o in asked & problem.kitchen - problem.endless},
-                [goal for goal in problem.goals if goal not in problem.endless],
-            ),
+            flows_of(problem, units),
             [[a for a, unit in enumerate(units) if unit in each] for each in solver.required],
             [
                 Limit({a: each.weights[u] for a, u in enumerate(units) if each.weights.get(u)}, *each[1:])

@@ -68,12 +68,25 @@ class Measure(NamedTuple):
 class Landmark(NamedTuple):
     """That one of the ``members`` is executed, or a copy of one of ``stock`` is taken.
 
-    With an ``action``, only if that is executed.
+    With an ``action``, only if that is executed. ``objects`` are the cut that shows it.
     """
 
     members: tuple[int, ...]
     stock: tuple[int, ...] = ()
     action: int | None = None
+    objects: tuple[int, ...] = ()
+
+
+class Balance(NamedTuple):
+    """That no more copies of an object are used up than there are."""
+
+    object: int
+
+
+class Sum(NamedTuple):
+    """That a sum keeps to a limit, by its place among them."""
+
+    limit: int
 
 
 SumLimit = tuple[Mapping[int, int], int, bool, bool]
@@ -91,6 +104,10 @@ class Level(NamedTuple):
     cost: Fraction
     most: int
     strict: bool = False
+
+
+Condition = Landmark | Balance | Sum | Level
+"""What a row of a program says of the counts of every plan."""
 
 
 class BetterError(Exception):
@@ -421,18 +438,18 @@ class CountBound:
         derivation, size = self.derivation, self._size
         if not derivation or self._cutter.hopeless or not self._cutter.targets:
             return False
-        cutter, found = self._cutter, set[tuple[int, ...]]()
+        cutter, found = self._cutter, dict[tuple[int, ...], tuple[int, ...]]()
         keeps = [[a for a in derivation if a != gone] for gone in derivation]
         for number in range(_ORDERS):
             order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
             for keep in ((), *(keeps if at_root and number == 0 else ())):
                 cut = cutter.cut(keep, order)
                 if cut is not None and sum(x[size + a] for a in cut.members) < _HIT:
-                    found.add(cut.members)
+                    found.setdefault(cut.members, cut.objects)
             if found:
                 break
         for members in sorted(found):
-            self._landmarks.append(Landmark(members))
+            self._landmarks.append(Landmark(members, objects=found[members]))
             model.add_landmark(self._landmarks[-1])
         return bool(found)
 
@@ -448,7 +465,7 @@ class CountBound:
                     zone.add(lacking)
                     stack.append(lacking)
         members = tuple(maker for maker in edge if zone.isdisjoint(asks[maker]))
-        return Landmark(members, tuple(sorted(zone & model.stock.keys())))
+        return Landmark(members, tuple(sorted(zone & model.stock.keys())), objects=tuple(sorted(zone)))
 
     def _check(self) -> None:
         if self._expired():
@@ -463,6 +480,7 @@ class _Model:
         self._flows = flows
         self.program = program = WholeProgram(size)
         self._far, self._size, self._many = far, size, bound._many
+        self.conditions: dict[int, Condition] = {}  # by row: what it says of every plan
         for _ in range(size):
             program.column(0, 1)  # whether an action is executed at all
         self._loose = [program.open_row((size + a, a), 0) for a in range(size)]
@@ -483,23 +501,25 @@ class _Model:
         wanted = set(flows.targets)
         for o, row in change.items():
             if any(part < 0 for part in row.values()) or o in wanted:
-                program.row(*self._with_stock(o, row, int(o in wanted)))
-        items: dict[int, int] = {}
+                self.conditions[program.row(*self._with_stock(o, row, int(o in wanted)))] = Balance(o)
+        items = self.items = dict[int, int]()
         for action in range(size):
             y = size + action
             for o in (each for each in flows.asks[action] if each not in flows.uses[action]):
                 makers = {size + maker: 1 for maker in bound._makers.get(o, ())}
-                program.row(*self._with_stock(o, {**makers, y: -1}, 0))
+                read = program.row(*self._with_stock(o, {**makers, y: -1}, 0))
+                if o in self.stock or not flows.start.get(o):  # else it says nothing
+                    self.conditions[read] = Landmark((), (), action, (o,))
             for o in flows.items[action] if priced else ():
                 if o not in items:
                     items[o] = program.column(0, 1)
-                program.row({items[o]: 1, y: -1}, 0)
-        self._items = list(items.values())
+                self.conditions[program.row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
         for landmark in bound._landmarks:
             self.add_landmark(landmark)
-        for weights, limit, at_least, used in bound._limits:
+        for place, (weights, limit, at_least, used) in enumerate(bound._limits):
             first, sign = size if used else 0, 1 if at_least else -1
-            program.row({first + a: sign * weight for a, weight in weights.items()}, sign * limit)
+            row = {first + a: sign * weight for a, weight in weights.items()}
+            self.conditions[program.row(row, sign * limit)] = Sum(place)
             for a, weight in weights.items() if not at_least and not used else ():
                 program.cap(a, max(limit, 0) // weight)
         for measure in measures:
@@ -549,14 +569,15 @@ class _Model:
 
     def add_landmark(self, landmark: Landmark) -> None:
         """Add what a landmark says, unless what is there at first is not counted here and may fulfil it."""
-        members, stock, action = landmark
+        members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return
         row = {self._size + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
         if action is None:
-            self.program.row(row, 1)
+            number = self.program.row(row, 1)
         else:
-            self.program.row({**row, self._size + action: -1}, 0)
+            number = self.program.row({**row, self._size + action: -1}, 0)
+        self.conditions[number] = landmark
 
     def tighten(self) -> None:
         """Tie each indicator to its action by the greatest count that it can have."""
@@ -583,13 +604,14 @@ class _Model:
         """Give what each column costs."""
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         if measure.item:
-            costs |= dict.fromkeys((*self._items, *self.stock.values()), measure.item)
+            costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
         return costs
 
     def limit(self, level: Level) -> None:
         """Require that counts are as good by a level as the plan in hand."""
         costs = self.objective(level.measure)
-        self.program.row({column: -cost for column, cost in costs.items()}, -level.most)
+        row = self.program.row({column: -cost for column, cost in costs.items()}, -level.most)
+        self.conditions[row] = level
         self.cap(level.measure, level.most)
 
     def keep(self, measure: Measure, found: Sequence[float]) -> None:

@@ -9,7 +9,7 @@ from foon_asp.bounds.lexicographic import Lexicographic, Vector, times
 _STEPS = 400  # from a float optimum it takes few; a walk of this length leads nowhere
 _ZERO, _ONE = Fraction(), Fraction(1)
 
-_Matrix = Mapping[int, Mapping[int, Fraction]]
+Matrix = Mapping[int, Mapping[int, Fraction]]
 Limit = tuple[Mapping[int, Fraction], Fraction]
 
 
@@ -24,7 +24,7 @@ class ExactOptimum(NamedTuple):
     value: Vector
 
 
-class _NowhereError(Exception):
+class NowhereError(Exception):
     """A basis is singular, or its solution not feasible."""
 
 
@@ -59,7 +59,7 @@ def exact_optimum(
                 return ExactOptimum(shares, kept, value)
             for number, is_row in (entering, basis.leaving(*entering)):
                 (held if is_row else inside).symmetric_difference_update({number})
-    except _NowhereError:
+    except NowhereError:
         pass
     return None
 
@@ -69,7 +69,7 @@ class _Basis:
 
     ``x`` are the shares of the basic columns, by which the tight rows hold with equality; ``slack`` is by
     how much each row is exceeded; ``weights`` are those of the tight rows, by which the basic
-    columns are loaded with just their costs. Raises :class:`_NowhereError` where there is no solution or a
+    columns are loaded with just their costs. Raises :class:`NowhereError` where there is no solution or a
     negative share or slack.
     """
 
@@ -87,14 +87,16 @@ class _Basis:
         for row, entries in self._matrix.items():
             for column, value in entries.items():
                 transposed[column][row] = value
-        self.x = {c: share for c, (share,) in _solve(self._matrix, {r: (least[r],) for r in tight}).items()}
-        self.weights = _solve(transposed, {column: costs[column] for column in columns})
+        self.x = {
+            c: share for c, (share,) in solve_exactly(self._matrix, {r: (least[r],) for r in tight}).items()
+        }
+        self.weights = solve_exactly(transposed, {column: costs[column] for column in columns})
         self.slack = [
             sum((value * self.x[c] for c, value in row.items() if c in self.x), -least[r])
             for r, row in enumerate(rows)
         ]
         if any(value < 0 for value in (*self.x.values(), *self.slack)):
-            raise _NowhereError
+            raise NowhereError
 
     def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
         """Give the first column loaded with more than it costs, or else the first row of negative weight.
@@ -118,7 +120,7 @@ class _Basis:
             for row, parts in enumerate(self._rows)
         ]
         side = {row: (gains[row],) for row in self._matrix}
-        fall = {column: value for column, (value,) in _solve(self._matrix, side).items()}
+        fall = {column: value for column, (value,) in solve_exactly(self._matrix, side).items()}
         limits = [(self.x[c] / f, False, c) for c, f in fall.items() if f > 0]
         for row, space in enumerate(self.slack):
             lost = sum((value * fall[c] for c, value in self._rows[row].items() if c in fall), _ZERO)
@@ -129,11 +131,11 @@ class _Basis:
         return leaving, leaves_row
 
 
-def _solve(matrix: _Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
+def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
     """Solve a sparse square system for several right sides at once.
 
     ``matrix[i]`` maps unknowns to coefficients, ``right[i]`` is what row i gives. Row by row elimination, the
-    shortest row first, which keeps systems of cuts sparse. Raises :class:`_NowhereError` where it is
+    shortest row first, which keeps systems of cuts sparse. Raises :class:`NowhereError` where it is
     singular.
     """
     left = {number: dict(row) for number, row in matrix.items()}
@@ -144,7 +146,7 @@ def _solve(matrix: _Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
         number = min(waiting, key=lambda n: (len(left[n]), n))
         row = left[number]
         if not row:
-            raise _NowhereError
+            raise NowhereError
         unknown, pivot = row.popitem()
         pivots.append((number, unknown, pivot))
         waiting.remove(number)

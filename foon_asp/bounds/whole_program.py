@@ -19,6 +19,19 @@ class Solved(NamedTuple):
     bound: float | Fraction
 
 
+class Relaxation(NamedTuple):
+    """A relaxed solution ``x`` in floats, ``None`` if there is none, and the ``weights`` of the rows.
+
+    Those are of the optimum or, without a solution, of a combination of rows that has none. ``columns`` and
+    ``rows`` are those of the basis: between them is the square system that the weights solve.
+    """
+
+    x: list[float] | None
+    weights: list[float]
+    columns: list[int]
+    rows: list[int]
+
+
 class WholeProgram:
     """Columns between ``lower`` and ``upper`` (``None`` is no bound), and rows of whole numbers.
 
@@ -98,6 +111,25 @@ class WholeProgram:
             return Solved(None, math.inf)
         return Solved(None, -math.inf)
 
+    def relaxation(self, objective: Mapping[int, float]) -> Relaxation:
+        """Solve the relaxation, and give the weights of its rows, of which nothing is proved."""
+        highs = self._send(objective)
+        highs.run()
+        if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
+            solution, basis = highs.getSolution(), highs.getBasis()
+            basic = self._library.HighsBasisStatus.kBasic
+            return Relaxation(
+                list(solution.col_value),
+                list(solution.row_dual),
+                [column for column, status in enumerate(basis.col_status) if status == basic],
+                [row for row, status in enumerate(basis.row_status) if status != basic],
+            )
+        return Relaxation(None, [abs(weight) for weight in highs.getDualRay()[2]], [], [])
+
+    def said(self, row: int) -> tuple[dict[int, int], int]:
+        """Give a row: its parts, and what they add up to at least."""
+        return self._rows[row]
+
     def whole_optimum(self, objective: Mapping[int, int], seconds: float | None = None) -> list[float] | None:
         """Give the best whole solution by HiGHS' word; ``None`` if it finds none, in some seconds at most."""
         highs = self._send(objective)
@@ -115,7 +147,7 @@ class WholeProgram:
         self._highs = None
         return values
 
-    def _send(self, objective: Mapping[int, int]) -> Any:
+    def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Tell HiGHS what has changed."""
         np, inf = self._np, self._library.kHighsInf
         count = self.columns

@@ -16,6 +16,8 @@ from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
 from foon_asp.problem import Costs, Known, Objective, Problem
 from foon_asp.proof import verify
+from foon_asp.proof.constraint import Rule
+from foon_asp.proof.verify_plan import verify_any
 from foon_asp.text.json_value import json_line
 
 
@@ -177,10 +179,59 @@ def _write(
         "format": verify.FORMAT,
         "version": verify.VERSION,
         "claim": claim,
+        **head(problem, arrays.objectives, rules, covered),
+        "tree": None if units is None else list(units),
+        "costs": costs,
+        "bound": least,
+        "cuts": [list(objects) for objects in cuts],
+        "proof": found,
+    }
+    return sealed(content, arrays.objectives, problem)
+
+
+def sealed(
+    content: dict[str, Any], objectives: tuple[Objective, ...], problem: Problem
+) -> Certificate | None:
+    """Seal a certificate and verify it as it is written; ``None`` where that is beyond the limits.
+
+    Of measures it keeps the costs of those units that the proof looks at.
+    """
+    certificate = Certificate(content, content["claim"], objectives)
+    try:
+        verified = _verified(certificate, problem)
+        for measure in verified.trusted:  # of all units, those that the proof looks at
+            content["measures"][measure.name]["costs"] = _by_cost(measure.costs)
+        if verified.trusted:
+            _verified(certificate, problem)
+    except verify.LimitError:
+        return None
+    except verify.RefusedError as refused:
+        raise BugError(f"a certificate that was found is refused: {refused}") from None
+    return certificate
+
+
+def _verified(certificate: Certificate, problem: Problem) -> verify.Verified:
+    content = certificate.content
+    content["seal"] = verify.seal(content)
+    return verify_any(
+        verify.read_certificate(certificate.text()),
+        problem.network,
+        problem.kitchen,
+        problem.rates,
+        problem.utensils,
+        problem.unit_prices,
+    )
+
+
+def head(
+    problem: Problem, objectives: Sequence[Objective], rules: Sequence[Rule], covered: Coverage
+) -> dict[str, Any]:
+    """Give what certificates of all kinds say of the question that they are about."""
+    return {
         "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
         "containers": str(problem.containers),
         "level": problem.network.level,
-        "objective": [str(objective) for objective in arrays.objectives],
+        "objective": [str(objective) for objective in objectives],
         "digests": verify.digests(
             *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
             rules=rules,
@@ -188,41 +239,11 @@ def _write(
         "rules": [dict(rule) for rule in rules],
         "measures": {
             str(objective): _measure(problem, objective)
-            for objective in arrays.objectives
+            for objective in objectives
             if objective in problem.measures
         },
         "not_covered": list(covered.not_covered),
-        "tree": None if units is None else list(units),
-        "costs": costs,
-        "bound": least,
-        "cuts": [list(objects) for objects in cuts],
-        "proof": found,
     }
-    try:
-        verified = _verified(content, claim, arrays)
-        for measure in verified.trusted:  # of all units, those that the proof looks at
-            content["measures"][measure.name]["costs"] = _by_cost(measure.costs)
-        if verified.trusted:
-            _verified(content, claim, arrays)
-    except verify.LimitError:
-        return None
-    except verify.RefusedError as refused:
-        raise BugError(f"a certificate that was found is refused: {refused}") from None
-    return Certificate(content, claim, arrays.objectives)
-
-
-def _verified(content: dict[str, Any], claim: str, arrays: Arrays) -> verify.Verified:
-    """Seal a certificate, and verify it as it is written."""
-    problem = arrays.problem
-    content["seal"] = verify.seal(content)
-    return verify.verify(
-        verify.read_certificate(Certificate(content, claim, arrays.objectives).text()),
-        problem.network,
-        problem.kitchen,
-        problem.rates,
-        problem.utensils,
-        problem.unit_prices,
-    )
 
 
 def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:

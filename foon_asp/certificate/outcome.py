@@ -11,6 +11,7 @@ from foon_asp.bounds.lexicographic import Vector
 from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.certificate import Certificate, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage, coverage
+from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for_plans
 from foon_asp.errors import BugError
 from foon_asp.problem import Problem, levels, multiplies
 from foon_asp.proof.verify import trusted
@@ -30,8 +31,16 @@ def certify_outcome(
     """
     began = time.perf_counter()
     covered = coverage(settings)
+    plans = outcome.problem.items is not None
+    if plans:
+        covered = covered_for_plans(covered)
     found = _certified(outcome, settings, covered, expired)
-    if covered.not_covered and (found is None or found.claim == "bound") and outcome.proof is not None:
+    if (
+        not plans
+        and covered.not_covered
+        and (found is None or found.claim == "bound")
+        and outcome.proof is not None
+    ):
         from foon_asp.certificate.own_rules import with_own_rules  # noqa: PLC0415 - it loads clingo
 
         more = with_own_rules(covered, outcome.problem, settings)
@@ -54,6 +63,8 @@ def _certified(
     outcome: Outcome, settings: Settings, covered: Coverage, expired: Callable[[], bool]
 ) -> Certificate | None:
     """Find a certificate among trees that keep to what is covered."""
+    if outcome.problem.items is not None:
+        return _certified_plan(outcome, covered, expired)
     if outcome.status is Status.INFEASIBLE:
         return certify_infeasible(outcome.problem, covered, expired)
     if outcome.status is not Status.OPTIMAL or outcome.units is None:
@@ -64,6 +75,15 @@ def _certified(
     except NotBestError as better:
         why = f"there is a better tree, {_tree(outcome, better.units)}"
         raise _contradiction(outcome, settings, why) from None
+
+
+def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], bool]) -> Certificate | None:
+    """Find a certificate among plans that keep to what is covered."""
+    if outcome.status is Status.INFEASIBLE:
+        return certify_no_plan(outcome.problem, covered, expired)
+    if outcome.status is not Status.OPTIMAL or outcome.units is None:
+        return None
+    return certify_plan(outcome.problem, levels(outcome.objectives), outcome.units, covered, expired)
 
 
 def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
@@ -80,6 +100,8 @@ def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> s
         return None if certificate.claim == "infeasible" else f"the certificate claims {certificate.claim}"
     if certificate.claim == "infeasible":
         return "the certificate proves that there is no tree"
+    if problem.items is not None:  # it has the plan itself, whose costs were held against what is proved
+        return None
     return _costs_at_odds(outcome, outcome.units, certificate, covered)
 
 

@@ -36,7 +36,7 @@ _WITH_RULES = 4  # the first version with more rules than motions and objects th
 _NOTHING = "nothing"  # what a tree that is not there is measured by
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts", "price")
 
-_KEYS = {
+KEYS = {
     *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
     *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
 }
@@ -97,6 +97,17 @@ class Trusted(NamedTuple):
     costs: Mapping[int, Fraction]
 
 
+class UsedUp(NamedTuple):
+    """What a claim about plans says of items that are used up.
+
+    ``stock`` counts the copies of kitchen items, by id, of those that may run out. ``stays`` says of labels
+    and of object nodes, by id, whether they stay, whatever the rule makes of them.
+    """
+
+    stock: Mapping[int, int]
+    stays: Mapping[str | int, bool]
+
+
 class Verified(NamedTuple):
     """What a certificate proves about the data it was checked with.
 
@@ -104,7 +115,8 @@ class Verified(NamedTuple):
     ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
     All trees are meant that keep to the ``rules``: ready-made constraints, each by its name (``rule``) and
     its values. ``costs`` are those of the tree, one for each objective. ``trusted`` is what the claim rests
-    on that the data do not say.
+    on that the data do not say. Where items are used up, a plan is meant in place of a tree, and ``used_up``
+    is what the claim says of items.
     """
 
     claim: str
@@ -118,6 +130,7 @@ class Verified(NamedTuple):
     costs: tuple[int | Fraction, ...] | None
     cuts: int
     trusted: tuple[Trusted, ...] = ()
+    used_up: UsedUp | None = None
 
 
 def load_certificate(file: Path) -> Any:
@@ -138,7 +151,7 @@ def read_certificate(text: str) -> Any:
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
-        _require(len(found) == len(pairs), "a key stands twice in one object")
+        require(len(found) == len(pairs), "a key stands twice in one object")
         return found
 
     def no_float(number: str) -> None:
@@ -200,20 +213,18 @@ def verify(
     found.
     """
     try:
-        _require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
-        _require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
+        require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
+        require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
         version = certificate.get("version")
-        _require(
-            type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format"
-        )
-        keys = _KEYS if version >= _WITH_RULES else _KEYS - {"rules", "measures"} | {"forbidden"}
-        _require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
-        _require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
-        _require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
+        require(type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format")
+        keys = KEYS if version >= _WITH_RULES else KEYS - {"rules", "measures"} | {"forbidden"}
+        require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
+        require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
+        require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
         level = certificate["level"]
-        _require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
+        require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
         rules = (
-            _rules(certificate["rules"], len(network))
+            read_rules(certificate["rules"], len(network))
             if version >= _WITH_RULES
             else _forbidding(certificate["forbidden"])
         )
@@ -221,16 +232,16 @@ def verify(
         for name, since in (("prices", _WITH_PRICES), ("sources", _WITH_RULES)):
             if version < since:
                 del found[name]
-        stated = _object(certificate["digests"], tuple(found))
+        stated = read_object(certificate["digests"], tuple(found))
         for name, digest in found.items():
-            _require(stated[name] == digest, f"{name}: not the one that the certificate is about")
+            require(stated[name] == digest, f"{name}: not the one that the certificate is about")
         priced = prices if version >= _WITH_PRICES else None
-        return _Check(certificate, rules, network, kitchen, rates, utensils, priced).claim()
+        return Check(certificate, rules, network, kitchen, rates, utensils, priced).claim()
     except RecursionError:
         raise RefusedError("branches nested too deeply") from None
 
 
-class _Check:
+class Check:
     """One certificate, checked against its network.
 
     A *member* is a unit, by its id, a kitchen item ``k``, by the number of units plus ``k``, or a step of a
@@ -255,21 +266,21 @@ class _Check:
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
         self.utensils = utensils
         self.containers = certificate["containers"]
-        _require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
-        self.objectives = tuple(_list(certificate["objective"]))
-        measures = _object(certificate.get("measures", {}))
+        require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
+        self.objectives = tuple(read_list(certificate["objective"]))
+        measures = read_object(certificate.get("measures", {}))
         self.measures = {name: self._measure(name, stated) for name, stated in measures.items()}
-        _require(
+        require(
             all(objective in (*OBJECTIVES, *self.measures) for objective in self.objectives),
             "an objective is unknown",
         )
-        _require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
+        require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
         by_rates = {"success", "attempts"} & set(self.objectives)
         self.rates = self._rates(rates) if by_rates else []
         self.costly = frozenset(self.rates) - {0, 1}
         self.prices = self._prices(prices) if "price" in self.objectives else []
-        self.goals = tuple(_goal(goal, network) for goal in _list(certificate["goals"]))
-        _require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
+        self.goals = tuple(_goal(goal, network) for goal in read_list(certificate["goals"]))
+        require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.rules, self.claimed = rules, 0
         rate = [(rates or {}).get(motion) for motion in network.motions]
@@ -282,26 +293,26 @@ class _Check:
         )
         self.not_covered = _names(certificate["not_covered"])
         # these are nobody's labels, and could say anything in lines of their own
-        _require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
+        require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
         nodes = len(network.objects) + len(self.ruled.makers)
-        self.cuts = [frozenset(_numbers(cut, nodes)) for cut in _list(certificate["cuts"])]
+        self.cuts = [frozenset(read_numbers(cut, nodes)) for cut in read_list(certificate["cuts"])]
         self.members = [frozenset(self._members(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
 
     def _measure(self, name: str, stated: Any) -> Trusted:
         """Read what units are said to cost by a measure; nothing is trusted yet."""
-        _require(bool(_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own")
-        measure = _object(stated, ("rules", "sha256", "costs"))
+        require(bool(_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own")
+        measure = read_object(stated, ("rules", "sha256", "costs"))
         rules = measure["rules"]
-        _require(isinstance(rules, str), "expected the text of rules")
+        require(isinstance(rules, str), "expected the text of rules")
         digest = hashlib.sha256(rules.encode(errors="backslashreplace")).hexdigest()
-        _require(measure["sha256"] == digest, "the digest of a measure is not that of its rules")
+        require(measure["sha256"] == digest, "the digest of a measure is not that of its rules")
         costs: dict[int, Fraction] = {}
-        for text, units in _object(measure["costs"]).items():
+        for text, units in read_object(measure["costs"]).items():
             cost = _rational(text)
-            _require(cost >= 0, "a unit costs less than 0 by a measure")
-            for unit in _numbers(units, len(self.network)):
-                _require(unit not in costs, "a unit has two costs by a measure")
+            require(cost >= 0, "a unit costs less than 0 by a measure")
+            for unit in read_numbers(units, len(self.network)):
+                require(unit not in costs, "a unit has two costs by a measure")
                 costs[unit] = cost
         self.looked_at[name] = {}
         return Trusted(name, rules, digest, costs)
@@ -309,7 +320,7 @@ class _Check:
     def _measured(self, name: str, unit: int) -> Fraction:
         """Give what a unit is said to cost by a measure, which is taken on trust from now on."""
         costs = self.measures[name].costs
-        _require(unit in costs, "the cost of a unit by a measure is not stated")
+        require(unit in costs, "the cost of a unit by a measure is not stated")
         self.looked_at[name][unit] = costs[unit]
         return costs[unit]
 
@@ -317,8 +328,8 @@ class _Check:
         """Give the success rate of each unit."""
         rates = None if given is None else [given.get(motion) for motion in self.network.motions]
         found = self._known(rates, "success rates")
-        _require(all(rate <= 1 for rate in found), "a rate is above 1")
-        _require(
+        require(all(rate <= 1 for rate in found), "a rate is above 1")
+        require(
             "attempts" not in self.objectives or 0 not in found,
             "a unit that never succeeds is repeated forever",
         )
@@ -344,10 +355,10 @@ class _Check:
 
     def _known(self, values: Sequence[Fraction | None] | None, what: str) -> list[Fraction]:
         """Give values of all units, by what they are and where all are there."""
-        _require(values is not None, f"a claim needs {what}, but none are given")
+        require(values is not None, f"a claim needs {what}, but none are given")
         found = [value for value in values or () if value is not None]
-        _require(len(found) == len(self.network), f"a unit has none of the {what} that a claim needs")
-        _require(all(value >= 0 for value in found), f"one of the {what} is below 0")
+        require(len(found) == len(self.network), f"a unit has none of the {what} that a claim needs")
+        require(all(value >= 0 for value in found), f"one of the {what} is below 0")
         return found
 
     def claim(self) -> Verified:
@@ -356,30 +367,30 @@ class _Check:
         costs: list[int | Fraction] | None = None
         amount: Amount = {}
         if listed is not None:
-            _require(bool(self.objectives), "a tree is given, but no objective")
-            amount, costs = self._tree(_list(listed))
+            require(bool(self.objectives), "a tree is given, but no objective")
+            amount, costs = self._tree(read_list(listed))
             computed = json.dumps([str(c) if isinstance(c, Fraction) else c for c in costs])
             stated = json.dumps(self.certificate["costs"])  # which tells 1 from True and from 1.0
-            _require(stated == computed, f"the tree costs {computed}, not what is stated")
+            require(stated == computed, f"the tree costs {computed}, not what is stated")
         else:
-            _require(self.certificate["costs"] is None, "costs are given, but no tree")
+            require(self.certificate["costs"] is None, "costs are given, but no tree")
         if claim == "infeasible":
-            _require(listed is None and not self.objectives, "there cannot be a tree")
-            _require(self.certificate["bound"] is None, "a bound is given where there is nothing to bound")
+            require(listed is None and not self.objectives, "there cannot be a tree")
+            require(self.certificate["bound"] is None, "a bound is given where there is nothing to bound")
         elif claim == "optimal":
-            _require(listed is not None, "expected the tree that is optimal")
-            _require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
+            require(listed is not None, "expected the tree that is optimal")
+            require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
         elif claim == "bound":
-            _require(bool(self.objectives), "expected objectives")
+            require(bool(self.objectives), "expected objectives")
             bound = self._read(self.certificate["bound"])
-            _require(
-                listed is None or self._sign(self._sum([amount, _negative(bound)])) >= 0, "the bound is false"
+            require(
+                listed is None or self._sign(self._sum([amount, negative(bound)])) >= 0, "the bound is false"
             )
             amount = bound
         else:
             raise RefusedError("expected the claim optimal, bound or infeasible")
         self._prove(proof, None if claim == "infeasible" else amount)
-        _require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
+        require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
         return Verified(
             claim,
             self.goals,
@@ -401,21 +412,25 @@ class _Check:
     def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
         """Execute the tree as listed; give what it costs as an amount and as figures."""
         at_hand: set[int | None] = set(self.kitchen)
-        for unit in _numbers(units, len(self.network), ascending=False):
-            _require(
+        for unit in read_numbers(units, len(self.network), ascending=False):
+            require(
                 self.needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input when it is its turn"
             )
             at_hand.update(self.gives(unit))
-        _require(at_hand.issuperset(self.goals), "the tree does not make every goal")
+        require(at_hand.issuperset(self.goals), "the tree does not make every goal")
         self._keep(frozenset(units))
         items = {o for unit in units for o in self.kitchen & self.needs(unit)}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
         total = self._sum(map(self._cost, members))
+        return total, self._figures(units, total)
+
+    def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
+        """Give what a tree of these units costs by each objective, as figures."""
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
                 rates = [self.rates[u] for u in units]
-                _require(0 not in rates, "a tree that never succeeds is no better than another")
+                require(0 not in rates, "a tree that never succeeds is no better than another")
                 if sum(rate.denominator.bit_length() for rate in rates) > _WRITTEN:
                     raise LimitError("the success rate of the tree is too long a number to be written")
                 costs.append(math.prod(rates, start=Fraction(1)))
@@ -425,13 +440,13 @@ class _Check:
                     raise LimitError("what the tree costs is too long a number to be written")
                 sums = {"attempts", "price", *self.measures}
                 costs.append(figure if objective in sums else int(figure))
-        return total, costs
+        return costs
 
     def _keep(self, units: frozenset[int]) -> None:
         """Hold a tree against what the rules say of all of it."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         fault = self.ruled.fault(units, frozenset(range(len(self.network))) - units)
-        _require(fault is None, f"the tree {fault}")
+        require(fault is None, f"the tree {fault}")
 
     def _barred(self, place: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Give the units that a rule bars from trees that use some members and have none of others."""
@@ -450,26 +465,26 @@ class _Check:
         while waiting:
             node, used, without = waiting.pop()
             self._spend(1 + len(used) + len(without))
-            keys = set(_object(node))
+            keys = set(read_object(node))
             if keys == {"branch", "without", "using"}:
                 member = self._branch(node["branch"])
-                _require(member not in used | without, "a branch is taken twice")
+                require(member not in used | without, "a branch is taken twice")
                 waiting.append((node["without"], used, without | {member}))
                 waiting.append((node["using"], used | {member}, without))
                 continue
             if keys == {"broken"}:
                 place = node["broken"]
-                _require(type(place) is int, "expected the number of a rule")
+                require(type(place) is int, "expected the number of a rule")
                 never, barring = place in self.ruled.never, place in self.ruled.barred
                 broken = never or (barring and not used.isdisjoint(self._barred(place, used, without)))
-                _require(broken, "a rule called broken is kept")
+                require(broken, "a rule called broken is kept")
                 continue
             without = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))
             if keys == {"hopeless"}:
                 crossing = self._crossing(node["hopeless"], used, without)
-                _require(not crossing, "a cut called hopeless is crossed")
+                require(not crossing, "a cut called hopeless is crossed")
                 continue
-            _require(
+            require(
                 {"weights"} <= keys <= {"weights", "limits"},
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
@@ -478,8 +493,8 @@ class _Check:
             if least is None:
                 enough = self._sign(bound) > 0
             else:
-                enough = self._sign(self._sum([bound, _negative(least)])) >= 0
-            _require(enough, "the weights do not add up to enough")
+                enough = self._sign(self._sum([bound, negative(least)])) >= 0
+            require(enough, "the weights do not add up to enough")
 
     def _packed(self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]) -> Amount:
         """Add up the weights of cuts after checking that no member is overloaded.
@@ -492,15 +507,15 @@ class _Check:
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
         for place, stated in _pairs(limits):
             weight = self._read(stated)
-            _require(self._sign(weight) > 0, "a weight of a limit is not above zero")
-            _require(place in self.ruled.limits, "a rule that limits nothing is given a weight")
+            require(self._sign(weight) > 0, "a weight of a limit is not above zero")
+            require(place in self.ruled.limits, "a rule that limits nothing is given a weight")
             limit = self.ruled.limits[place]
             self._spend(len(used))
             self._add(total, self._times(weight, -limit.left(used)))
             carried.append((weight, limit.amounts))
         for number, stated in _pairs(weights):
             weight = self._read(stated)
-            _require(self._sign(weight) > 0, "a weight is not above zero")
+            require(self._sign(weight) > 0, "a weight is not above zero")
             self._add(total, weight)
             for member in self._crossing(number, used, without):
                 self._add(loads.setdefault(member, {}), weight)
@@ -511,13 +526,13 @@ class _Check:
                 more = (self._times(w, amounts[member]) for w, amounts in carried if member in amounts)
                 allowed = self._sum([allowed, *more])
             if allowed != load:
-                fits = self._sign(self._sum([allowed, _negative(load)])) >= 0
-                _require(fits, f"unit or item {member} carries more than it costs")
+                fits = self._sign(self._sum([allowed, negative(load)])) >= 0
+                require(fits, f"unit or item {member} carries more than it costs")
         return total
 
     def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Give the members of a cut that are left; the cut has to stand before a goal or a used unit."""
-        _require(type(number) is int and 0 <= number < len(self.cuts), "expected the number of a cut")
+        require(type(number) is int and 0 <= number < len(self.cuts), "expected the number of a cut")
         place = int(number)
         self._spend(1 + len(self.goals) + len(used) + len(self.members[place]))
         self.met.add(place)
@@ -527,7 +542,7 @@ class _Check:
             or not cut.isdisjoint(self.ruled.goals)
             or any(not cut.isdisjoint(self._asked(member)) for member in used)
         )
-        _require(before, f"cut {number} holds neither a goal nor what a used unit needs")
+        require(before, f"cut {number} holds neither a goal nor what a used unit needs")
         return self.members[place] - without
 
     def _members(self, cut: frozenset[int]) -> Iterator[int]:
@@ -536,7 +551,7 @@ class _Check:
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         for o in cut:
             if o in self.kitchen:
-                _require("kitchen" in self.objectives, "a cut holds a kitchen item")
+                require("kitchen" in self.objectives, "a cut holds a kitchen item")
                 yield len(network) + o
             elif o in own:
                 yield from (member for member in own[o] if cut.isdisjoint(self._asked(member)))
@@ -627,7 +642,7 @@ class _Check:
             elif objective in self.measures:
                 cost[level, None] = self._measured(objective, member)
             else:
-                _require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
+                require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
                 inputs = network.inputs[member]
                 count = len(inputs)
                 if objective == "inputs+ingredients":
@@ -649,31 +664,31 @@ class _Check:
     def _branch(self, choice: Any) -> int:
         """Give the member that a branch is about."""
         network = self.network
-        if set(_object(choice)) == {"step"}:
+        if set(read_object(choice)) == {"step"}:
             first = len(network) + len(network.objects)
             step = choice["step"]
-            _require(type(step) is int and first + step in self.ruled.steps, "expected the number of a step")
+            require(type(step) is int and first + step in self.ruled.steps, "expected the number of a step")
             return first + int(step)
-        if set(_object(choice)) == {"item"}:
-            _require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
+        if set(read_object(choice)) == {"item"}:
+            require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
             item = choice["item"]
-            _require(type(item) is int and item in self.kitchen, "expected the id of a kitchen item")
+            require(type(item) is int and item in self.kitchen, "expected the id of a kitchen item")
             return len(network) + int(item)
-        unit = _object(choice, ("unit",))["unit"]
-        _require(type(unit) is int and 0 <= unit < len(network), "expected the id of a unit")
+        unit = read_object(choice, ("unit",))["unit"]
+        require(type(unit) is int and 0 <= unit < len(network), "expected the id of a unit")
         return int(unit)
 
     def _read(self, stated: Any) -> Amount:
         """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
         amount: Amount = {}
-        parts = _list(stated)
+        parts = read_list(stated)
         objectives = self.objectives or (_NOTHING,)
-        _require(len(parts) == len(objectives), "expected one part of a weight for each objective")
+        require(len(parts) == len(objectives), "expected one part of a weight for each objective")
         for level, objective in enumerate(objectives):
             if objective == "success":
-                for name, exponent in _object(parts[level]).items():
+                for name, exponent in read_object(parts[level]).items():
                     rate = _rational(name)
-                    _require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
+                    require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
                     amount[level, rate] = _rational(exponent)
             else:
                 amount[level, None] = _rational(parts[level])
@@ -756,7 +771,8 @@ def _bits(value: Fraction) -> int:
     return value.numerator.bit_length() + value.denominator.bit_length()
 
 
-def _negative(amount: Amount) -> Amount:
+def negative(amount: Amount) -> Amount:
+    """Give an amount with the opposite sign."""
     return {key: -value for key, value in amount.items()}
 
 
@@ -786,62 +802,64 @@ def canonical(value: object) -> str:
     return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
 
 
-def _require(holds: bool, otherwise: str) -> None:
+def require(holds: bool, otherwise: str) -> None:
+    """Raise :class:`RefusedError` with a message unless something holds."""
     if not holds:
         raise RefusedError(otherwise)
 
 
-def _object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
-    _require(isinstance(value, dict), "expected an object")
+def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
+    """Read an object, with just these keys if they are given."""
+    require(isinstance(value, dict), "expected an object")
     found: dict[str, Any] = value
-    _require(keys is None or set(found) == set(keys), f"expected the keys {', '.join(keys or ())}")
+    require(keys is None or set(found) == set(keys), f"expected the keys {', '.join(keys or ())}")
     return found
 
 
-def _list(value: Any) -> list[Any]:
-    _require(isinstance(value, list), "expected a list")
+def read_list(value: Any) -> list[Any]:
+    """Read a list."""
+    require(isinstance(value, list), "expected a list")
     found: list[Any] = value
     return found
 
 
 def _names(value: Any) -> tuple[str, ...]:
-    names = _list(value)
-    _require(all(isinstance(name, str) for name in names), "expected names")
-    _require(names == sorted(set(names)), "expected names in order, each of them once")
-    _require(not any(map(_SURROGATE.search, names)), "a name has half of a letter (a surrogate)")
+    names = read_list(value)
+    require(all(isinstance(name, str) for name in names), "expected names")
+    require(names == sorted(set(names)), "expected names in order, each of them once")
+    require(not any(map(_SURROGATE.search, names)), "a name has half of a letter (a surrogate)")
     return tuple(names)
 
 
-def _numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
-    numbers = _list(value)
-    _require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
-    _require(len(set(numbers)) == len(numbers), "an id stands twice")
-    _require(not ascending or (numbers == sorted(numbers) and len(numbers) > 0), "expected ids in order")
+def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
+    """Read ids, each of them once, and if they ascend, at least one."""
+    numbers = read_list(value)
+    require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
+    require(len(set(numbers)) == len(numbers), "an id stands twice")
+    require(not ascending or (numbers == sorted(numbers) and len(numbers) > 0), "expected ids in order")
     return numbers
 
 
 def _pairs(value: Any) -> list[tuple[Any, Any]]:
     """Read what maps numbers of cuts to weights: a list of pairs, in order."""
-    pairs = _list(value)
-    _require(
-        all(isinstance(pair, list) and len(pair) == 2 for pair in pairs), "expected a cut and its weight"
-    )
+    pairs = read_list(value)
+    require(all(isinstance(pair, list) and len(pair) == 2 for pair in pairs), "expected a cut and its weight")
     numbers = [pair[0] for pair in pairs]
-    _require(all(type(number) is int for number in numbers), "expected the number of a cut")
-    _require(numbers == sorted(set(numbers)), "expected cuts in order, each of them once")
+    require(all(type(number) is int for number in numbers), "expected the number of a cut")
+    require(numbers == sorted(set(numbers)), "expected cuts in order, each of them once")
     return [(number, weight) for number, weight in pairs]
 
 
 def _goal(value: Any, network: Network) -> int:
-    goal = _object(value, ("id", "node"))
-    (found,) = _numbers([goal["id"]], len(network.objects))
-    _require(str(network.objects[found]) == goal["node"], "a goal is not the node of its id")
+    goal = read_object(value, ("id", "node"))
+    (found,) = read_numbers([goal["id"]], len(network.objects))
+    require(str(network.objects[found]) == goal["node"], "a goal is not the node of its id")
     return found
 
 
-def _rules(value: Any, units: int) -> tuple[Rule, ...]:
+def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
     """Read the constraints that a claim is about, and what it takes on trust of rules of the user's own."""
-    rules = [_object(rule) for rule in _list(value)]
+    rules = [read_object(rule) for rule in read_list(value)]
     if len(rules) > _RULES:
         raise LimitError(f"it has more than {_RULES} rules")
     for rule in rules:
@@ -849,39 +867,39 @@ def _rules(value: Any, units: int) -> tuple[Rule, ...]:
         if name == OWN:
             _own(rule, units)
             continue
-        _require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
+        require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
         values = LIBRARY[rule["rule"]].values
-        _object(rule, ("rule", *values))
+        read_object(rule, ("rule", *values))
         for key, kind in values.items():
-            _require(type(rule[key]) is kind, "a value of a rule is of another kind")
+            require(type(rule[key]) is kind, "a value of a rule is of another kind")
             _names(rule[key] if kind is list else [rule[key]] if kind is str else [])
-    _require(sum(rule["rule"] == OWN for rule in rules) <= 1, "rules of the user's own stand twice")
+    require(sum(rule["rule"] == OWN for rule in rules) <= 1, "rules of the user's own stand twice")
     texts = [canonical(rule) for rule in rules]
-    _require(texts == sorted(set(texts)), "expected rules in order, each of them once")
+    require(texts == sorted(set(texts)), "expected rules in order, each of them once")
     return tuple(rules)
 
 
 def _own(rule: Rule, units: int) -> None:
     """Check the form of what is taken on trust: texts of rules, their digests, and claims of units."""
-    _object(rule, ("rule", "claims", "constants", "files", "library"))
+    read_object(rule, ("rule", "claims", "constants", "files", "library"))
     for key in ("constants", "library"):
         _names(rule[key])
-    for file in _list(rule["files"]):
-        _object(file, ("name", "sha256", "text"))
+    for file in read_list(rule["files"]):
+        read_object(file, ("name", "sha256", "text"))
         _names([file["name"]])
         _names([file["text"]])
-        _require(file["name"].isprintable(), "a file of rules has no printable name")
+        require(file["name"].isprintable(), "a file of rules has no printable name")
         sha = hashlib.sha256(file["text"].encode()).hexdigest()
-        _require(file["sha256"] == sha, "a text of rules does not have its digest")
-    for claim in _list(rule["claims"]):
-        _require(isinstance(claim, list) and len(claim) == 2, "expected two sets of units in a claim")
+        require(file["sha256"] == sha, "a text of rules does not have its digest")
+    for claim in read_list(rule["claims"]):
+        require(isinstance(claim, list) and len(claim) == 2, "expected two sets of units in a claim")
         for side in claim:
-            _numbers(side, units, ascending=side != [])
+            read_numbers(side, units, ascending=side != [])
 
 
 def _forbidding(value: Any) -> tuple[Rule, ...]:
     """Read the motions and labels of objects that were all that a claim could forbid before version 4."""
-    forbidden = _object(value, ("motions", "objects"))
+    forbidden = read_object(value, ("motions", "objects"))
     rules: list[Rule] = [
         {"rule": "forbid_motion", "forbidden_motion": motion} for motion in _names(forbidden["motions"])
     ]
@@ -890,9 +908,9 @@ def _forbidding(value: Any) -> tuple[Rule, ...]:
 
 
 def _rational(value: Any) -> Fraction:
-    _require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
+    require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
     if len(value) > _DIGITS_READ:
         raise LimitError(f"a fraction has more than {_DIGITS_READ:,} digits")
     found = Fraction(value)
-    _require(str(found) == value, "expected a fraction in lowest terms")
+    require(str(found) == value, "expected a fraction in lowest terms")
     return found

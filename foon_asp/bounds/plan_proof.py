@@ -1,0 +1,271 @@
+"""Proofs that no plan costs less: weighted conditions of counts, and branching over how often something is.
+
+The relaxation of whole counts (:mod:`foon_asp.bounds.counts`) gives weights of its rows in floats. Whatever
+they are, rounded or solved for exactly, they prove a bound: for each action by itself the least of what it
+costs less what it brings, over the counts that it may have, and what the conditions leave in all.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cmp_to_key
+from typing import NamedTuple
+
+from foon_asp.bounds.counts import Condition, CountBound, Landmark, Level, Measure, _Model
+from foon_asp.bounds.exact_optimum import NowhereError, solve_exactly
+from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.bounds.whole_program import Relaxation
+
+_PARTS = (720720, 2**40)  # what weights are rounded to: parts of the first that suffices
+_NEAR = 1e-6  # what differs less from a whole number is one, for choosing where to branch
+_ROUNDS = 20  # how often cuts are looked for that a solution hits in part
+_MOST_DEPTH = 150
+_MOST_LEAVES = 1_000
+
+
+class Weighted(NamedTuple):
+    """A part of all counts, with weights of conditions, each above 0."""
+
+    weights: Sequence[tuple[Condition, Vector]]
+
+
+class Split(NamedTuple):
+    """A part that is divided: a column, the counts of which are up to ``most``, or above."""
+
+    column: int
+    most: int
+    up_to: "CountProof"
+    above: "CountProof"
+
+
+CountProof = Weighted | Split
+
+
+class Claim(NamedTuple):
+    """What is to be proved of all plans: that they cost at least so much.
+
+    ``costs`` are those of each action, ``item`` that of each item and copy that is taken. ``least`` is
+    ``None`` where there is no plan at all, and nothing costs anything. ``parts`` says into how many parts 1
+    is divided by what plans can cost, if known, and ``caps`` how often a plan that costs less executes each
+    action.
+    """
+
+    order: Lexicographic
+    costs: Sequence[Vector]
+    item: Vector
+    least: Vector | None
+    parts: int | None
+    caps: Sequence[int | None]
+
+
+class PlanProver(CountBound):
+    """Looks for a proof of a claim about all plans that are as good by some levels."""
+
+    def prove_claim(
+        self, claim: Claim, measure: Measure, kept: Sequence[Level]
+    ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
+        """Prove as much of a claim as can be: the proof, the bound, and the column of each item.
+
+        The bound is that of the claim where all of it is proved. ``None`` where nothing is. ``measure`` is
+        what the claim is about, which says whether items are counted.
+        """
+        self._claim, self._least, self._leaves = claim, claim.least, 0
+        model = self._model([measure, *(level.measure for level in kept)])
+        for level in kept:
+            model.limit(level)
+        for action, cap in enumerate(claim.caps):
+            if cap is not None:
+                model.program.cap(action, cap)
+        self._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
+        floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
+        self._objective = {action: cost for action, cost in enumerate(floats) if cost}
+        if any(claim.item):
+            self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
+        self._failed = False
+        proof = self._part(model, 0)
+        if self._failed:
+            return None
+        return proof, self._least, self._columns
+
+    def require(self, landmarks: Sequence[Landmark]) -> None:
+        """Take landmarks that are known."""
+        self._landmarks += landmarks
+
+    def _part(self, model: _Model, depth: int) -> CountProof:
+        """Prove a part, or lower what is claimed to what is proved of it."""
+        program = model.program
+        model.tighten()
+        if any(
+            most is not None and least > most
+            for least, most in zip(program.lower, program.upper, strict=True)
+        ):
+            return Weighted(())
+        best: tuple[Vector, dict[int, Vector]] | None = None
+        rounds = 0
+        while True:
+            relaxed = program.relaxation(self._objective)
+            for weights in self._weights(model, relaxed):
+                bound = self._bound(model, weights)
+                if bound is not None and (best is None or self._claim.order.compare(bound, best[0]) > 0):
+                    best = bound, weights
+                if best is not None and self._is_enough(best[0]):
+                    return self._leaf(model, best[1])
+            if relaxed.x is None or self._expired():
+                break
+            if self._add_landmark(relaxed.x, model):
+                continue
+            if rounds < _ROUNDS and self._separate(relaxed.x, model, at_root=depth == 0):
+                rounds += 1
+                continue
+            break
+        column = None if relaxed.x is None or self._expired() else self._choice(model, relaxed.x)
+        if column is None or depth > _MOST_DEPTH or self._leaves > _MOST_LEAVES:
+            self._give_up(best)
+            return self._leaf(model, best[1] if best else {})
+        return self._split(model, *column, depth)
+
+    def _split(self, model: _Model, column: int, most: int, depth: int) -> Split:
+        program, size = model.program, self._size
+        lower, upper = list(program.lower), list(program.upper)
+        action = column < size
+        program.lower[column] = most + 1
+        if action:
+            program.lower[size + column] = 1
+        above = self._part(model, depth + 1)
+        program.lower, program.upper = list(lower), list(upper)
+        program.upper[column] = most
+        if action and not most:
+            program.upper[size + column] = 0
+        up_to = self._part(model, depth + 1)
+        program.lower, program.upper = lower, upper
+        return Split(column, most, up_to, above)
+
+    def _choice(self, model: _Model, x: Sequence[float]) -> tuple[int, int] | None:
+        """Give a column to branch on, and the most of the lower side; ``None`` where all are whole."""
+        program, size = model.program, self._size
+        for a in range(size):
+            most = program.upper[a]
+            if x[size + a] < min(1.0, x[a]) - _NEAR and not program.lower[a] and (most is None or most > 1):
+                return a, max(1, math.floor(x[a] + _NEAR))
+        columns = [*range(size), *self._columns]
+        halves = [(abs(x[column] - math.floor(x[column]) - 0.5), column) for column in columns]
+        half = min((each for each in halves if each[0] < 0.5 - _NEAR), default=None)
+        return None if half is None else (half[1], math.floor(x[half[1]]))
+
+    def _give_up(self, best: tuple[Vector, object] | None) -> None:
+        """Claim no more than what is proved of a part."""
+        if self._least is None or best is None:
+            self._failed = True
+            return
+        self._least = min(self._least, self._rounded(best[0]), key=cmp_to_key(self._claim.order.compare))
+
+    def _rounded(self, bound: Vector) -> Vector:
+        parts = self._claim.parts
+        return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
+
+    def _is_enough(self, bound: Vector) -> bool:
+        order = self._claim.order
+        if self._least is None:
+            return order.sign(bound) > 0
+        return order.compare(self._rounded(bound), self._least) >= 0
+
+    def _leaf(self, model: _Model, weights: Mapping[int, Vector]) -> Weighted:
+        self._leaves += 1
+        return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
+
+    def _weights(self, model: _Model, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+        """Make weights of what floats say: rounded, and by the basis, where rounding may lose too much."""
+        claim = self._claim
+        first = claim.order.levels[0]
+        one = (Fraction(1), *claim.order.zero[1:])
+        scale = claim.order.approximate(one)[0] if first is not None else 1.0
+        floats = relaxed.weights
+        if relaxed.x is None:
+            largest = max(floats, default=0.0)
+            if largest == 0.0:
+                return []
+            for parts in _PARTS:
+                ray = self._rounded_weights(model, [weight / largest for weight in floats], parts, one)
+                nothing = self._bound(model, ray, free=True)
+                if nothing is None or claim.order.sign(nothing) <= 0:
+                    continue
+                if self._least is None:
+                    return [ray]
+                need = claim.order.approximate(self._least)[0] / claim.order.approximate(nothing)[0]
+                factor = Fraction(math.ceil(abs(need) * 1.001) + 1)
+                return [{row: times(weight, factor) for row, weight in ray.items()}]
+            return []
+        floats = [weight / scale for weight in floats]
+        found = [self._rounded_weights(model, floats, parts, one) for parts in _PARTS]
+        value = sum(cost * relaxed.x[column] for column, cost in self._objective.items())
+        least = 0.0 if self._least is None else claim.order.approximate(self._least)[0]
+        close = value > least - _NEAR * max(1.0, abs(least))
+        if close and (first is not None or claim.parts is None):
+            found += self._exact_weights(model, relaxed)
+        return found
+
+    def _rounded_weights(
+        self, model: _Model, floats: Sequence[float], parts: int, one: Vector
+    ) -> dict[int, Vector]:
+        rounded = {row: round(floats[row] * parts) for row in model.conditions if abs(floats[row]) < 1e15}
+        return {row: times(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
+
+    def _exact_weights(self, model: _Model, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+        """Solve the basis for weights that load its columns with just what they cost."""
+        columns, tight = set(relaxed.columns), relaxed.rows
+        matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
+        for row in tight:
+            for column, part in model.program.said(row)[0].items():
+                if column in columns and part:
+                    matrix[column][row] = Fraction(part)
+        if len(columns) != len(tight):
+            return []
+        try:
+            solved = solve_exactly(matrix, {column: self._cost(column) for column in columns})
+        except NowhereError:
+            return []
+        sign = self._claim.order.sign
+        return [{row: w for row, w in solved.items() if row in model.conditions and sign(w) > 0}]
+
+    def _cost(self, column: int) -> Vector:
+        claim = self._claim
+        if column < self._size:
+            return claim.costs[column]
+        return claim.item if column in self._columns else claim.order.zero
+
+    def _bound(self, model: _Model, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
+        """Give what weights prove of the part at hand; ``None`` where that is nothing.
+
+        Where all is ``free``, nothing costs anything.
+        """
+        program, size, order = model.program, self._size, self._claim.order
+        loads: dict[int, list[Vector]] = {}
+        found: list[Vector] = []
+        for row, weight in weights.items():
+            parts, least = program.said(row)
+            if least:
+                found.append(times(weight, Fraction(least)))
+            for column, part in parts.items():
+                if part:
+                    loads.setdefault(column, []).append(times(weight, Fraction(part)))
+        zero = order.zero
+
+        def left(column: int) -> Vector:
+            cost = zero if free else self._cost(column)
+            return minus(cost, order.total(loads[column])) if column in loads else cost
+
+        for column in (*range(size), *self._columns):
+            low, most = program.lower[column], program.upper[column]
+            once = left(size + column) if column < size else zero
+            if column not in loads and size + column not in loads and not low:
+                continue
+            each = left(column)
+            ends = [zero] if low == 0 else []
+            if most is None or most >= 1:
+                ends.append(order.total([times(each, Fraction(max(low, 1))), once]))
+                if order.sign(each) < 0:
+                    if most is None:
+                        return None
+                    ends.append(order.total([times(each, Fraction(most)), once]))
+            found.append(min(ends, key=cmp_to_key(order.compare)))
+        return order.total(found)

@@ -1,0 +1,511 @@
+"""Is a certificate of a plan right, where items are used up? Without a solver, a linear program or floats.
+
+docs/proofs.md describes these certificates and proves that what passes here is true. In short: how often a
+plan executes each unit satisfies conditions that can be read from the network. Of every node no more copies
+are used up than come (its *balance*), and each cut before a goal, or before a unit that is executed, is
+crossed. Take conditions with weights from 0: whatever they say in all, each unit by itself can make it up no
+more cheaply than at the least of what it costs less what it brings, over all the counts that it may have.
+These add up to a bound on every plan, since a plan fulfils all of the conditions.
+
+What becomes of the inputs of a unit, and whether a plan runs, is worked out here anew from the plain network.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from functools import cache, cached_property
+from typing import Any, NamedTuple
+
+from foon_asp.network import Network, UnitPrices
+from foon_asp.proof import verify as lasting
+from foon_asp.proof.constraint import LIBRARY, Rule
+from foon_asp.proof.verify import (
+    Amount,
+    Check,
+    UsedUp,
+    Verified,
+    negative,
+    read_list,
+    read_numbers,
+    read_object,
+    read_rules,
+    require,
+)
+
+FORMAT = "foon-asp certificate of a plan"
+VERSION = 1
+KEYS = {*lasting.KEYS, "items", "unreached"}
+
+# The rules that plans can be held against: those that remove units or ask for one, and those whose limit
+# counts each execution.
+COUNTING = ("at_most_units", "at_most_motion", "at_most_utensil_uses", "at_most_price")
+WANTING = ("forbid_ingredient", "require_motion", "require_object", "require_ingredient")
+RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items() if rule.removes)})
+
+FINE = 10**9  # parts of a logarithm, where plans are to be as good by success as the one in hand
+_MOST = 10**9  # copies in stock, and executions that a branch is about
+_LEAF = {"weights", "before", "balance", "limits", "levels"}
+
+
+class Flow(NamedTuple):
+    """What a unit asks for, uses up and adds, one copy of each."""
+
+    asks: frozenset[int]
+    uses: frozenset[int]
+    adds: frozenset[int]
+
+
+class Part(NamedTuple):
+    """A part of all plans: how often they execute units, and take items, at least and at most."""
+
+    proof: Any
+    least: Mapping[int, int]
+    most: Mapping[int, int]
+
+
+def verify_any(
+    certificate: Any,
+    network: Network,
+    kitchen: frozenset[int],
+    rates: Mapping[str, Fraction] | None,
+    utensils: frozenset[str],
+    prices: UnitPrices | None = None,
+) -> Verified:
+    """Check a certificate of a tree or of a plan; raises :class:`RefusedError`."""
+    of_plan = isinstance(certificate, dict) and certificate.get("format") == FORMAT
+    check = verify_plan if of_plan else lasting.verify
+    return check(certificate, network, kitchen, rates, utensils, prices)
+
+
+def verify_plan(
+    certificate: dict[str, Any],
+    network: Network,
+    kitchen: frozenset[int],
+    rates: Mapping[str, Fraction] | None,
+    utensils: frozenset[str],
+    prices: UnitPrices | None = None,
+) -> Verified:
+    """Check a certificate of a plan against the data it speaks about.
+
+    Raises :class:`RefusedError` with the first fault that is found.
+    """
+    require(certificate["format"] == FORMAT, f"expected the format {FORMAT!r}")
+    version = certificate.get("version")
+    require(type(version) is int and version == VERSION, f"expected version {VERSION} of the format")
+    require(certificate.keys() == KEYS, f"expected the keys {', '.join(sorted(KEYS))}")
+    require(
+        certificate["seal"] == lasting.seal(certificate), "the seal does not match: something was changed"
+    )
+    level = certificate["level"]
+    require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
+    require(level == 3, "below level 3 nothing says what is used up: contents decide")
+    rules = read_rules(certificate["rules"], len(network))
+    require(RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
+    found = lasting.digests(network, kitchen, rates, utensils, prices, rules)
+    stated = read_object(certificate["digests"], tuple(found))
+    for name, digest in found.items():
+        require(stated[name] == digest, f"{name}: not the one that the certificate is about")
+    check = _PlanCheck(certificate, rules, network, kitchen, rates, utensils, prices)
+    return check.claim()._replace(used_up=UsedUp(check.stock, check.told))
+
+
+class _PlanCheck(Check):
+    """One certificate of a plan, checked against its network.
+
+    Where the objective ``kitchen`` counts items, a *member* is also an item: what never runs out is taken or
+    not, and of what is in stock so many copies.
+    """
+
+    def __init__(
+        self,
+        certificate: dict[str, Any],
+        rules: tuple[Rule, ...],
+        network: Network,
+        kitchen: frozenset[int],
+        rates: Mapping[str, Fraction] | None,
+        utensils: frozenset[str],
+        prices: UnitPrices | None,
+    ) -> None:
+        items = read_object(certificate["items"], ("stock", "stays"))
+        self.stock = dict(_stock(items["stock"], kitchen))
+        self.told = dict(_told(items["stays"], len(network.objects)))
+        self.endless = kitchen - self.stock.keys()
+        self.flow, self.cap, self.whole = cache(self._flow), cache(self._cap), cache(self._whole)
+        super().__init__(certificate, rules, network, kitchen, rates, utensils, prices)
+
+    # --- what units do
+
+    def _flow(self, unit: int) -> Flow:
+        """Say what a unit asks for, uses up and adds: none of its inputs is added."""
+        network = self.network
+        asks = frozenset(o for o in self.needs(unit) if o is not None)
+        gives = frozenset(o for o in self.gives(unit) if o is not None)
+        gone = frozenset(o for o in asks if not self._stays(unit, o))
+        self._spend(len(network.inputs[unit]) * (1 + len(network.outputs[unit])))
+        return Flow(asks, gone, gives.difference(network.inputs[unit]))
+
+    def _stays(self, unit: int, o: int) -> bool:
+        """Whether an input is still there when a unit has run: as somebody says, or by the rule."""
+        objects, network = self.network.objects, self.network
+        node = objects[o]
+        for said in (o, node.label):
+            if said in self.told:
+                return self.told[said]
+        outputs = [objects[made] for made in network.outputs[unit]]
+        if any(output.label == node.label for output in outputs):
+            return o in network.outputs[unit]
+        if node.label in self.utensils:
+            holds = any(contents.ingredients for contents in node.contents)
+            if not holds or any(output.is_in(node.label) for output in outputs):
+                return True
+        inputs = {objects[taken].label for taken in network.inputs[unit]}
+        around = {relation.object for relation in node.relations} & inputs
+        return any(output.label in around and node.label in output.ingredients for output in outputs)
+
+    @cached_property
+    def idle(self) -> frozenset[int]:
+        """The units that no plan executes: removed by a rule, or asking for what nothing reaches.
+
+        No node of ``unreached`` is there at first, and whatever adds one asks for another.
+        """
+        network = self.network
+        stated = self.certificate["unreached"]
+        unreached = frozenset(read_numbers(stated, len(network.objects), ascending=stated != []))
+        removed = self.ruled.removed
+        for o in unreached:
+            self._spend(1 + len(network.producers[o]))
+            require(not self._there(o), "what is there at first is called unreached")
+            for unit in network.producers[o]:
+                reaches = o in self.flow(unit).adds and self.flow(unit).asks.isdisjoint(unreached)
+                require(unit in removed or not reaches, "what a unit can add is called unreached")
+        asking = {unit for o in unreached for unit in network.consumers[o] if o in self.flow(unit).asks}
+        return removed | asking
+
+    def _there(self, o: int) -> bool:
+        return o in self.endless or self.stock.get(o, 0) > 0
+
+    def _members(self, cut: frozenset[int]) -> Iterator[int]:
+        """Give the units that add a node of the cut and ask for none, and the kitchen items in it."""
+        network, own = self.network, self.ruled.makers
+        self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
+        found: list[int] = []
+        for o in cut:
+            if o in own:
+                found += own[o]
+                continue
+            if self._there(o):
+                require("kitchen" in self.objectives, "a cut holds a kitchen item")
+                yield len(network) + o
+            if o not in self.endless:
+                found += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
+        yield from (u for u in found if u not in self.idle and cut.isdisjoint(self.flow(u).asks))
+
+    # --- the plan
+
+    def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
+        """Run the plan copy by copy; give what it costs as an amount and as figures."""
+        network = self.network
+        known = all(type(unit) is int and 0 <= unit < len(network) for unit in units)
+        require(known, "expected ids of units in a plan")
+        copies, taken = Counter(self.stock), set[int]()
+        least: Counter[int] = Counter()  # copies of the stock that the plan cannot do without
+        for place, unit in enumerate(units):
+            asks, uses, adds = self.flow(unit)
+            self._spend(1 + len(asks) + len(adds))
+            require(
+                all(o in self.endless or copies[o] > 0 for o in asks),
+                f"unit {unit} of the plan lacks a copy of an input at step {place + 1}",
+            )
+            taken |= asks & self.endless
+            for o in asks & self.stock.keys():
+                least[o] = max(least[o], 1 + self.stock[o] - copies[o])
+            copies.subtract(uses - self.endless)
+            copies.update(adds - self.endless)
+        for goal in set(self.goals) - self.endless:
+            require(copies[goal] > 0, "a copy of a goal is not there in the end")
+            if goal in self.stock:
+                least[goal] = max(least[goal], 1 + self.stock[goal] - copies[goal])
+        self._keep_counts(Counter(units))
+        first = len(network)
+        members = [
+            *units,
+            *(first + o for o in sorted(taken)),
+            *(first + o for o in sorted(least.elements())),
+        ]
+        total = self._sum(map(self._cost, members))
+        return total, self._figures(units, total)
+
+    def _keep_counts(self, counts: Counter[int]) -> None:
+        """Hold the counts of a plan against the rules; limits count each execution."""
+        ruled, units = self.ruled, frozenset(counts)
+        require(not units & ruled.removed, "the plan has a unit that a rule removes")
+        wanted = all(not units.isdisjoint(ruled.makers[goal]) for goal in ruled.goals)
+        require(wanted and not ruled.never, "the plan lacks what a rule asks for")
+        for limit in ruled.limits.values():
+            total = sum((limit.amounts.get(unit, 0) * n for unit, n in counts.items()), Fraction(0))
+            require(total <= limit.most, "the plan exceeds what a rule limits")
+
+    # --- the proof
+
+    def _prove(self, proof: Any, least: Amount | None) -> None:
+        """Check a proof for each objective: plans as good by those before it cost at least so much by it.
+
+        ``None`` as what they cost is that there is none: nothing costs anything then, and bounds are above 0.
+        """
+        proofs = read_list(proof)
+        levels = range(max(1, len(self.objectives)))
+        require(len(proofs) == len(levels), "expected a proof for each objective")
+        if self.ruled.never:
+            require(least is None, "a rule allows no plan")
+            return
+        self.least = least
+        for level in levels:
+            waiting = [Part(proofs[level], {}, {})]
+            while waiting:
+                part = waiting.pop()
+                self._spend(1 + len(part.least) + len(part.most))
+                if "branch" in read_object(part.proof):
+                    waiting += self._divided(part)
+                else:
+                    self._prove_part(part, level)
+
+    def _divided(self, part: Part) -> Iterator[Part]:
+        """Divide a part by how often something is executed or taken."""
+        proof = read_object(part.proof, ("branch", "most", "up_to", "above"))
+        member, most = self._branch(proof["branch"]), proof["most"]
+        require(type(most) is int and 0 <= most < _MOST, "expected the most executions of a branch")
+        up_to = min(most, part.most.get(member, most))
+        yield Part(proof["up_to"], part.least, {**part.most, member: up_to})
+        above = max(most + 1, part.least.get(member, 0))
+        yield Part(proof["above"], {**part.least, member: above}, part.most)
+
+    def _prove_part(self, part: Part, level: int) -> None:
+        """Add up what the weights of conditions say of the plans of a part."""
+        require(set(part.proof) <= _LEAF, "expected weights of conditions or a branch")
+        conditions = _Conditions(self, level, part.proof)
+        bound = conditions.constant
+        for member in sorted({*conditions.executed, *conditions.used, *part.least, *part.most}):
+            cheapest = self._cheapest(member, level, part, conditions)
+            if cheapest is None:
+                return  # there are no such counts
+            self._add(bound, cheapest)
+        self._require_enough(bound, level)
+
+    def _cheapest(self, member: int, level: int, part: Part, conditions: "_Conditions") -> Amount | None:
+        """Give the least of what a member costs less what it brings, over the counts that it may have.
+
+        ``None`` where it may have none. It is linear in the count from 1 on, so only the ends matter.
+        """
+        low, most = part.least.get(member, 0), self._most(member, level, part)
+        if most is not None and most < low:
+            return None
+        each = self._sum([self.part(member, level), conditions.executed.get(member, {})])
+        each = self._sum([each, *(self._times(w, self.kept(member, at)) for at, w in conditions.levels)])
+        once = conditions.used.get(member, {})
+        found: list[Amount] = [{}] if low == 0 else []
+        if most is None or most >= 1:
+            found.append(self._sum([self._times(each, Fraction(max(low, 1))), once]))
+            if self._sign(each) < 0:
+                require(most is not None, f"member {member} brings more than it costs, without end")
+                found.append(self._sum([self._times(each, Fraction(most or 0)), once]))
+        cheapest = found[0]
+        for other in found[1:]:
+            if self._sign(self._sum([other, negative(cheapest)])) < 0:
+                cheapest = other
+        return cheapest
+
+    def _most(self, member: int, level: int, part: Part) -> int | None:
+        """Give how often a member can be executed or taken; ``None`` where nothing says so."""
+        known = [part.most[member]] if member in part.most else []
+        if member >= len(self.network):
+            o = member - len(self.network)
+            return min([*known, self.stock.get(o, 1)])
+        if member in self.idle:
+            return 0
+        if self.least is not None:
+            known += (
+                cap for at in range(level + 1) if (cap := self.cap(member, at, at == level)) is not None
+            )
+        return min(known, default=None)
+
+    def _cap(self, unit: int, level: int, less: bool) -> int | None:
+        """Give how often a plan can execute a unit that costs no more by an objective, or less."""
+        each, most = self.kept(unit, level), self.limit(level)
+        if each == 0:
+            return None
+        exact = less and self.objectives[level] != "success"
+        return math.ceil(most / each) - 1 if exact else math.floor(most / each)
+
+    def part(self, member: int, level: int) -> Amount:
+        """Give what a member costs by one objective."""
+        return {key: value for key, value in self._cost(member).items() if key[0] == level}
+
+    def kept(self, member: int, level: int) -> Fraction:
+        """Give what a member costs by an objective as one number; by success a little less."""
+        if self.objectives[level] != "success":
+            return self.part(member, level).get((level, None), Fraction(0))
+        if member >= len(self.network):
+            return Fraction(0)
+        require(self.rates[member] > 0, "a unit that never succeeds is not compared")
+        return Fraction(math.floor(FINE * self.minus_log(self.rates[member])[0]), FINE)
+
+    def limit(self, level: int) -> Fraction:
+        """Give what plans may cost by an objective as one number; by success a little more."""
+        assert self.least is not None
+        stated = {rate: value for (at, rate), value in self.least.items() if at == level}
+        if self.objectives[level] != "success":
+            return stated.get(None, Fraction(0))
+        bounds = ([e * bound for bound in self.minus_log(rate)] for rate, e in stated.items() if rate)
+        return Fraction(math.ceil(FINE * sum(map(max, bounds), Fraction(0))), FINE)
+
+    def cut(self, number: int) -> frozenset[int]:
+        """Give a cut by its number."""
+        require(0 <= number < len(self.cuts), "expected the number of a cut")
+        return self.cuts[number]
+
+    def holds_goal(self, nodes: frozenset[int]) -> bool:
+        """Whether a cut holds a goal that is not there without end, or what a rule asks for."""
+        wanted = any(goal in nodes and goal not in self.endless for goal in self.goals)
+        return wanted or not nodes.isdisjoint(self.ruled.goals)
+
+    def weight(self, stated: Any, level: int) -> Amount:
+        """Read a weight: a number, or by success the exponent of each rate."""
+        parts = [*({} if objective == "success" else "0" for objective in self.objectives)] or ["0"]
+        parts[level] = stated
+        return {key: value for key, value in self._read(parts).items() if key[0] == level}
+
+    def is_above(self, amount: Amount) -> bool:
+        """Whether an amount is above zero."""
+        return self._sign(amount) > 0
+
+    def sum_of(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
+        """Add so many times a weight."""
+        return self._sum([amount, self._times(weight, Fraction(factor))])
+
+    def _require_enough(self, bound: Amount, level: int) -> None:
+        """Require that a bound, rounded up to the next cost that there is, is what is claimed."""
+        if self.least is None:
+            enough = self._sign(bound) > 0
+        else:
+            parts = self.whole(level)
+            if parts is not None:
+                (at,) = bound or [(level, None)]
+                bound = {at: Fraction(math.ceil(bound.get(at, Fraction(0)) * parts), parts)}
+            claimed = {key: value for key, value in self.least.items() if key[0] == level}
+            enough = self._sign(self._sum([bound, negative(claimed)])) >= 0
+        require(enough, "the weights do not add up to enough")
+
+    def _whole(self, level: int) -> int | None:
+        """Give into how many parts 1 is divided by what units cost by an objective; ``None`` if not known."""
+        objective = self.objectives[level]
+        if objective == "success" or objective in self.measures:
+            return None
+        every = self.prices if objective == "price" else []
+        every = [1 / rate for rate in self.rates] if objective == "attempts" else every
+        return math.lcm(*(cost.denominator for cost in every))
+
+
+class _Conditions:
+    """Conditions with weights from 0, all in one: what each execution brings, each use, and what is left.
+
+    ``executed`` and ``used`` have what comes to a member for each execution (or copy that is taken) and for
+    being used at all; it is below 0 where it brings something. ``levels`` are weights of earlier objectives.
+    """
+
+    def __init__(self, check: _PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
+        self.check, self.level = check, level
+        self.constant: Amount = {}
+        self.executed: dict[int, Amount] = {}
+        self.used: dict[int, Amount] = {}
+        self.levels: list[tuple[int, Amount]] = []
+        ruled, units = check.ruled, len(check.network)
+        for (cut,), weight in self._weighed(proof.get("weights", []), 1):
+            self._cross(cut, weight, check.holds_goal(check.cut(cut)))
+        for (cut, unit), weight in self._weighed(proof.get("before", []), 2):
+            require(0 <= unit < units, "expected the id of a unit that a cut is before")
+            self._cross(cut, weight, not check.cut(cut).isdisjoint(check.flow(unit).asks))
+            self._come(self.used, unit, weight, 1)
+            self.constant = check.sum_of(self.constant, weight, -1)
+        for (o,), weight in self._weighed(proof.get("balance", []), 1):
+            self._balance(o, weight)
+        for (place,), weight in self._weighed(proof.get("limits", []), 1):
+            require(place in ruled.limits, "a rule that limits nothing is given a weight")
+            self.constant = check.sum_of(self.constant, weight, -ruled.limits[place].most)
+            for member, amount in ruled.limits[place].amounts.items():
+                self._come(self.executed, member, weight, amount)
+        for (place,), weight in self._weighed(proof.get("levels", []), 1):
+            require(0 <= place < level, "an objective that is not before this one is given a weight")
+            self.constant = check.sum_of(self.constant, weight, -check.limit(place))
+            self.levels.append((place, weight))
+
+    def _weighed(self, stated: Any, numbers: int) -> Iterator[tuple[list[int], Amount]]:
+        """Read what is given a weight: numbers and the weight in each list, in order, each of them once."""
+        listed = [read_list(each) for each in read_list(stated)]
+        places = [each[:numbers] for each in listed]
+        require(
+            all(len(each) == numbers + 1 for each in listed)
+            and all(type(number) is int for place in places for number in place),
+            "expected what has a weight by its number, and the weight",
+        )
+        require(places == sorted(map(list, {*map(tuple, places)})), "expected weights in order, each once")
+        for place, each in zip(places, listed, strict=True):
+            weight = self.check.weight(each[numbers], self.level)
+            require(self.check.is_above(weight), "a weight is not above zero")
+            yield place, weight
+
+    def _cross(self, cut: int, weight: Amount, holds: bool) -> None:
+        """A cut is crossed at least once: a member is used, or a copy of an item in it is taken."""
+        check = self.check
+        require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
+        check.met.add(cut)
+        self.constant = check.sum_of(self.constant, weight, 1)
+        for member in check.members[cut]:
+            self._come(self.used if member < len(check.network) else self.executed, member, weight, -1)
+
+    def _balance(self, o: int, weight: Amount) -> None:
+        """Of a node no more copies are used up than come, and one of a goal is left."""
+        check, network = self.check, self.check.network
+        require(0 <= o < len(network.objects), "expected the id of a node in a balance")
+        require(o not in check.endless, "what never runs out has no balance")
+        there = check.stock.get(o, 0)
+        if "kitchen" in check.objectives and there:
+            self._come(self.executed, len(network) + o, weight, -1)
+            there = 0
+        self.constant = check.sum_of(self.constant, weight, (o in check.goals) - there)
+        for unit in {*network.producers[o], *network.consumers[o]}:
+            flow = check.flow(unit)
+            if change := (o in flow.adds) - (o in flow.uses):
+                self._come(self.executed, unit, weight, -change)
+
+    def _come(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:
+        to[member] = self.check.sum_of(to.get(member, {}), weight, factor)
+
+
+def _stock(value: Any, kitchen: frozenset[int]) -> Iterator[tuple[int, int]]:
+    """Read how many copies there are of kitchen items, by id."""
+    pairs = [read_list(pair) for pair in read_list(value)]
+    require(
+        all(len(pair) == 2 and all(type(n) is int and 0 <= n < _MOST for n in pair) for pair in pairs),
+        "expected items and their copies in stock",
+    )
+    ids = [pair[0] for pair in pairs]
+    require(ids == sorted(set(ids)), "expected items of the stock in order, each of them once")
+    require(kitchen.issuperset(ids), "expected kitchen items in stock")
+    yield from ((o, count) for o, count in pairs)
+
+
+def _told(value: Any, nodes: int) -> Iterator[tuple[str | int, bool]]:
+    """Read what is said of labels and of nodes: whether they stay."""
+    pairs = [read_list(pair) for pair in read_list(value)]
+    require(
+        all(len(pair) == 2 and type(pair[1]) is bool and type(pair[0]) in (int, str) for pair in pairs),
+        "expected labels and nodes, and whether they stay",
+    )
+    labels = [pair[0] for pair in pairs if type(pair[0]) is str]
+    ids = [pair[0] for pair in pairs if type(pair[0]) is int]
+    require([*labels, *ids] == [pair[0] for pair in pairs], "expected labels, and then nodes")
+    require(labels == sorted(set(labels)) and ids == sorted(set(ids)), "expected each of them once, in order")
+    require(all(0 <= o < nodes for o in ids), "expected ids of nodes that stay or go")
+    require(all(label.isprintable() for label in labels), "a label has letters that cannot be printed")
+    yield from ((name, stays) for name, stays in pairs)
