@@ -240,7 +240,9 @@ FORGED: dict[str, Forged] = {
     "_pairs: expected cuts in order, each of them once": plain(
         proof={"weights": [[0, ["1/2"]], [0, ["1/2"]]]}
     ),
-    "read_rules: it has more than … rules": plain(rules=forbid([f"sing {number:03}" for number in range(101)])),
+    "read_rules: it has more than … rules": plain(
+        rules=forbid([f"sing {number:03}" for number in range(101)])
+    ),
     "read_rules: a rule is unknown": plain(rules=[{"rule": "sing"}], stays=KIND),
     "read_rules: a value of a rule is of another kind": plain(
         rules=[{"rule": "at_most_units", "max_units": True}]

@@ -7,3 +7,6 @@ from foon_asp.certificate.certificate import certify_infeasible as certify_infea
 from foon_asp.certificate.coverage import Coverage as Coverage
 from foon_asp.certificate.coverage import coverage as coverage
 from foon_asp.certificate.outcome import certify_outcome as certify_outcome
+from foon_asp.certificate.plan import certify_no_plan as certify_no_plan
+from foon_asp.certificate.plan import certify_plan as certify_plan
+from foon_asp.certificate.plan import covered_for_plans as covered_for_plans

@@ -106,11 +106,11 @@ def verify_plan(
     stated = read_object(certificate["digests"], tuple(found))
     for name, digest in found.items():
         require(stated[name] == digest, f"{name}: not the one that the certificate is about")
-    check = _PlanCheck(certificate, rules, network, kitchen, rates, utensils, prices)
+    check = PlanCheck(certificate, rules, network, kitchen, rates, utensils, prices)
     return check.claim()._replace(used_up=UsedUp(check.stock, check.told))
 
 
-class _PlanCheck(Check):
+class PlanCheck(Check):
     """One certificate of a plan, checked against its network.
 
     Where the objective ``kitchen`` counts items, a *member* is also an item: what never runs out is taken or
@@ -413,7 +413,7 @@ class _Conditions:
     being used at all; it is below 0 where it brings something. ``levels`` are weights of earlier objectives.
     """
 
-    def __init__(self, check: _PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
+    def __init__(self, check: PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
         self.check, self.level = check, level
         self.constant: Amount = {}
         self.executed: dict[int, Amount] = {}

@@ -1,6 +1,7 @@
 """Certificates for answers and for trees of other programs, checked without a solver."""
 
 import contextlib
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -8,7 +9,16 @@ from typing import Self
 
 from foon_asp.asp import Settings, Status
 from foon_asp.asp.assembly import assemble
-from foon_asp.certificate import Certificate, Coverage, NotBestError, certify_outcome, coverage
+from foon_asp.asp.used_up import require_built_for_plans, require_rules_of_plans
+from foon_asp.certificate import (
+    Certificate,
+    Coverage,
+    NotBestError,
+    certify_outcome,
+    certify_plan,
+    coverage,
+    covered_for_plans,
+)
 from foon_asp.certificate import certify as prove_best
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
@@ -16,6 +26,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import unit_at_level
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.problem.progress import OnProgress
+from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.answer_and_more import AnswerAndMore
@@ -29,7 +40,7 @@ from foon_asp.questions.arguments import (
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
-from foon_asp.questions.options import CONTAINERS, GOALS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import read_listed
 from foon_asp.report.answer import costs_text, headline
@@ -166,8 +177,12 @@ def certify_tree(problem: Problem, objectives: tuple[Objective, ...], file: Path
     """Prove a given tree best, with no solver but the linear relaxation."""
     problem, deadline = whole(problem), how.begun
     # no solver looks at the rules and constants here, so a fault in them would go by without a word
-    assemble(how, caller().reporter.warning)
+    program = assemble(how, caller().reporter.warning, problem.items is not None)
     covered = coverage(how)
+    if problem.items is not None:
+        require_built_for_plans(how)
+        require_rules_of_plans(program)
+        return _certify_plan(problem, objectives, file, how, covered)
     with reading():
         ordered = _executable(problem, file, covered)
     if isinstance(ordered, str):
@@ -183,6 +198,11 @@ def certify_tree(problem: Problem, objectives: tuple[Objective, ...], file: Path
             f"and there is one with {costs_text(better.costs)}"
         )
         return Proof(None, words, Ending.NEGATIVE)
+    return _given(certificate, wanted)
+
+
+def _given(certificate: Certificate | None, wanted: tuple[Objective, ...]) -> Proof:
+    """Say what is proved of a tree or plan that was given."""
     if certificate is None:
         return Proof(None, "no certificate was found", Ending.LIMIT)
     if certificate.claim == "bound":
@@ -191,6 +211,39 @@ def certify_tree(problem: Problem, objectives: tuple[Objective, ...], file: Path
     words = f"proved best by {', then '.join(certificate.certified)}"
     ended = Ending.DONE if certificate.certified == wanted else Ending.LIMIT
     return Proof(certificate, words, ended)
+
+
+def _certify_plan(
+    problem: Problem, objectives: tuple[Objective, ...], file: Path, how: Settings, covered: Coverage
+) -> Proof:
+    """Prove a given plan best, or how much every plan costs at least."""
+    covered = covered_for_plans(covered)
+    with reading():
+        plan = _running(problem, file, covered)
+    if isinstance(plan, str):
+        return Proof(None, f"no certificate: {plan}", Ending.NEGATIVE)
+    wanted, deadline = levels(objectives), how.begun
+    problem.require_known_for(wanted)
+    with deadline.watched("looking for a certificate"):
+        certificate = certify_plan(problem, wanted, plan, covered, lambda: deadline.passed)
+    return _given(certificate, wanted)
+
+
+def _running(problem: Problem, file: Path, covered: Coverage) -> list[int] | str:
+    """Read a plan that runs as it is listed, or say why it does not."""
+    listed = [unit for unit, _ in read_listed(file)[0]]
+    units = [problem.network.unit_id(unit) for unit in listed]
+    known = [unit for unit in units if unit is not None]
+    if len(known) < len(listed):
+        return "a unit of the plan is not in the network"
+    if replay_for(problem, listed).shortage is not None:
+        return "the plan does not run; `foon-asp check` says why"
+    chosen, ruled = Counter(known), covered.ruled(problem)
+    fault = ruled.fault(frozenset(chosen), frozenset(range(len(problem.network))) - chosen.keys())
+    for limit in ruled.limits.values():
+        if sum(limit.amounts.get(unit, 0) * count for unit, count in chosen.items()) > limit.most:
+            fault = "exceeds what a rule limits"
+    return known if fault is None else f"by the constraints, the plan {fault}"
 
 
 def _executable(problem: Problem, file: Path, covered: Coverage) -> list[int] | str:
@@ -217,12 +270,13 @@ def _write(certificate: Certificate | None, file: Path) -> None:
 
 @question(
     GOALS,
-    Option("tree", "A task tree to prove the best.", Kind.FILE, metavar="TREE.txt"),
+    Option("tree", "A task tree or plan to prove the best.", Kind.FILE, metavar="TREE.txt"),
     Option(
         "file", "The file to write; by default stdout.", Kind.FILE, flags=("-o", "--output"), metavar="FILE"
     ),
     OBJECTIVES,
     CONTAINERS,
+    *ITEMS,
     *RULES,
     *LIMITS,
     formats=("json",),
@@ -231,10 +285,11 @@ def _write(certificate: Certificate | None, file: Path) -> None:
     \b
     foon-asp certify --goal 'greek salad' -o proof.json           the optimum is found and proved
     foon-asp certify --goal macaroni --tree tree.txt -o t.json    a tree in FOON text is proved best
+    foon-asp certify --goal macaroni --items used-up -o p.json    a plan, and what every plan costs at least
 
     Exits with 0 when the certificate proves a tree optimal by every objective; with 1 when it proves that
     there is no tree, or when the tree given does not execute or is not the best; with 3 when it proves less
-    (a bound, or the first objectives alone) or when none was found.
+    (a bound, or the first objectives alone) or when none was found. Where items are used up, a plan is meant.
     """,
 )
 def certify(
@@ -251,7 +306,8 @@ def certify(
 ) -> Certified:
     """Solve a problem, and find a certificate: a proof of the answer, which :func:`foon_asp.verify` checks.
 
-    A certificate is about the whole network, so all of a store is read.
+    A certificate is about the whole network, so all of a store is read. Where items are used up, it says what
+    every plan costs at least, and has a plan of that cost, or of more: then the claim is a ``bound``.
 
     Returns:
         The ``answer``, and the ``certificate``, which is ``None`` if no proof was found.

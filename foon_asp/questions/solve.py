@@ -64,10 +64,8 @@ def solve_and_more(
         with reading():
             problem = problem.whole()
     chosen = chosen_objectives(problem, objectives)
-    if problem.items is not None:
-        for given, what in ((soft, "--soft"), (certificate_file, "--certificate")):
-            if given:
-                raise not_built(f"solve {what}")
+    if problem.items is not None and soft:
+        raise not_built("solve --soft")
     if soft and certificate_file is not None:
         raise UserError("soft constraints have no certificates; leave one of them out")
     engines: tuple[Engine, ...] = ()

@@ -15,6 +15,7 @@ from foon_asp.network import Network
 from foon_asp.problem import Problem, kitchen_needed
 from foon_asp.problem.progress import OnProgress
 from foon_asp.proof import verify as proof
+from foon_asp.proof.verify_plan import verify_any
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.posing import DATA, Command, the_data
@@ -189,7 +190,7 @@ def verify(
     dataset = (data if isinstance(data, Foon) else Foon.of(data)).dataset
     read = dataset.data
     rates = None if dataset.unrated else read.rates
-    verified = proof.verify(content, read.network, read.kitchen, rates, read.utensils, read.unit_prices)
+    verified = verify_any(content, read.network, read.kitchen, rates, read.utensils, read.unit_prices)
     for measure in verified.trusted:
         ours = dataset.measures.get(measure.name)
         if ours is not None and ours.text != measure.rules:

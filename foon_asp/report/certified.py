@@ -10,7 +10,7 @@ from foon_asp.escapes import escaped
 from foon_asp.network import Network, counted
 from foon_asp.problem import ContainerRule, conditions, parse_objectives
 from foon_asp.proof.constraint import OWN, Rule
-from foon_asp.proof.verify import Verified, trusted
+from foon_asp.proof.verify import UsedUp, Verified, trusted
 from foon_asp.text.json_value import Json
 
 if TYPE_CHECKING:  # the rest of these rooms takes clingo along, which `verify` has to do without
@@ -31,16 +31,25 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         return [f"proof: {outcome.proof}; {given}", *(f"  {line}" for line in _on_trust(own, None))]
     if certificate.claim == "bound":
         return [
-            f"proof: {outcome.proof}; the certificate {file} proves a bound on all trees, "
-            "without the constraints that it does not cover: " + bound_text(certificate.content)
+            f"proof: {outcome.proof}; the certificate {file} proves a bound on {_all(outcome)}"
+            + bound_text(certificate.content)
         ]
     if certificate.claim == "optimal" and outcome.proof.value != "certificate":
         sure = ", ".join(certificate.certified)
-        return [f"proof: {outcome.proof}; the certificate {file} proves the tree best by {sure} alone"]
+        what = "tree" if outcome.problem.items is None else "plan"
+        return [f"proof: {outcome.proof}; the certificate {file} proves the {what} best by {sure} alone"]
     lines = [f"proof: certificate ({file}, {counted(len(certificate.content['cuts']), 'cut')})"]
     if certificate.content["not_covered"] and certificate.claim == "optimal":
-        lines.append("  it is best among all trees; only the solver says that it obeys the constraints")
+        every = "trees" if outcome.problem.items is None else "plans"
+        lines.append(f"  it is best among all {every}; only the solver says that it obeys the constraints")
     return lines
+
+
+def _all(outcome: "Outcome") -> str:
+    """Say what a bound is about that is less than the answer costs."""
+    if outcome.problem.items is None:
+        return "all trees, without the constraints that it does not cover: "
+    return "all plans: "
 
 
 def bound_text(content: dict[str, Any]) -> str:
@@ -49,7 +58,7 @@ def bound_text(content: dict[str, Any]) -> str:
     text = f"success at most {_success(bound)}" if objective == "success" else f"{objective} at least {bound}"
     if content["costs"] is not None:
         cost = content["costs"][0]
-        text += f"; the tree has {cost}"
+        text += f"; the {'plan' if 'items' in content else 'tree'} has {cost}"
         if objective != "success":
             text += f" (gap {Fraction(cost) - Fraction(bound)})"
     return text
@@ -80,21 +89,27 @@ def verified_text(
     """
     lines = [f"goal: {network.objects[goal]}" for goal in verified.goals]
     rule = conditions(ContainerRule(verified.containers), verified.level, starting)
+    tree, trees = "task tree", "trees"
+    if verified.used_up is not None:
+        tree, trees, rule = "plan", "plans", f"{rule}, items used up"
+        lines += _items(verified.used_up, network)
     if verified.claim == "infeasible":
-        lines.append(f"verified: there is no task tree ({rule})")
+        lines.append(f"verified: there is no {tree} ({rule})")
     elif verified.claim == "bound":
-        lines.append(f"verified: a bound on all task trees ({rule}): {bound_text(content)}")
+        lines.append(f"verified: a bound on all {tree}s ({rule}): {bound_text(content)}")
     else:
         costs = zip(verified.costs or (), verified.objectives, strict=True)
         figures = ", ".join(_figure(objective, cost) for cost, objective in costs)
         lines.append(
-            f"verified: no task tree is better by {', then '.join(verified.objectives)} ({rule}): {figures}"
+            f"verified: no {tree} is better by {', then '.join(verified.objectives)} ({rule}): {figures}"
         )
-    lines += [f"among the trees that keep to {_rule(rule)}" for rule in verified.rules if rule["rule"] != OWN]
+    lines += [
+        f"among the {trees} that keep to {_rule(rule)}" for rule in verified.rules if rule["rule"] != OWN
+    ]
     own = trusted(content)
     if own is not None:
         lines += _on_trust(own, verified.tree, "checked with clingo" if with_clingo else "taken on trust")
-    lines += [f"not covered, so among all trees: {name}" for name in verified.not_covered]
+    lines += [f"not covered, so among all {trees}: {name}" for name in verified.not_covered]
     for measure in verified.trusted:
         what = (
             f"the costs of {counted(len(measure.costs), 'unit')} by {measure.name}, and that none is below 0"
@@ -103,6 +118,32 @@ def verified_text(
         lines.append(f"{how}: {what}; rules with SHA-256 {measure.sha256}")
     lines.append(f"proof: {counted(verified.cuts, 'cut')}, checked without a solver")
     return "\n".join(lines) + "\n"
+
+
+def _items(used_up: UsedUp, network: Network) -> list[str]:
+    """Say what a claim about plans says of items, where that is not the rule alone."""
+    objects = network.objects
+    stock = [f"{count} x {objects[o]}" for o, count in used_up.stock.items()]
+    told: dict[bool, list[str]] = {True: [], False: []}
+    for name, stays in used_up.stays.items():
+        told[stays].append(name if isinstance(name, str) else str(objects[name]))
+    said = [f"in stock: {', '.join(stock)}"] if stock else []
+    said += [f"said to stay: {', '.join(told[True])}"] if told[True] else []
+    return said + ([f"said to be used up: {', '.join(told[False])}"] if told[False] else [])
+
+
+def _items_json(used_up: UsedUp | None, network: Network) -> Json | None:
+    """Give the same for programs."""
+    if used_up is None:
+        return None
+    stays = [
+        {"label": name, "node": None, "stays": stays}
+        if isinstance(name, str)
+        else {"label": None, "node": str(network.objects[name]), "stays": stays}
+        for name, stays in used_up.stays.items()
+    ]
+    stock = [{"node": str(network.objects[o]), "copies": count} for o, count in used_up.stock.items()]
+    return {"stock": stock, "stays": stays}
 
 
 def verified_json(
@@ -123,6 +164,7 @@ def verified_json(
             verified.containers,
             verified.level,
             objectives,
+            "lasting" if verified.used_up is None else "used-up",
             starting_kitchen=None if starting_kitchen is None else nodes_json(network, starting_kitchen),
         ),
         verified=True,
@@ -142,6 +184,7 @@ def verified_json(
         not_covered=list(verified.not_covered),
         tree=None if verified.tree is None else list(verified.tree),
         cuts=verified.cuts,
+        used_up=_items_json(verified.used_up, network),
     )
 
 

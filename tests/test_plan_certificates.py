@@ -1,0 +1,289 @@
+"""Certificates of plans in which items are used up: what is claimed is true, and what is not is refused."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from foon_asp.asp import Outcome, Settings, Status
+from foon_asp.asp.optimum import solve
+from foon_asp.certificate import Certificate, certify_outcome
+from foon_asp.deadline import Deadline
+from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp, levels
+from foon_asp.proof.verify import RefusedError, Verified, seal
+from foon_asp.proof.verify_plan import PlanCheck, verify_any
+from tests.conftest import Cli
+from tests.test_verify import mutants
+from tests.used_up_oracle import key, plans, random_problem
+
+Content = dict[str, Any]
+
+LISTS: list[tuple[Objective, ...]] = [
+    (Objective.UNITS,),
+    (Objective.INPUTS,),
+    (Objective.SUCCESS,),
+    (Objective.KITCHEN,),
+    (Objective.ATTEMPTS,),
+    (Objective.KITCHEN, Objective.SUCCESS),
+    (Objective.SUCCESS, Objective.KITCHEN),
+    (Objective.INPUTS_AND_INGREDIENTS,),
+]
+RULES: list[tuple[str, tuple[str, ...]]] = [
+    ("forbid_motion", ("forbidden_motion=a",)),
+    ("at_most_motion", ("limited_motion=b", "max_uses=1")),
+    ("require_motion", ("required_motion=c",)),
+    ("at_most_units", ("max_units=3",)),
+    ("not_both_motions", ("one_motion=a", "other_motion=b")),
+]
+
+
+def check(content: Any, problem: Problem) -> Verified:
+    """Verify a certificate against the data of a problem."""
+    data = (problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    return verify_any(content, *data)
+
+
+def certified(
+    problem: Problem, asked: tuple[Objective, ...], how: Settings
+) -> tuple[Outcome, Certificate | None]:
+    """Solve a problem, and find a certificate."""
+    deadline = Deadline(5)
+    found = solve(problem, asked, how._replace(deadline=Deadline(5)))
+    return certify_outcome(found, how, lambda: deadline.passed)
+
+
+def best(problem: Problem, asked: tuple[Objective, ...], longest: int = 5) -> tuple[Any, ...] | None:
+    """Give what the best of all plans up to a length costs, as a key."""
+    keys = (key(problem, counts, kitchen, asked) for counts, kitchen in plans(problem, longest))
+    return min(keys, default=None)
+
+
+def require_true(verified: Verified, problem: Problem, bound: list[Any] | None, longest: int = 5) -> None:
+    """Require that no plan up to a length is better than what is claimed."""
+    asked = tuple(map(Objective, verified.objectives))
+    found = best(problem, asked, longest)
+    if verified.claim == "infeasible":
+        assert found is None
+    elif verified.claim == "optimal":
+        assert verified.costs is not None
+        pairs = zip(asked, verified.costs, strict=True)
+        claimed = tuple(-cost if objective is Objective.SUCCESS else cost for objective, cost in pairs)
+        assert found is None or found >= claimed
+    else:
+        assert bound is not None
+        if asked[0] is Objective.SUCCESS:
+            product = 1.0
+            for rate, exponent in bound[0].items():
+                product *= float(Fraction(rate)) ** float(Fraction(exponent))
+            assert found is None or -float(found[0]) <= product * (1 + 1e-9)
+        else:
+            assert found is None or found[0] >= Fraction(bound[0])
+
+
+def hold(seed: int) -> str:
+    """Certify the answer to a random question, and hold what is claimed against every short plan."""
+    problem, asked = random_problem(seed), LISTS[seed % len(LISTS)]
+    outcome, certificate = certified(problem, asked, Settings())
+    if certificate is None:
+        assert outcome.status not in (Status.OPTIMAL, Status.INFEASIBLE)
+        return "none"
+    verified = check(certificate.content, problem)
+    require_true(verified, problem, certificate.content["bound"], 4)
+    assert (verified.claim == "infeasible") == (outcome.status is Status.INFEASIBLE)
+    whole = verified.claim == "infeasible" or certificate.certified == levels(asked)
+    return verified.claim if whole else "bound"
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_answer_to_small_questions_is_certified(seed: int) -> None:
+    assert hold(seed) in ("optimal", "infeasible")
+
+
+@pytest.mark.slow
+def test_many_small_questions() -> None:
+    claims = [hold(seed) for seed in range(100, 800) if seed != 102]
+    assert claims.count("bound") + claims.count("none") < 10
+    assert claims.count("infeasible") > 200
+    assert claims.count("optimal") > 200
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_under_rules_the_claim_is_about_plans_that_keep_to_them(seed: int) -> None:
+    problem = random_problem(seed + 1000)
+    name, constants = RULES[seed % len(RULES)]
+    how = Settings((Path(name),), constants=constants)
+    outcome, certificate = certified(problem, (Objective.UNITS,), how)
+    assert certificate is not None or outcome.status is Status.INFEASIBLE
+    if certificate is None:
+        return
+    verified = check(certificate.content, problem)
+    covered = name != "not_both_motions"
+    assert [rule["rule"] for rule in verified.rules] == [name] * covered
+    assert bool(verified.not_covered) == (not covered)
+    if outcome.costs is not None and covered:
+        assert verified.claim == "optimal"
+        assert verified.costs == (outcome.costs.units,)
+
+
+# --- mutants
+
+
+# Questions of up to so many units whose certificates are of all kinds; the last one proves a bound.
+SUBJECTS = [*((seed, 12) for seed in (0, 1, 19, 23, 41, 66, 92, 128, 138, 156, 181, 229, 251, 318)), (577, 6)]
+
+
+@cache
+def subjects() -> list[tuple[Problem, Content]]:
+    """Give certificates of all kinds, on networks small enough for brute force."""
+    found: list[tuple[Problem, Content]] = []
+    for seed, most in SUBJECTS:
+        problem = random_problem(seed, most)
+        _, certificate = certified(problem, LISTS[seed % len(LISTS)], Settings())
+        assert certificate is not None
+        found.append((problem, certificate.content))
+    return found
+
+
+def accepted(content: Content, problem: Problem) -> Verified | None:
+    """Seal a changed certificate anew; give what it proves, or ``None`` where it is refused."""
+    content["seal"] = seal(content)
+    try:
+        return check(content, problem)
+    except RefusedError:
+        return None
+
+
+def require_no_lie(problem: Problem, mutant: Content) -> bool:
+    """Require that what a mutant is accepted for is true of the question that it is about."""
+    verified = accepted(mutant, problem)
+    if verified is None:
+        return False
+    assert verified.used_up is not None
+    objects = problem.network.objects
+    told = verified.used_up.stays.items()
+    stays = {name if isinstance(name, str) else objects[name]: kept for name, kept in told}
+    stock = {objects[o]: count for o, count in verified.used_up.stock.items()}
+    asked = replace(
+        problem,
+        goals=verified.goals,
+        containers=ContainerRule(verified.containers),
+        items=UsedUp(stays, stock),
+    )
+    require_true(verified, asked, mutant["bound"], 4)
+    return True
+
+
+def test_the_subjects_are_of_all_kinds() -> None:
+    claims = [content["claim"] for _, content in subjects()]
+    assert [claims.count(claim) for claim in ("optimal", "bound", "infeasible")] == [11, 1, 3]
+    proofs = json.dumps([content["proof"] for _, content in subjects()])
+    assert all(f'"{part}"' in proofs for part in ("weights", "before", "balance", "levels", "branch"))
+    assert any(content["unreached"] for _, content in subjects())
+    assert any(content["items"]["stock"] and content["items"]["stays"] for _, content in subjects())
+
+
+def test_a_mutant_that_is_sealed_anew_passes_only_if_what_it_claims_is_true() -> None:
+    tried = passed = 0
+    for problem, content in subjects()[:9]:
+        for _, mutant in islice(mutants(content), 5, None, 50):
+            tried += 1
+            passed += require_no_lie(problem, mutant)
+    assert tried > 80
+    assert passed < tried / 5
+
+
+@pytest.mark.slow
+def test_all_mutants() -> None:
+    tried = 0
+    for problem, content in subjects():
+        for path, mutant in mutants(content):
+            tried += 1
+            require_no_lie(problem, mutant)
+            if path != ("seal",):
+                with pytest.raises(RefusedError):
+                    check({**mutant, "seal": content["seal"]}, problem)
+    assert tried > 5_000
+
+
+# --- what the verifier reads from the plain network
+
+
+def test_what_units_use_up_is_worked_out_as_the_solver_does() -> None:
+    for seed in range(30):
+        problem = random_problem(seed, 12)
+        reading = reader(problem)
+        for unit, flow in enumerate(problem.flows):
+            assert tuple(map(frozenset, flow)) == tuple(reading.flow(unit))
+
+
+def reader(problem: Problem) -> PlanCheck:
+    """Give the verifier of a certificate that claims that there is no plan, before it looks at the proof."""
+    items = problem.items
+    assert items is not None
+    ids = {node: o for o, node in enumerate(problem.network.objects)}
+    told = sorted([ids[name], stays] for name, stays in items.told.items() if not isinstance(name, str))
+    content = {
+        "claim": "infeasible",
+        "goals": [{"id": o, "node": str(problem.network.objects[o])} for o in problem.goals],
+        "containers": str(problem.containers),
+        "items": {"stock": sorted([ids[n], count] for n, count in items.stock.items()), "stays": told},
+        "objective": [],
+        "not_covered": [],
+        "unreached": [],
+        "cuts": [],
+    }
+    data = (problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+    return PlanCheck(content, (), *data)
+
+
+# --- the command line
+
+
+def test_a_plan_is_certified_and_verified(cli: Cli, tmp_path: Path) -> None:
+    proof, plan = tmp_path / "proof.json", tmp_path / "plan.txt"
+    asked = ("--goal", "macaroni", "--items", "used-up", "--containers", "implied")
+    solved = cli("solve", *asked, "--format", "foon", "--certificate", str(proof))
+    plan.write_text(solved.out, encoding="utf-8")
+    shown = cli("verify", str(proof))
+    assert shown.code == 0
+    assert "verified: no plan is better by units (implied containers, items used up)" in shown.out
+    certified = cli("certify", *asked, "--tree", str(plan), "-o", str(tmp_path / "again.json"))
+    assert (certified.code, certified.err) == (0, "proved best by units\n")
+    again = json.loads((tmp_path / "again.json").read_text(encoding="utf-8"))
+    assert again["tree"] == json.loads(proof.read_text(encoding="utf-8"))["tree"]
+
+
+def test_what_is_not_the_best_gets_a_bound_and_what_does_not_run_nothing(cli: Cli, tmp_path: Path) -> None:
+    plan = tmp_path / "plan.txt"
+    plan.write_text(cli("solve", "--goal", "ice", "--items", "used-up", "--format", "foon").out)
+    spare = cli("solve", "--goal", "macaroni", "--items", "used-up", "--format", "foon").out
+    asked = ("certify", "--goal", "ice", "--items", "used-up", "--tree")
+    (tmp_path / "more.txt").write_text(plan.read_text(encoding="utf-8") + spare, encoding="utf-8")
+    more = cli(*asked, str(tmp_path / "more.txt"), "-o", str(tmp_path / "p.json"))
+    assert (more.code, more.err) == (3, "a bound only: units at least 2; the plan has 11 (gap 9)\n")
+    said = "verified: a bound on all plans (strict containers, items used up): units at least 2"
+    assert said in cli("verify", str(tmp_path / "p.json")).out
+    (tmp_path / "other.txt").write_text(spare, encoding="utf-8")
+    other = cli(*asked, str(tmp_path / "other.txt"))
+    assert (other.code, other.err) == (
+        1,
+        "no certificate: the plan does not run; `foon-asp check` says why\n",
+    )
+
+
+def test_a_stock_and_what_stays_are_part_of_the_claim(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "stock.txt").write_text("onion; whole→1\n".replace("→", "\t"), encoding="utf-8")
+    (tmp_path / "stays.txt").write_text("mixing bowl\tstays\n", encoding="utf-8")
+    given = ("--stock", str(tmp_path / "stock.txt"), "--stays", str(tmp_path / "stays.txt"))
+    proof = str(tmp_path / "proof.json")
+    assert cli("certify", "--goal", "ice", "--items", "used-up", *given, "-o", proof).code == 0
+    shown = cli("verify", proof).out
+    assert "in stock: 1 x onion; whole" in shown
+    assert "said to stay: mixing bowl" in shown
+    said = json.loads(cli("verify", proof, "--format", "json").out)
+    assert (said["items"], said["used_up"]["stock"]) == ("used-up", [{"node": "onion; whole", "copies": 1}])
