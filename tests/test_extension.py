@@ -17,6 +17,7 @@ from foon_asp.reduce import reduction as reduction_module
 from foon_asp.reduce.extension import extended, extensions
 from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.reduction import at_costs
+from foon_asp.reduce.wide import dear_left_out
 from tests import oracle
 from tests.random_problems import random_problem
 from tests.test_constraint_meanings import small
@@ -76,6 +77,17 @@ def test_what_an_extension_up_to_a_cost_can_have() -> None:
     assert up_to(0, 3) == set()
 
 
+def test_what_an_extension_cannot_have_is_not_asked_about() -> None:
+    prices: list[int] = []
+
+    def price(unit: int) -> int:
+        prices.append(unit)
+        return 1
+
+    assert extensions(requiring({3, 6}), {4}, price, 2, lambda: False) == {1, 3, 5, 6}
+    assert {*prices} == {1, 3, 5, 6}
+
+
 def test_what_an_extension_uses_twice_costs_it_once() -> None:
     # 4 needs two things that come of what 1 makes: 4 units, on ways of 3
     fork = small(
@@ -86,7 +98,7 @@ def test_what_an_extension_uses_twice_costs_it_once() -> None:
     found = [extensions(graph, set(), lambda _: 1, limit, lambda: False) for limit in (2, 3, 4)]
     assert found == [set(), {1, 2, 3, 4}, {1, 2, 3, 4}]
     # but where a tree is looked for, it counts twice: 5 rather than 3 by estimates, which 6 is between
-    prices = [1, 1, 1, 1, 1, 2, 2].__getitem__
+    prices = [9, 1, 1, 1, 1, 2, 2].__getitem__
     assert extended(requiring({4, 6}, problem=fork), {0}, prices, 99) == {0, 5, 6}
 
 
@@ -269,6 +281,21 @@ def test_ctrl_c_leaves_a_tree_with_a_unit_of_each_required_set() -> None:
         (True, False),
         (False, False),
     ]
+
+
+def test_ctrl_c_while_dear_units_are_left_out_for_the_goals_alone_ends_it_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    struck = iter([True])
+
+    def leaving_out(*given: Any) -> set[int]:
+        if next(struck, False):
+            raise KeyboardInterrupt
+        return dear_left_out(*given)
+
+    monkeypatch.setattr(reduction_module, "dear_left_out", leaving_out)
+    reduced = reduce(EITHER, UNITS, SAFE)
+    assert (reduced.interrupted, reduced.tree, {*reduced.units}) == (True, BEST, {*BEST})
 
 
 def test_where_time_is_up_with_the_extensions_the_tree_in_hand_is_all_that_is_known(

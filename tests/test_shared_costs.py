@@ -330,9 +330,7 @@ def test_where_rates_are_rounded_no_shared_costs_settle_anything(monkeypatch: py
         assert {*found.units} == {*range(15)} - (set() if stays else MOST)
 
 
-@pytest.mark.parametrize(
-    ("reductions", "most"), [(BOUNDS | DEAR, 0), (DEAR, PARTS), (BOUNDS, 99 * PARTS)], ids=str
-)
+@pytest.mark.parametrize(("reductions", "most"), [(BOUNDS | DEAR, 0), (DEAR, PARTS), (BOUNDS, 99 * PARTS)])
 def test_what_shared_costs_leave_more_of_than_is_to_be_gained_goes(
     reductions: frozenset[Reduction], most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -307,6 +307,14 @@ class Teller:
             *([2, 3], picked(2, 12), 1, 14 + 2 * 2),
         ),
         (
+            [(picked(2, 13), 0, True), (picked(4, 5), 9, True), (None, 10, True)],
+            *([3, 3], picked(2, 13), 1, 15 + 2 * 3),
+        ),
+        (
+            [(picked(2, 13), 0, True), (picked(4, 5), 9, True), (picked(3, 5), 10, True)],
+            *([3, 3], picked(2, 13), 2, 15 + 2 * 3),
+        ),
+        (
             [(picked(2, 12), 0, True), (picked(4, 5), 6, True), (picked(2, 11), 9, True)],
             *([2, 3], picked(2, 11), 2, 13 + 2 * 3),
         ),

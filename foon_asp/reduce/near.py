@@ -28,10 +28,8 @@ def near(
     figures = [0]
     reached = set(start)
     kept: set[int] = set()
-    while figures:
+    while figures and figures[0] + least <= limit:
         figure = heappop(figures)
-        if figure + least > limit:
-            break
         for target in buckets[figure]:  # grows while it is walked through
             if target in reached:
                 continue
