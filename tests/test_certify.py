@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from foon_asp.asp import Outcome, Proof, Settings, Status
+from foon_asp.asp import Outcome, Proof, Settings, Status, solve
 from foon_asp.bounds.lower_bound import Packing
 from foon_asp.certificate import (
     Certificate,
@@ -169,12 +169,26 @@ def test_when_time_is_over_only_what_is_known_is_proved() -> None:
 def test_branches_are_written() -> None:
     """On a triangle, half of every corner would do; who branches on a unit writes both sides."""
     problem = gap_problem(0, 3)
-    with pytest.raises(NotBestError) as raised:
-        certify(problem, (UNITS,), range(len(problem.network)))
-    certificate = found(certify(problem, (UNITS,), raised.value.units))
+    best = solve(problem, (SUCCESS,)).units
+    assert best is not None
+    certificate = found(certify(problem, (SUCCESS,), best))
     proof = certificate.content["proof"]
     assert set(proof) == {"branch", "without", "using"}
     assert set(proof["branch"]) == {"unit"}
+
+
+def test_where_costs_are_whole_bounds_are() -> None:
+    problem = gap_problem(0, 3)
+    with pytest.raises(NotBestError) as raised:
+        certify(problem, (UNITS,), range(len(problem.network)))
+    best = raised.value.units
+    proof = found(certify(problem, (UNITS,), best)).content["proof"]
+    assert set(proof) == {"weights", "multiples"}
+    assert proof["multiples"] == {"units": "1"}
+    assert sum(Fraction(weight) for _, (weight,) in proof["weights"]) == len(best) - Fraction(1, 2)
+    # under a rule that is not covered, the bound is rounded up as well
+    worse = found(certify(problem, (UNITS,), range(len(problem.network)), Coverage(not_covered=("mine.lp",))))
+    assert (worse.claim, worse.content["bound"]) == ("bound", [str(len(best))])
 
 
 def test_no_tree() -> None:

@@ -353,6 +353,13 @@ FORGED: dict[str, Forged] = {
         }
     ),
     # the two ends cost 2; with a weight below zero on the cut that both units cross they seem to cost 3
+    "_rounded: a multiple is stated for another objective": plain(
+        proof={**LEAF, "multiples": {"inputs": "1"}}
+    ),
+    "_rounded: a multiple is not above zero": plain(proof={**LEAF, "multiples": {"units": "-1"}}),
+    "_rounded: a cost is not a multiple of what is stated": plain(
+        claim="bound", bound=["2"], tree=None, costs=None, proof={**LEAF, "multiples": {"units": "2"}}
+    ),
     "_packed: a weight is not above zero": plain(
         goals=goal(PAIR, "left", "right"),
         tree=[0, 1, 2],
@@ -457,7 +464,7 @@ NO_CHECKS = {
     "read_certificate: not JSON: …",
     "verify: branches nested too deeply",
 }
-NEXT = "_cost: an objective is unknown"
+NEXT = "_cost_by: an objective is unknown"
 
 
 # --- the checks of the source

@@ -751,6 +751,10 @@ def test_steps_of_looks_and_short_numbers(monkeypatch: pytest.MonkeyPatch) -> No
     # what a load leaves of a cost is two numbers for each of the members
     half = {"weights": [[0, ["1/2"]]]}
     steps(monkeypatch, 3 + 1 + 5 + 4 + 10 + 20 + 5 + 10, PLAIN, **BOUND, cuts=[[END_ID]], proof=half)
+    # what is rounded up to 1 is one number for each unit and item, once
+    rounded: Content = {"claim": "bound", "bound": ["1"], "cuts": [[END_ID]]}
+    leaf = {"weights": [[0, ["1/2"]]], "multiples": {"units": "1"}}
+    steps(monkeypatch, 3 + 1 + 5 + 4 + 10 + 20 + 30 + 5 + 10, PLAIN, **rounded, proof=leaf)
     # an item in a cut is one look, and one for the unit that makes it
     items: Content = {**BOUND, "objective": ["kitchen"], "cuts": [[START_ID, END_ID, MIDDLE_ID]]}
     steps(monkeypatch, 1 + 3 + 2 + 1 + 5 + 3 + 5 + 5 + 10, PLAIN, **items, proof=ONE)
@@ -1031,6 +1035,55 @@ def test_what_a_limit_does_not_speak_of_carries_what_it_costs() -> None:
         assert refusal(PLAIN, **values, bound=["0"], proof=wrong) == said
     baked = {**values, "rules": no_pouring, "proof": {**more, "limits": [[1, ["1/2"]]]}}
     assert accepted(PLAIN, **baked, bound=["1"]).claim == "bound"
+
+
+def test_a_bound_is_rounded_up_to_what_all_costs_are_multiples_of() -> None:
+    prices = {"pour": Fraction(1), "mix": Fraction(3, 2), "bake": Fraction(1, 2), "dig": Fraction(2)}
+    priced = replace(PLAIN, unit_prices=UnitPrices(prices, {}))
+
+    def claims(bound: list[Any], objective: list[str], weight: list[Any], **multiples: str) -> str:
+        proof = {"weights": [[0, weight]], "multiples": multiples}
+        values: Content = {"claim": "bound", "bound": bound, "objective": objective, "proof": proof}
+        try:
+            return check(handmade(priced, cuts=[[END_ID]], **values), priced).claim
+        except RefusedError as refused:
+            return str(refused)
+
+    less, no_multiple = "the weights do not add up to enough", "a cost is not a multiple of what is stated"
+    assert claims(["1"], ["units"], ["1/3"], units="1") == "bound"
+    assert claims(["1/2"], ["units"], ["1/3"], units="1/2") == "bound"
+    assert claims(["1"], ["units"], ["1/3"], units="1/2") == less
+    assert claims(["2"], ["units"], ["1"], units="1") == less  # it is one already
+    assert claims(["2"], ["units"], ["1/3"], units="2") == no_multiple
+    assert claims(["1/2"], ["price"], ["1/3"], price="1/2") == "bound"
+    assert claims(["1"], ["price"], ["1/3"], price="1") == no_multiple
+    # by the first that is not a multiple, and what comes after it is 0
+    two = ["units", "inputs"]
+    assert claims(["1", "0"], two, ["1/3", "9"], units="1", inputs="1") == "bound"
+    assert claims(["1", "1"], two, ["1/3", "9"], units="1", inputs="1") == less
+    assert claims(["1", "1"], two, ["1", "1/3"], units="1", inputs="1") == "bound"
+    assert claims(["1", "1"], two, ["1", "1/3"], inputs="1") == "bound"
+    assert claims(["1", "1"], two, ["1", "1/3"], units="1") == less
+    nothing = {"weights": [], "multiples": {"success": "1"}}
+    rates: Content = {"claim": "bound", "bound": [{}], "objective": ["success"], "proof": nothing}
+    assert refusal(PLAIN, **rates) == no_multiple
+    # items cost 1 each, and no unit costs anything
+    taken: Content = {"claim": "bound", "objective": ["kitchen"], "cuts": [[START_ID, END_ID, MIDDLE_ID]]}
+    for bound, multiple, refused in (("1", "1", ""), ("2", "2", no_multiple), ("2", "1", less)):
+        proof = {"weights": [[0, ["1/3"]]], "multiples": {"kitchen": multiple}}
+        if refused:
+            assert refusal(PLAIN, **taken, bound=[bound], proof=proof) == refused
+        else:
+            assert accepted(PLAIN, **taken, bound=[bound], proof=proof).claim == "bound"
+
+
+def test_what_is_used_is_paid_for_beside_what_is_rounded_up() -> None:
+    multiples = {"multiples": {"units": "1"}}
+    using = {"weights": [[0, ["1/3"]]], **multiples}
+    values: Content = {"claim": "bound", "cuts": [[MIDDLE_ID], [END_ID]], "rules": forbid(["pour"])}
+    proof = {"branch": {"unit": BAKE}, "without": {"hopeless": 1}, "using": using}
+    assert accepted(PLAIN, **values, bound=["2"], proof=proof).claim == "bound"
+    assert refusal(PLAIN, **values, bound=["3"], proof=proof) == "the weights do not add up to enough"
 
 
 def test_a_rule_hears_of_the_units_of_a_branch_and_not_of_its_items() -> None:

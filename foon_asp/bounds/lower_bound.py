@@ -35,11 +35,12 @@ class Packing(NamedTuple):
     """Weighted cuts; with the costs of the actions taken as used, the weights add up to a lower bound.
 
     ``limits`` are the weights of limits, by their place; what is left of a limit, times its weight, is taken
-    from the bound.
+    from the bound. What is left of the bound is rounded up at the coordinate ``rounded``.
     """
 
     weights: tuple[tuple[Cut, Vector], ...]
     limits: tuple[tuple[int, Vector], ...] = ()
+    rounded: int | None = None
 
 
 class Hopeless(NamedTuple):
@@ -92,7 +93,8 @@ class Prover:
 
     Derivations with an action of ``forbidden`` do not count, nor do those that go beyond one of the
     ``limits`` or break one of the ``rules``. ``expired`` says when to give up; it is asked between steps that
-    take milliseconds on thousands of actions.
+    take milliseconds on thousands of actions. What actions cost are multiples of those of ``multiples`` that
+    are above 0, coordinate by coordinate, so that bounds are rounded up.
     """
 
     def __init__(
@@ -106,7 +108,9 @@ class Prover:
         known: Iterable[Iterable[int]] = (),
         limits: Sequence[Limit] = (),
         rules: Rules | None = None,
+        multiples: Sequence[Fraction] = (),
     ) -> None:
+        self._multiples = multiples
         self._known, self._limits, self._rules = tuple(map(frozenset, known)), limits, rules
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
@@ -159,7 +163,7 @@ class Prover:
             exact = node.relax(None)
         except _TimeUpError:
             return None
-        return None if exact is None else (node.packing(exact), exact.value)
+        return None if exact is None else (node.packing(exact), self.rounded(exact.value)[0])
 
     def _prove(
         self,
@@ -187,8 +191,9 @@ class Prover:
             before = set(cutter.targets)
             widened = [cutter.widened(cut) for cut in known if not before.isdisjoint(cut)]
             packing = self._share_out(widened)
-            if self._order.compare(self._order.total(weight for _, weight in packing.weights), left) >= 0:
-                return packing
+            value, rounded = self.rounded(self._order.total(weight for _, weight in packing.weights))
+            if self._order.compare(value, left) >= 0:
+                return packing._replace(rounded=rounded)
         node = _Node(self, cutter, derivation, used, goal)
         node.admit(widened)
         exact = node.relax(left)
@@ -209,6 +214,14 @@ class Prover:
             self._prove(derivation, goal, used, forbidden | {action}),
             self._prove(derivation, goal, used | {action}, forbidden),
         )
+
+    def rounded(self, bound: Vector) -> tuple[Vector, int | None]:
+        """Round up a bound at the first coordinate that is no multiple of what all costs are multiples of."""
+        for place, (part, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
+            if multiple and part % multiple:
+                after = self._order.zero[place + 1 :]
+                return (*bound[:place], math.ceil(part / multiple) * multiple, *after), place
+        return bound, None
 
     def _bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         return {} if self._rules is None else self._rules.bars(used, without)
@@ -281,7 +294,9 @@ class _Node:
     def suffices(self, value: Vector, enough: Vector | None) -> bool:
         """Whether a bound is enough; ``None`` is more than nothing."""
         order = self._prover._order
-        return order.sign(value) > 0 if enough is None else order.compare(value, enough) >= 0
+        if enough is None:
+            return order.sign(value) > 0
+        return order.compare(self._prover.rounded(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until none is found that the relaxed solution misses, or the bound is enough."""
@@ -296,7 +311,7 @@ class _Node:
                 continue
             exact = exact_optimum(self._rows, self._costs, order, relaxed.columns, relaxed.rows, self._limits)
             if exact is not None:
-                if enough is not None and order.compare(exact.value, enough) >= 0:
+                if enough is not None and self.suffices(exact.value, enough):
                     return exact
                 self.shares = [float(exact.x.get(place, 0)) for place in range(len(self._actions))]
             if not self._separate():
@@ -309,6 +324,7 @@ class _Node:
         return Packing(
             tuple((self._cuts[row - first], weight) for row, weight in weights if row >= first),
             tuple((row, weight) for row, weight in weights if row < first),
+            self._prover.rounded(exact.value)[1],
         )
 
     def undecided(self) -> int | None:

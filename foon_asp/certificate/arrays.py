@@ -1,8 +1,9 @@
 """A problem and its objectives as the plain arrays that bounds are computed on."""
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 
 from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.bounds.hypergraph import Hypergraph
@@ -62,6 +63,24 @@ class Arrays:
             ({self._steps.get(member, member): amount for member, amount in amounts.items()}, most)
             for amounts, most in self.ruled.limits.values()
         ]
+
+    @cached_property
+    def multiples(self) -> list[Fraction]:
+        """By coordinate what all costs are multiples of; 0 where that is not known, or not stated briefly."""
+        found: list[Fraction] = []
+        every = set(self.costs)
+        for objective in self.objectives:
+            known = not multiplies(objective) and objective not in self.problem.measures
+            for place in range(len(found), len(found) + self.parts(objective)):
+                costs = {cost[place] for cost in every} if known else ()
+                below = math.lcm(*(cost.denominator for cost in costs))
+                found.append(Fraction(math.gcd(*(int(cost * below) for cost in costs)), below))
+        return found
+
+    def multiple(self, place: int) -> dict[str, str]:
+        """State what all costs are multiples of at a coordinate."""
+        coordinates = [str(objective) for objective in self.objectives for _ in range(self.parts(objective))]
+        return {coordinates[place]: written(self.multiples[place])}
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
         """Give by constraint the units that no tree has which uses some actions and none of others."""

@@ -48,8 +48,9 @@ class Certificate(NamedTuple):
                 shown = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
             elif key == "proof" and isinstance(value, dict) and value.get("weights"):
                 pairs = ",\n".join("  " + json_line(pair) for pair in value["weights"])
-                limits = f', "limits": {json_line(value["limits"])}' if "limits" in value else ""
-                shown = f'{{"weights": [\n{pairs}\n ]{limits}}}'
+                others = {name: part for name, part in value.items() if name != "weights"}
+                more = "".join(f', "{name}": {json_line(part)}' for name, part in others.items())
+                shown = f'{{"weights": [\n{pairs}\n ]{more}}}'
             else:
                 shown = json_line(value)
             lines.append(f' "{key}": {shown}')
@@ -127,7 +128,7 @@ def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence
     rules = arrays if arrays.ruled.barred else None
     return Prover(
         *(arrays.graph, arrays.goals, arrays.costs, arrays.order, arrays.forbidden),
-        *(expired, cuts, arrays.limits, rules),
+        *(expired, cuts, arrays.limits, rules, arrays.multiples),
     )
 
 
@@ -153,7 +154,11 @@ def _write(
             weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in proof.weights)
             limits = [[places[row], arrays.stated(weight)] for row, weight in proof.limits]
             packed: dict[str, object] = {"weights": [list(pair) for pair in weights]}
-            return packed | ({"limits": limits} if limits else {})
+            if limits:
+                packed["limits"] = limits
+            if proof.rounded is not None:
+                packed["multiples"] = arrays.multiple(proof.rounded)
+            return packed
         if isinstance(proof, Broken):
             return {"broken": proof.rule}
         return {

@@ -262,6 +262,7 @@ class Check:
         self.allowed = _STEPS + _STEPS_EACH * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
+        self.all_multiples = cache(self._all_multiples)  # of a number, by an objective
         self.looked_at: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
         self.utensils = utensils
@@ -485,10 +486,11 @@ class Check:
                 require(not crossing, "a cut called hopeless is crossed")
                 continue
             require(
-                {"weights"} <= keys <= {"weights", "limits"},
+                {"weights"} <= keys <= {"weights", "limits", "multiples"},
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
             packed = self._packed(node["weights"], node.get("limits", []), used, without)
+            packed = self._rounded(packed, node.get("multiples", {}))
             bound = self._sum([packed, *map(self._cost, used)])
             if least is None:
                 enough = self._sign(bound) > 0
@@ -529,6 +531,36 @@ class Check:
                 fits = self._sign(self._sum([allowed, negative(load)])) >= 0
                 require(fits, f"unit or item {member} carries more than it costs")
         return total
+
+    def _rounded(self, amount: Amount, stated: Any) -> Amount:
+        """Round up a bound on what units cost together, if what each costs is a multiple of what is stated.
+
+        Of the objectives that multiples are stated for, it is the first by which the bound is none. A tree
+        that costs as much as the bound by the objectives before it costs at least 0 by those after it.
+        """
+        multiples = {name: _rational(multiple) for name, multiple in read_object(stated).items()}
+        require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
+        for level, objective in enumerate(self.objectives):
+            if objective in multiples:
+                multiple = multiples[objective]
+                require(multiple > 0, "a multiple is not above zero")
+                require(self.all_multiples(level, multiple), "a cost is not a multiple of what is stated")
+                times = amount.get((level, None), Fraction(0)) / multiple
+                if times.denominator > 1:
+                    before = {key: value for key, value in amount.items() if key[0] < level}
+                    return {**before, (level, None): math.ceil(times) * multiple}
+        return amount
+
+    def _all_multiples(self, level: int, multiple: Fraction) -> bool:
+        """Whether each unit and each item costs a multiple of a number by an objective."""
+        if self.objectives[level] == "success":
+            return False
+        for member in (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen)):
+            cost = self._cost_by(level, member) or Fraction(0)
+            self._spend_on(_bits(cost) + _bits(multiple))
+            if cost % multiple:
+                return False
+        return True
 
     def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Give the members of a cut that are left; the cut has to stand before a goal or a used unit."""
@@ -622,33 +654,38 @@ class Check:
 
     def _cost(self, member: int) -> Amount:
         """Give what a unit or an item costs by each objective."""
-        network = self.network
         cost: Amount = {}
         if member in self.ruled.steps:
             return cost
-        item = member >= len(network)
         for level, objective in enumerate(self.objectives):
-            if item or objective == "kitchen":
-                if item and objective == "kitchen":
-                    cost[level, None] = Fraction(1)
-            elif objective == "units":
-                cost[level, None] = Fraction(1)
-            elif objective == "success":
-                cost[level, self.rates[member]] = Fraction(1)
-            elif objective == "attempts":
-                cost[level, None] = 1 / self.rates[member]
-            elif objective == "price":
-                cost[level, None] = self.prices[member]
-            elif objective in self.measures:
-                cost[level, None] = self._measured(objective, member)
-            else:
-                require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
-                inputs = network.inputs[member]
-                count = len(inputs)
-                if objective == "inputs+ingredients":
-                    count += sum(len(network.objects[o].ingredients) for o in inputs)
-                cost[level, None] = Fraction(count)
+            found = self._cost_by(level, member)
+            if found is not None:
+                cost[level, self.rates[member] if objective == "success" else None] = found
         return cost
+
+    def _cost_by(self, level: int, member: int) -> Fraction | None:
+        """Give what a unit or an item costs by an objective, ``None`` where that counts others.
+
+        By ``success`` it is the exponent of a unit's rate.
+        """
+        network, objective = self.network, self.objectives[level]
+        item = member >= len(network)
+        if item or objective == "kitchen":
+            return Fraction(1) if item and objective == "kitchen" else None
+        if objective in {"units", "success"}:
+            return Fraction(1)
+        if objective == "attempts":
+            return 1 / self.rates[member]
+        if objective == "price":
+            return self.prices[member]
+        if objective in self.measures:
+            return self._measured(objective, member)
+        require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
+        inputs = network.inputs[member]
+        count = len(inputs)
+        if objective == "inputs+ingredients":
+            count += sum(len(network.objects[o].ingredients) for o in inputs)
+        return Fraction(count)
 
     def _sign(self, amount: Amount) -> Fraction | int:
         """Give a number with the sign of an amount; the first objective that is not 0 decides."""
