@@ -176,7 +176,13 @@ def own(claims: list[Any], **file: str) -> dict[str, Any]:
     """Give what is taken on trust of a rule."""
     text = ":- use(3)."
     known = {"name": "mine.lp", "sha256": hashlib.sha256(text.encode()).hexdigest(), "text": text}
-    return {"rule": "own", "claims": claims, "constants": [], "files": [known | file], "library": []}
+    given = {"claims": claims, "constants": [], "files": [known | file], "library": [], "limits": []}
+    return {"rule": "own", **given}
+
+
+def limiting(*limits: Any) -> dict[str, Any]:
+    """Give what is taken on trust of a rule: what units come to."""
+    return {**own([]), "limits": [*limits]}
 
 
 KIND = "what is of another kind ends the check with a fault of Python's and not with a refusal"
@@ -252,6 +258,17 @@ FORGED: dict[str, Forged] = {
     "_own: a file of rules has no printable name": plain(rules=[own([], name="mine.lp\nverified")]),
     "_own: a text of rules does not have its digest": plain(rules=[own([], sha256="0" * 64)]),
     "_own: expected two sets of units in a claim": plain(rules=[own([[[3]]])], stays=KIND),
+    "_own: expected amounts and their limit": plain(rules=[limiting([{"1": [3]}, 1, 1])], stays=KIND),
+    "_own: a limit is no whole number": plain(rules=[limiting([{"1": [3]}, True])]),
+    "_own: a limit counts what is no whole number above zero": plain(
+        **{**BOUND, "bound": ["3"]},
+        tree=None,
+        costs=None,
+        rules=[limiting([{"-1": [0, 2]}, -2])],
+        proof={"weights": [], "limits": [[1, ["3/2"]]]},
+        cuts=[],
+    ),
+    "_own: a limit counts a unit twice": plain(rules=[limiting([{"1": [3], "2": [3]}, 1])]),
     "_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
     "_rational: expected a number such as 3/2": plain(proof={"weights": [[0, ["one"]]]}, stays=KIND),
     "_rational: expected a fraction in lowest terms": plain(proof={"weights": [[0, ["2/2"]]]}),

@@ -921,7 +921,8 @@ def test_a_number_is_quoted_as_far_as_it_can_be_read() -> None:
 
 def claiming(*claims: list[list[int]], **more: Any) -> Content:
     """Give a rule with claims of units, sets that no tree has and lacks."""
-    return {"rule": OWN, "claims": [*claims], "constants": [], "files": [], "library": [], **more}
+    own = {"rule": OWN, "claims": [*claims], "constants": [], "files": [], "library": [], "limits": []}
+    return {**own, **more}
 
 
 def test_what_is_taken_on_trust_has_a_form_of_its_own() -> None:
@@ -929,7 +930,7 @@ def test_what_is_taken_on_trust_has_a_form_of_its_own() -> None:
     assert verify.trusted({"rules": [*forbid(["pour"]), own]}) == own
     assert verify.trusted({"rules": forbid(["pour"])}) is None
     assert verify.trusted({}) is None
-    keys = "expected the keys rule, claims, constants, files, library"
+    keys = "expected the keys rule, claims, constants, files, library, limits"
     assert refusal(PLAIN, **BOUND, rules=[claiming(more=1)]) == keys
     file = {"name": "mine.lp", "sha256": hashlib.sha256(b":- use(1).").hexdigest(), "text": ":- use(1)."}
     assert accepted(PLAIN, **BOUND, rules=[claiming(files=[file])]).claim == "bound"
@@ -943,6 +944,11 @@ def test_what_is_taken_on_trust_has_a_form_of_its_own() -> None:
         (claiming(library=[1]), "expected names"),
         (claiming(files=[{**file, "name": 1}]), "expected names"),
         (claiming(files=[{**file, "text": 1}]), "expected names"),
+        (claiming(limits=[[{"1": [99]}, 1]]), "expected ids of the network"),
+        (claiming(limits=[[{"1": []}, 1]]), "expected ids in order"),
+        (claiming(limits=[[["1"], 1]]), "expected an object"),
+        (claiming(limits=[[{"0": [MIX]}, 1]]), "a limit counts what is no whole number above zero"),
+        (claiming(limits=[[{"1/2": [MIX]}, 1]]), "a limit counts what is no whole number above zero"),
     ):
         assert refusal(PLAIN, **BOUND, rules=[wrong]) == said
 
@@ -966,6 +972,23 @@ def test_a_claim_is_about_all_units_of_one_set_and_none_of_another() -> None:
         f"the tree has unit {BAKE}, which a rule removes"
     )
     assert refusal(PLAIN, **baked, rules=[claiming([[], [POUR]])]) == "the tree lacks what a rule asks for"
+
+
+def test_a_claim_is_about_what_units_come_to() -> None:
+    """Mixing counts 2 and baking 1, of which there are 2 at most; pouring counts nothing."""
+    two = claiming(limits=[[{"1": [BAKE], "2": [MIX]}, 2]])
+    baked: Content = {"tree": [MIX, BAKE], "costs": [2], **BOUND}
+    assert refusal(PLAIN, **baked, rules=[two]) == "the tree exceeds what a rule limits"
+    assert accepted(PLAIN, **baked, rules=[claiming(limits=[[{"1": [BAKE], "2": [MIX]}, 3]])]).tree
+    assert accepted(PLAIN, **POURED, rules=[two], cuts=[[END_ID]], proof=ONE).claim == "optimal"
+    # without pouring there is no tree; the limit of the rule after the library's is the next but one
+    rules = sorted([*forbid(["pour"]), two], key=verify.canonical)
+    proof = {"weights": [[0, ["1"]], [1, ["2"]]], "limits": [[2, ["1"]]]}
+    values: Content = {**NO_TREE, "rules": rules, "cuts": [[END_ID], [END_ID, MIDDLE_ID]]}
+    assert accepted(PLAIN, **values, proof=proof).claim == "infeasible"
+    assert refusal(PLAIN, **values, proof={**proof, "limits": [[1, ["1"]]]}) == (
+        "a rule that limits nothing is given a weight"
+    )
 
 
 def test_after_a_broken_rule_the_other_branches_are_looked_at() -> None:

@@ -14,13 +14,14 @@ from foon_asp.certificate.coverage import coverage
 from foon_asp.certificate.own_rules import check_with_clingo, with_own_rules
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof.constraint import Rule
-from foon_asp.proof.verify import RefusedError, seal, trusted, verify
+from foon_asp.proof.verify import LimitError, RefusedError, seal, trusted, verify
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.rules import Rules
 from tests import oracle
 from tests.conftest import Cli
 from tests.constraint_oracle import keeps
+from tests.gap_problem import gap_problem
 from tests.random_problems import MOTIONS, random_problem
 from tests.test_constraint_meanings import small
 
@@ -258,3 +259,103 @@ def test_nothing_is_taken_on_trust_that_a_proof_does_not_need(monkeypatch: pytes
     outcome, found = certify_outcome(solve(BOILED, settings=settings), settings)
     assert found is not None
     assert (found.claim, trusted(found.content), outcome.proof) == ("bound", None, Proof.SOLVER)
+
+
+# --- What shrinking rules limit.
+
+SHRINKING = {
+    ':- use(A), use(B), A < B, motion(A,"{0}"), motion(B,"{1}").': "pairs",
+    ':- #count {{ U : use(U), motion(U,"{0}") }} > 1.': "sums",
+    ":- #sum {{ N,U : use(U), inputs(U,N) }} > 4.": "sums",
+    "p(L) :- use(U), output(U,O), label(O,L).\n:- #count {{ L : p(L) }} > 2.": "helpers",
+    ":- available(O), available(P), O < P, not kitchen(O), not kitchen(P), state(O,S), state(P,S).": "far",
+}
+
+
+@pytest.mark.parametrize("part", [39, pytest.param(2, marks=pytest.mark.slow)])
+def test_answers_under_random_shrinking_rules_of_the_users_own(
+    part: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each has a certificate, whose claims clingo confirms, and the verifier refuses it without them."""
+    monkeypatch.setattr("foon_asp.asp.assembly._is_own", lambda _: True)  # grounded in this process
+    met = set()
+    for seed in range(3, 400, part):
+        rng = random.Random(seed)
+        problem = (
+            gap_problem(seed % 8, 4) if seed % 4 == 3 else random_problem(seed, list(ContainerRule)[seed % 2])
+        )
+        motions = problem.network.motions
+        text = rng.choice([*SHRINKING])
+        given = [given_constraint(text.format(rng.choice(motions), rng.choice(motions)))]
+        if rng.random() < 0.3:
+            given.append(given_constraint(f"at_most_motion:limited_motion={rng.choice(motions)},max_uses=1"))
+        settings = Settings(tuple(given))
+        outcome, found = certify_outcome(solve(problem, (Objective.UNITS,), settings), settings)
+        assert found is not None
+        assert found.claim == ("infeasible" if outcome.status is Status.INFEASIBLE else "optimal")
+        own = trusted(found.content)
+        data = (problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
+        verify(found.content, *data)
+        met.add((SHRINKING[text], own is not None))
+        if own is not None:
+            assert own["limits"]
+            check_with_clingo(found.content, own, problem)
+            content = json.loads(found.text())
+            for rule in content["rules"]:
+                for limit in rule.get("limits", ()):
+                    limit[1] += 1000
+            content["seal"] = seal(content)
+            with pytest.raises(RefusedError):
+                verify(content, *data)
+    if part == 2:
+        assert met == {(kind, trusts) for kind in SHRINKING.values() for trusts in (False, True)}
+
+
+def test_what_shrinking_rules_of_the_users_own_limit() -> None:
+    """Of the two ways to the end, one is longer; with a limit on units that are cut, the other is taken."""
+    one_of = ':- use(A), use(B), motion(A,"cut"), motion(B,"mix").'
+    settings = Settings((given_constraint(one_of), given_constraint(NO_BOILING)))
+    outcome, found = certify_outcome(solve(BOILED, settings=settings), settings)
+    assert outcome.status is Status.INFEASIBLE
+    assert found is not None
+    own = trusted(found.content)
+    assert own is not None
+    assert (own["claims"], own["limits"]) == ([[[2], []]], [[{"1": [0, 1]}, 1]])
+    few = Settings(
+        (given_constraint(":- #sum { N,U : use(U), inputs(U,N) } > 1."), given_constraint(NO_BOILING))
+    )
+    outcome, found = certify_outcome(solve(BOILED, settings=few), few)
+    assert found is not None
+    own = trusted(found.content)
+    assert own is not None
+    assert (found.claim, own["limits"]) == ("infeasible", [[{"1": [0, 1, 2, 3, 4]}, 1]])
+
+
+def test_clingo_says_what_limits_are_not_true() -> None:
+    own = own_rule(NO_BOILING)
+    assert own is not None
+    none: dict[str, Any] = {"tree": None, "objective": []}
+    check_with_clingo(none, {**own, "limits": [[{"1": [0, 1], "5": [2]}, 2]]}, BOILED)
+    for limit in ([{"1": [0, 1]}, 1], [{"3": [0], "1": [4]}, 2]):
+        with pytest.raises(RefusedError, match="what is taken on trust is not true"):
+            check_with_clingo(none, {**own, "limits": [limit]}, BOILED)
+    for limit in ([{str(2**31): [0]}, 1], [{"1": [0]}, -(2**31)]):
+        with pytest.raises(LimitError, match="clingo cannot add up"):
+            check_with_clingo(none, {**own, "limits": [limit]}, BOILED)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (':- use(A), use(B), motion(A,"twist"), motion(B,"crush").', "no tree has all of the units 26, 27"),
+        (':- #count { U : use(U), motion(U,"crush") } > 0.', "no tree has one of the units 27"),
+        (":- #count { U : use(U), unit(U) } > 1.", "no tree has more than 1 of 209 units"),
+        (":- #sum { N,U : use(U), inputs(U,N) } > 5.", "units count comes to 5 at most"),
+    ],
+)
+def test_limits_on_trust_are_said(cli: Cli, tmp_path: Path, text: str, said: str) -> None:
+    file = tmp_path / "proof.json"
+    assert cli("certify", "--goal", "ice", "--rule", text, "-o", file).code in {0, 1}
+    plain = cli("verify", file)
+    assert said in plain.out
+    assert cli("verify", file, "--with-clingo", "--format", "json").json["trusted"]["checked"] is True

@@ -75,6 +75,9 @@ class Rules(Protocol):
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
         """Give some actions of a derivation by which it breaks a rule, none where it keeps to all."""
 
+    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+        """Give a limit that is not known yet and that a derivation exceeds; from then on it is known."""
+
 
 class CheaperError(Exception):
     """A derivation was found that costs less than the one to be proved best."""
@@ -111,7 +114,7 @@ class Prover:
         multiples: Sequence[Fraction] = (),
     ) -> None:
         self._multiples = multiples
-        self._known, self._limits, self._rules = tuple(map(frozenset, known)), limits, rules
+        self._known, self._limits, self._rules = tuple(map(frozenset, known)), [*limits], rules
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(0)
@@ -194,14 +197,20 @@ class Prover:
             value, rounded = self.rounded(self._order.total(weight for _, weight in packing.weights))
             if self._order.compare(value, left) >= 0:
                 return packing._replace(rounded=rounded)
-        node = _Node(self, cutter, derivation, used, goal)
-        node.admit(widened)
-        exact = node.relax(left)
-        if exact is not None and node.suffices(exact.value, left):
-            return node.packing(exact)
-        action = node.undecided()
+        while True:
+            node = _Node(self, cutter, derivation, used, goal)
+            node.admit(widened)
+            exact = node.relax(left)
+            if exact is not None and node.suffices(exact.value, left):
+                return node.packing(exact)
+            action = node.undecided()
+            taken = [] if action is not None else node.taken()
+            limit = self._exceeded(taken)
+            if limit is None:
+                break
+            self._limits.append(limit)
+            widened = node.cuts
         if action is None:
-            taken = node.taken()
             breaking = [a for a in self._breaking(taken) if a not in used]
             if not breaking:
                 cheaper = goal is not None and self._order.compare(self._total(taken), goal) < 0
@@ -229,6 +238,10 @@ class Prover:
     def _breaking(self, derivation: Iterable[int]) -> Sequence[int]:
         return () if self._rules is None else self._rules.breaking(frozenset(derivation))
 
+    def _exceeded(self, derivation: Iterable[int]) -> Limit | None:
+        chosen = frozenset(derivation)
+        return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
+
     def _share_out(self, cuts: Iterable[Cut]) -> Packing:
         """Give each cut in turn the weight that its members have left of their costs."""
         left: dict[int, Vector] = {}
@@ -248,7 +261,7 @@ class Prover:
 class _Node:
     """The relaxation at one place of the branching: cuts, their rows, and who covers them.
 
-    ``shares`` are those of the actions, in the solution that was looked at last.
+    ``shares`` are those of the actions, in the solution that was looked at last, ``cuts`` those of the rows.
     """
 
     def __init__(
@@ -272,7 +285,7 @@ class _Node:
         self._covering = Covering([*self._floats, *[prover.scaled(dear)] * len(self._limits)])
         for amounts, most in self._limits:
             self._covering.limit(amounts, most)
-        self._cuts: list[Cut] = []
+        self.cuts: list[Cut] = []
         self._rows: list[list[int]] = []
         self.shares: Sequence[float]
 
@@ -322,7 +335,7 @@ class _Node:
         weights = sorted(exact.weights.items())
         first = len(self._limits)
         return Packing(
-            tuple((self._cuts[row - first], weight) for row, weight in weights if row >= first),
+            tuple((self.cuts[row - first], weight) for row, weight in weights if row >= first),
             tuple((row, weight) for row, weight in weights if row < first),
             self._prover.rounded(exact.value)[1],
         )
@@ -363,6 +376,6 @@ class _Node:
         for cut in cuts:
             if self._places.keys() >= set(cut.members):
                 row = [self._places[a] for a in cut.members]
-                self._cuts.append(cut)
+                self.cuts.append(cut)
                 self._rows.append(row)
                 self._covering.add(row)

@@ -10,7 +10,7 @@ from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.certificate.coverage import Coverage
 from foon_asp.problem import Objective, Problem, multiplies
-from foon_asp.proof import verify
+from foon_asp.proof import ruled, verify
 
 
 class Arrays:
@@ -29,6 +29,10 @@ class Arrays:
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
         self.order = Lexicographic([self.rates if multiplies(o) else None for o in objectives] or [None])
         self.ruled = covered.ruled(problem)
+        self._own = covered.limits
+        self._of_rules = len(covered.rules)  # the number of the first limit beyond those of the rules
+        for limit in covered.limits.known if covered.limits else ():
+            self._admit(limit)
         self.goals = [goal for goal in problem.goals if goal not in problem.kitchen] + self.ruled.goals
         self.forbidden = self.ruled.removed
         cost = cache(self._cost)  # many units cost the same
@@ -81,6 +85,27 @@ class Arrays:
         """State what all costs are multiples of at a coordinate."""
         coordinates = [str(objective) for objective in self.objectives for _ in range(self.parts(objective))]
         return {coordinates[place]: written(self.multiples[place])}
+
+    def _admit(self, limit: Limit) -> None:
+        """Number a limit of rules of the user's own."""
+        self.ruled.limits[self._of_rules + len(self.own_limits)] = ruled.Limit(*limit)
+
+    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+        """Give a limit that a derivation exceeds by rules of the user's own."""
+        limit = self._own and self._own.exceeded(self._units(derivation))
+        if limit:
+            self._admit(limit)
+        return limit or None
+
+    @property
+    def asks(self) -> bool:
+        """Whether rules of the user's own are asked what derivations exceed."""
+        return self._own is not None
+
+    @property
+    def own_limits(self) -> dict[int, Limit]:
+        """The limits of rules of the user's own that are known, by their numbers."""
+        return {n: (each.amounts, each.most) for n, each in self.ruled.limits.items() if n >= self._of_rules}
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
         """Give by constraint the units that no tree has which uses some actions and none of others."""

@@ -125,7 +125,7 @@ def certify_infeasible(
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
-    rules = arrays if arrays.ruled.barred else None
+    rules = arrays if arrays.ruled.barred or arrays.asks else None
     return Prover(
         *(arrays.graph, arrays.goals, arrays.costs, arrays.order, arrays.forbidden),
         *(expired, cuts, arrays.limits, rules, arrays.multiples),
@@ -142,20 +142,26 @@ def _write(
 ) -> Certificate | None:
     problem = arrays.problem
     cuts: dict[tuple[int, ...], int] = {}
-    places = list(arrays.ruled.limits)
+    places, own = list(arrays.ruled.limits), arrays.own_limits
+    of_own: dict[int, int] = {}
 
     def number(cut: Cut) -> int:
         return cuts.setdefault(cut.objects, len(cuts))
+
+    def limit(row: int) -> int:
+        """Give the number of a limit; those of the user's own are numbered anew, after the rules."""
+        place = places[row]
+        return len(covered.rules) + of_own.setdefault(place, len(of_own)) if place in own else place
 
     def stated(proof: Proof) -> dict[str, object]:
         if isinstance(proof, Hopeless):
             return {"hopeless": number(proof.cut)}
         if isinstance(proof, Packing):
             weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in proof.weights)
-            limits = [[places[row], arrays.stated(weight)] for row, weight in proof.limits]
+            limits = sorted((limit(row), arrays.stated(weight)) for row, weight in proof.limits)
             packed: dict[str, object] = {"weights": [list(pair) for pair in weights]}
             if limits:
-                packed["limits"] = limits
+                packed["limits"] = [list(pair) for pair in limits]
             if proof.rounded is not None:
                 packed["multiples"] = arrays.multiple(proof.rounded)
             return packed
@@ -179,7 +185,8 @@ def _write(
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
-    rules = needed(covered.rules, members) if covered.partial else covered.rules
+    limits = [own[place] for place in of_own]
+    rules = needed(covered.rules, members, limits) if covered.partial else covered.rules
     content: dict[str, Any] = {
         "format": verify.FORMAT,
         "version": verify.VERSION,

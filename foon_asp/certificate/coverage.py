@@ -3,16 +3,21 @@
 import hashlib
 import re
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from foon_asp.asp import Settings
+from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.problem import Problem
 from foon_asp.proof.constraint import LIBRARY, OWN, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.proof.verify import canonical
 from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
+
+if TYPE_CHECKING:  # clingo
+    from foon_asp.certificate.own_limits import OwnLimits
 
 # Values that are listed in facts, of a file of the user's as well: the constant that gives one, if one does.
 _LISTED = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
@@ -25,11 +30,13 @@ class Coverage(NamedTuple):
     """What narrows the trees: the ``rules`` that a certificate speaks of, and what it does not.
 
     Each rule is one of :data:`foon_asp.proof.constraint.LIBRARY` with its values. ``not_covered`` names
-    rules, by their text or by file, with a digest, and the constants that were set.
+    rules, by their text or by file, with a digest, and the constants that were set. ``limits`` are those of
+    rules of the user's own, which are found one by one.
     """
 
     rules: tuple[Rule, ...] = ()
     not_covered: tuple[str, ...] = ()
+    limits: "OwnLimits | None" = None
 
     @property
     def partial(self) -> bool:
@@ -163,15 +170,30 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def needed(rules: Iterable[Rule], members: Iterable[int]) -> tuple[Rule, ...]:
-    """Leave out of what is claimed the removal of units that would be no members of any cut anyway."""
-    kept = set(members)
+def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit]) -> tuple[Rule, ...]:
+    """State what a proof needs of rules of the user's own: which units are removed, and limits.
+
+    The removal of units that would be no ``members`` of any cut anyway is left out.
+    """
+    kept, stated = set(members), [_stated(*limit) for limit in limits]
     return tuple(
-        {**rule, "claims": [claim for claim in rule["claims"] if claim[1] or kept.issuperset(claim[0])]}
+        {
+            **rule,
+            "claims": [claim for claim in rule["claims"] if claim[1] or kept.issuperset(claim[0])],
+            "limits": stated,
+        }
         if rule["rule"] == OWN
         else rule
         for rule in rules
     )
+
+
+def _stated(amounts: Mapping[int, Fraction], most: Fraction) -> list[Any]:
+    """Write a limit as certificates do: units by how much they count, and the limit."""
+    units: dict[str, list[int]] = {}
+    for unit in sorted(amounts):
+        units.setdefault(str(amounts[unit]), []).append(unit)
+    return [units, int(most)]
 
 
 def _printable(name: str) -> str:

@@ -1,7 +1,7 @@
 """What rules of the user's own remove and ask for: taken on trust by certificates, and checked by clingo."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +9,7 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.settings import Bounded
 from foon_asp.certificate.coverage import Coverage
+from foon_asp.certificate.own_limits import OwnLimits
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.encoding import read_encoding
 from foon_asp.encoding.encoding_file import included_files
@@ -21,15 +22,18 @@ from foon_asp.reduce import NONE
 from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint, named_constraint
 from foon_asp.rules.rules import Contradiction
 
+_GREATEST = 2**31 - 1  # number of clingo's
+
 
 def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> Coverage | None:
     """Cover rules of the user's own by what they remove and ask for; ``None`` where nothing is known of that.
 
-    What the covered rules remove and ask for already is left out, since it is not taken on trust.
+    What the covered rules remove and ask for already is left out, since it is not taken on trust. What
+    shrinking rules limit is found while a proof is.
     """
     rules = assemble(settings, lambda _: None).understood
     found = None if rules is None else rules.applied(problem, settings.begun)
-    if found is None:
+    if rules is None or found is None:
         return None
     claims: list[list[list[int]]] = []
     if isinstance(found, Contradiction):
@@ -44,11 +48,15 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     own: dict[str, Any] = {
         "rule": OWN,
         "claims": claims,
+        "limits": [],
         "constants": sorted(set(settings.constants)),
         "files": [_file(each) for each in dict.fromkeys(given) if not _is_library(each)],
         "library": sorted({_written(each) for each in given if _is_library(each)}),
     }
-    return Coverage(tuple(sorted((*covered.rules, own), key=canonical)))
+    theirs = frozenset(each for each in given if not _is_library(each))
+    stated = [(limit.amounts, limit.most) for limit in covered.ruled(problem).limits.values()]
+    limits = OwnLimits(problem, settings, rules, theirs, stated)
+    return Coverage(tuple(sorted((*covered.rules, own), key=canonical)), limits=limits)
 
 
 def check_with_clingo(
@@ -62,7 +70,8 @@ def check_with_clingo(
     given = [RuleText(file["text"]) for file in own["files"]]
     found = (*given, *map(named_constraint, own["library"]))
     how = Settings(found, constants=tuple(own["constants"]), reductions=NONE, deadline=deadline)
-    wrong = "".join(f"_wrong :- {_claim(*claim)}.\n" for claim in own["claims"])
+    bodies = [_claim(*claim) for claim in own["claims"]] + [_beyond(*limit) for limit in own["limits"]]
+    wrong = "".join(f"_wrong :- {body}.\n" for body in bodies)
     if wrong and _some_tree(content, problem, how, f"{wrong}:- not _wrong.\n"):
         raise RefusedError("what is taken on trust is not true: clingo finds a tree without it")
     if content["tree"] is not None:
@@ -88,6 +97,14 @@ def _some_tree(content: Mapping[str, Any], problem: Problem, how: Settings, rule
 def _claim(used: list[int], without: list[int]) -> str:
     literals = [*(f"use({unit})" for unit in used), *(f"not use({unit})" for unit in without)]
     return ", ".join(literals) or "#true"
+
+
+def _beyond(amounts: Mapping[str, Sequence[int]], most: int) -> str:
+    """Say that units come to more than a limit; raises :class:`LimitError` for what clingo cannot add up."""
+    counted = [(int(amount), unit) for amount, units in amounts.items() for unit in units]
+    if max(sum(amount for amount, _ in counted), abs(most)) > _GREATEST:
+        raise LimitError("clingo cannot add up what a limit counts")
+    return f"#sum {{ {'; '.join(f'{amount},{unit} : use({unit})' for amount, unit in counted)} }} > {most}"
 
 
 def _is_library(constraint: Constraint) -> bool:

@@ -63,7 +63,8 @@ class Meaning(NamedTuple):
     has a unit of each set. The ``things`` that it uses come to at most ``most``: a thing is a set of units
     and how much it counts, not below 0, and is used by a tree that has one of the units. Where ``never`` is
     true, there is no such tree. A tree with all units of one set and none of another has none of the units
-    that ``barred`` gives for the two.
+    that ``barred`` gives for the two. Each of the ``limits`` says how much units count, not below 0, and what
+    those of a tree come to at most.
     """
 
     removed: Units = frozenset()
@@ -72,6 +73,7 @@ class Meaning(NamedTuple):
     most: Fraction | None = None
     never: bool = False
     barred: Barred | None = None
+    limits: Sequence[tuple[Mapping[int, Fraction], Fraction]] = ()
 
 
 class Constraint(NamedTuple):
@@ -259,8 +261,8 @@ OWN = "own"  # in place of a constraint's name: rules of the user's own
 def own(rule: Rule) -> Meaning:
     """Give what is claimed of rules of the user's own: no tree has all units of a set and none of another.
 
-    What follows of a claim on a branch: where all units of the first set but one are used, and the second set
-    is left out, that one is barred.
+    Nor more of units than a limit says. What follows of a claim on a branch: where all units of the first set
+    but one are used, and the second set is left out, that one is barred.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
@@ -272,7 +274,12 @@ def own(rule: Rule) -> Meaning:
         whole = [some for some, none in others if none <= without and some <= used]
         return frozenset().union(*(one for one in left if len(one) == 1), *whole)
 
-    return Meaning(frozenset().union(*removed), wanted, barred=barred if others else None)
+    limits = [
+        ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(most))
+        for amounts, most in rule["limits"]
+    ]
+    bars = barred if others else None
+    return Meaning(frozenset().union(*removed), wanted, barred=bars, limits=limits)
 
 
 LIBRARY: Mapping[str, Constraint] = {

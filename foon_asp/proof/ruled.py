@@ -22,7 +22,8 @@ class Ruled:
     """Constraints as nodes, steps and limits, numbered after the nodes and the units of a network.
 
     A tree that keeps to the constraints has no unit of ``removed``, reaches the nodes ``goals``, and stays
-    within each of the ``limits`` (by the place of their constraint), when units make the nodes in ``gives``
+    within each of the ``limits`` (by the place of their constraint; those of which one has several come
+    after all constraints), when units make the nodes in ``gives``
     and need those in ``needs`` as well. A step (``steps`` maps it to its needs and its node) gives its node
     once all that it needs is there, and costs nothing; it is used where a unit needs its node, or the node is
     a goal. ``makers`` are the units and steps that give each node. Where ``never`` is not empty, there is no
@@ -56,6 +57,8 @@ class Ruled:
                     thing = self._thing(units)
                     amounts[thing] = amounts.get(thing, Fraction(0)) + amount
                 self.limits[place] = Limit(amounts, meaning.most)
+        several = (limit for meaning in meanings for limit in meaning.limits)
+        self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
     def bars(self, used: Units, without: Units) -> dict[int, Units]:
         """Give by constraint the units that no tree has which has those used and none of the others."""

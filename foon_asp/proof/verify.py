@@ -446,6 +446,7 @@ class Check:
     def _keep(self, units: frozenset[int]) -> None:
         """Hold a tree against what the rules say of all of it."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
+        self._spend(len(units) * len(self.ruled.limits))
         fault = self.ruled.fault(units, frozenset(range(len(self.network))) - units)
         require(fault is None, f"the tree {fault}")
 
@@ -918,7 +919,7 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
 
 def _own(rule: Rule, units: int) -> None:
     """Check the form of what is taken on trust: texts of rules, their digests, and claims of units."""
-    read_object(rule, ("rule", "claims", "constants", "files", "library"))
+    read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):
         _names(rule[key])
     for file in read_list(rule["files"]):
@@ -932,6 +933,16 @@ def _own(rule: Rule, units: int) -> None:
         require(isinstance(claim, list) and len(claim) == 2, "expected two sets of units in a claim")
         for side in claim:
             read_numbers(side, units, ascending=side != [])
+    for limit in read_list(rule["limits"]):
+        require(isinstance(limit, list) and len(limit) == 2, "expected amounts and their limit")
+        require(type(limit[1]) is int, "a limit is no whole number")
+        counted: list[int] = []
+        for amount, some in read_object(limit[0]).items():
+            number = _rational(amount)
+            whole = number > 0 and number.denominator == 1
+            require(whole, "a limit counts what is no whole number above zero")
+            counted += read_numbers(some, units)
+        require(len(set(counted)) == len(counted), "a limit counts a unit twice")
 
 
 def _forbidding(value: Any) -> tuple[Rule, ...]:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:  # the rest of these rooms takes clingo along, which `verify` 
     from foon_asp.asp import Outcome
     from foon_asp.certificate import Certificate
 
+_NAMED = 20  # units of a limit that are listed in text; JSON has all
+
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> list[str]:
     """Say what proves an answer after the search for a certificate; ``file`` is where that was written."""
@@ -195,18 +197,42 @@ def _on_trust(own: Rule, tree: tuple[int, ...] | None, how: str = "taken on trus
     removed = [used[0] for used, without in own["claims"] if len(used) == 1 and not without]
     wanted = sum(not used for used, _ in own["claims"])
     others = len(own["claims"]) - len(removed) - wanted
+    limits = []
+    for amounts, most in own["limits"]:
+        units = [unit for each in amounts.values() for unit in each]
+        if most == 0:
+            removed += units
+        else:
+            limits.append(_limited(sorted(units), most, [*amounts] == ["1"]))
     said = [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
     said += [f"every tree has a unit of {wanted} {'set' if wanted == 1 else 'sets'}"] if wanted else []
     said += [f"{others} {'set breaks' if others == 1 else 'sets break'} a rule"] if others else []
+    said += limits
     said += ["the tree keeps to them"] if tree is not None or not said else []
     return [escaped(f"among the trees that keep to {', '.join(names)}; {how}: {'; '.join(said)}")]
+
+
+def _limited(units: list[int], most: int, each: bool) -> str:
+    """Say what a tree has at most of some units; without ``each``, they count differently."""
+    listed = ", ".join(map(str, units))
+    named = f"the units {listed}" if len(units) <= _NAMED else f"{len(units)} units"
+    if not each:
+        return f"what {named} count comes to {most} at most"
+    return f"no tree has {'all' if most == len(units) - 1 else f'more than {most}'} of {named}"
 
 
 def _trusted_json(own: Rule, checked: bool) -> Json:
     claims = [{"used": used, "without": without} for used, without in own["claims"]]
     files = [{"name": file["name"], "sha256": file["sha256"]} for file in own["files"]]
+    limits = [
+        {
+            "counted": [{"unit": u, "amount": int(n)} for n, units in amounts.items() for u in units],
+            "at_most": most,
+        }
+        for amounts, most in own["limits"]
+    ]
     given = {"files": files, "library": own["library"], "constants": own["constants"]}
-    return {**given, "claims": claims, "checked": checked}
+    return {**given, "claims": claims, "limits": limits, "checked": checked}
 
 
 def _rule(rule: Rule) -> str:

@@ -1,0 +1,88 @@
+"""What shrinking rules of the user's own limit: sums of units, and units that together break one."""
+
+from collections.abc import Iterable
+from fractions import Fraction
+
+from foon_asp.asp import Settings
+from foon_asp.asp.assembly import assemble
+from foon_asp.asp.integrity import relax
+from foon_asp.asp.prepared import Prepared
+from foon_asp.bounds.exact_optimum import Limit
+from foon_asp.encoding.facts import write_given, write_soft
+from foon_asp.encoding.own_encodings import ENCODING_FILES, question_encoding
+from foon_asp.problem import Objective, Problem, reach
+from foon_asp.rules.constraint import Constraint
+from foon_asp.rules.rule_kind import Kind
+from foon_asp.rules.rules import Rules
+
+
+class OwnLimits:
+    """Limits that follow from shrinking rules of the user's own: ``known`` are those found so far.
+
+    First these are the sums that rules limit. Others are found of units that break a rule: of the fewest of
+    these that do, a tree has all but one at most.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        settings: Settings,
+        rules: Rules,
+        own: frozenset[Constraint],
+        covered: Iterable[Limit],
+    ) -> None:
+        """Look at the rules of a question, of which some constraints are the user's ``own``.
+
+        What follows from limits that are ``covered`` is left out.
+        """
+        self._problem, self._deadline = problem, settings.begun
+        numbered, relaxed = relax(
+            settings.constraints, settings.constants, soft=True, deadline=settings.begun
+        )
+        shrinking = {rule.source for rule in rules.rules if rule.kind is Kind.SHRINKING}
+        theirs = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
+        relaxed = relaxed._replace(rules=relaxed.rules + write_soft(theirs))
+        self._settings = settings._replace(constraints=(), relaxed=relaxed, session=None)
+        program = assemble(self._settings, lambda _: None)
+        others = program.files[len(ENCODING_FILES) :]
+        self._program = program._replace(files=(question_encoding("breaking_units.lp"), *others))
+        self._any = bool(theirs)
+        self._local = all(rule.local for rule in rules.rules if rule.source in shrinking)
+        self.known: list[Limit] = []
+        if self._any:
+            found = (each for each in rules.limits(problem, settings.begun) if not each.at_least)
+            limits = [({u: Fraction(n) for u, n in each.weights.items() if n}, each.bound) for each in found]
+            stated = [*covered]
+            self.known = [
+                (amounts, Fraction(most))
+                for amounts, most in limits
+                if not any(m <= most and all(a.get(u, 0) >= n for u, n in amounts.items()) for a, m in stated)
+            ]
+
+    def exceeded(self, units: frozenset[int]) -> Limit | None:
+        """Give a limit that units exceed, and know it from now on; ``None`` where they keep to the rules.
+
+        Raises ``KeyboardInterrupt`` at a limit of time.
+        """
+        if not self._any:
+            return None
+        network = self._problem.network
+        seen = units if self._local else units.union(reach(self._problem).units)
+        asked = Prepared(
+            self._problem,
+            (Objective.UNITS,),
+            self._settings,
+            self._deadline,
+            self._program,
+            tuple(sorted(seen)),
+        )
+        ended = asked.run(write_given(list(map(network.unit_number, sorted(units)))))
+        if ended.units is None:
+            if not ended.exhausted:
+                self._deadline.check()
+                raise KeyboardInterrupt
+            return None
+        fewest = {network.unit_of_number(number) for number in ended.units}
+        limit: Limit = ({unit: Fraction(1) for unit in sorted(units & fewest)}, Fraction(len(fewest) - 1))
+        self.known.append(limit)
+        return limit
