@@ -1,5 +1,6 @@
 """Proofs where so much of something may be used at most, and under rules: against every derivation."""
 
+import math
 import random
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -20,12 +21,18 @@ NOBODY: frozenset[int] = frozenset()
 
 
 class NotAll(NamedTuple):
-    """Rules that no derivation has all actions of a set; every other is only known once all are used."""
+    """Rules that no derivation has all actions of a set; every other is only known once all are used.
+
+    Or those that a derivation breaks are limits from then on, which are ``learnt``.
+    """
 
     sets: Sequence[frozenset[int]]
+    learnt: list[Limit] | None = None
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        found = {}
+        found: dict[int, frozenset[int]] = {}
+        if self.learnt is not None:
+            return found
         for rule, each in enumerate(self.sets):
             if each <= used:
                 found[rule] = each
@@ -34,7 +41,15 @@ class NotAll(NamedTuple):
         return found
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
-        return next((sorted(each) for each in self.sets if each <= derivation), [])
+        broken = (sorted(each) for each in self.sets if each <= derivation and self.learnt is None)
+        return next(broken, [])
+
+    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+        for each in self.sets:
+            if each <= derivation and self.learnt is not None:
+                self.learnt.append((dict.fromkeys(each, Fraction(1)), Fraction(len(each) - 1)))
+                return self.learnt[-1]
+        return None
 
 
 class Case(NamedTuple):
@@ -43,10 +58,14 @@ class Case(NamedTuple):
     costs: list[tuple[Fraction]]
     limits: list[Limit]
     rules: NotAll
+    multiples: Sequence[Fraction] = ()
 
     def prover(self, free: bool = False) -> Prover:
         costs = [(Fraction(0),)] * len(self.costs) if free else self.costs
-        return Prover(self.graph, self.targets, costs, COUNT, NOBODY, limits=self.limits, rules=self.rules)
+        more = {"limits": self.limits, "rules": self.rules, "multiples": self.multiples}
+        if self.rules.learnt:
+            self.rules.learnt.clear()
+        return Prover(self.graph, self.targets, costs, COUNT, NOBODY, **more)  # type: ignore[arg-type]
 
     def holds(self, actions: frozenset[int]) -> bool:
         at_hand, left = set(self.graph.start), set(actions)
@@ -87,7 +106,8 @@ def drawn(seed: int) -> Case:
         choose.sample(range(size), size if gaps else choose.choice((1, 2))),
         [(Fraction(choose.randint(1, 2 if gaps else 4)),) for _ in range(count)],
         limits,
-        NotAll(sets[: choose.randint(0, 4)]),
+        NotAll(sets[: choose.randint(0, 4)], [] if seed % 3 == 2 else None),
+        [Fraction(seed % 4 > 1)],
     )
 
 
@@ -125,7 +145,8 @@ def hold(case: Case, proof: Proof, goal: Fraction | None, met: Counter[str]) -> 
         total = sum((case.costs[a][0] if goal is not None else Fraction(0) for a in used), Fraction(0))
         carried: Counter[int] = Counter()
         for row, (weight,) in proof.limits:
-            amounts, most = case.limits[row]
+            amounts, most = [*case.limits, *(case.rules.learnt or [])][row]
+            met["learnt"] += row >= len(case.limits)
             assert weight > 0
             total -= weight * (most - sum(amounts.get(a, 0) for a in used))
             for a, amount in amounts.items():
@@ -138,7 +159,10 @@ def hold(case: Case, proof: Proof, goal: Fraction | None, met: Counter[str]) -> 
         for a, rest in carried.items():
             cost = 0 if a in used or goal is None else case.costs[a][0]
             assert a in gone or (a in used and rest >= 0) or cost + rest >= 0
-        assert total > 0 if goal is None else total >= goal
+        rounded = isinstance(proof, Packing) and proof.rounded is not None
+        met["rounded"] += rounded
+        assert not rounded or {*case.multiples} == {1}
+        assert total > 0 if goal is None else (math.ceil(total) if rounded else total) >= goal
 
     leaf(proof, NOBODY, NOBODY)
 
@@ -175,6 +199,8 @@ def test_what_is_proved_is_true_of_every_derivation(part: int) -> None:
             assert case.cost(cheaper) < case.cost(worst)
             met["cheaper"] += 1
     assert met.keys() >= {"Packing", "Hopeless", "Broken", "limits", "none", "cheaper"}
+    assert met["learnt"] > 0
+    assert met["rounded"] > 0
 
 
 def test_what_is_used_is_not_asked_about_again() -> None:

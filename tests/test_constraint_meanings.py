@@ -139,7 +139,7 @@ def test_what_is_barred_where_a_motion_has_to_come_before_another() -> None:
 
 def test_what_is_barred_by_claims_of_units() -> None:
     claims = [[[0], []], [[], [1, 2]], [[3, 4], [5]], [[6], [7]], [[8, 9], []]]
-    own = {"rule": OWN, "claims": claims, "constants": [], "files": [], "library": []}
+    own = {"rule": OWN, "claims": claims, "constants": [], "files": [], "library": [], "limits": []}
     arrays = arrays_of(small(*(f"mix: start > x{n}, end" for n in range(10))), own)
     assert arrays.forbidden == {0}
     assert [arrays.ruled.makers[goal] for goal in arrays.ruled.goals] == [[1, 2]]
@@ -313,7 +313,7 @@ def test_what_is_best_under_each_constraint_is_certified_without_a_search(seed: 
 
 def owning(*claims: list[list[int]]) -> dict[str, Any]:
     """Give what is claimed of rules of the user's own."""
-    return {"rule": OWN, "claims": [*claims], "constants": [], "files": [], "library": []}
+    return {"rule": OWN, "claims": [*claims], "constants": [], "files": [], "library": [], "limits": []}
 
 
 def test_of_what_is_claimed_a_certificate_has_what_its_cuts_need() -> None:

@@ -170,7 +170,7 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit]) -> tuple[Rule, ...]:
+def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
     """State what a proof needs of rules of the user's own: which units are removed, and limits.
 
     The removal of units that would be no ``members`` of any cut anyway is left out.
