@@ -76,13 +76,11 @@ class Wide:
 
     def everything(self) -> frozenset[int]:
         """Give all units that a tree can have, whatever it costs."""
-        graph = self.graph
-        among = self._all() if self.spare else graph.cone()[0]
-        # what cannot be made has no costs, and none are asked for here
-        made = derive(graph, among, lambda _: 0, added=False)
         if self.spare:
-            return self._units(made.before)
-        return self._units(graph.cone(made.before)[0])
+            return self._units(self._able(self._all()))
+        cone, _ = self.graph.cone()
+        left, _ = self.graph.cone(self._able(cone))
+        return self._units(left)
 
     def within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
         """Give the units that a tree of costs up to a limit can have, and maybe more where time is up."""
@@ -134,6 +132,10 @@ class Wide:
         )
         counted = not self.graph.start
         return [*actions, *(units + o for o in self.problem.kitchen if counted)]
+
+    def _able(self, actions: Collection[int]) -> Collection[int]:
+        """Give those that can run; what cannot be made has no costs, and none are asked for."""
+        return derive(self.graph, actions, lambda _: 0, added=False).before
 
     def _units(self, actions: Iterable[int]) -> frozenset[int]:
         return frozenset(a for a in actions if a < self.graph.units)

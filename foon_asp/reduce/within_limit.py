@@ -54,17 +54,15 @@ def limited(
     best, over, least, price, measured = found.tree, tree, wide.cuts.bound, 0, wide
     for _ in range(_PRICES):
         ratio = -(-(wide.total(best) - wide.total(over)) // (taken(over) - taken(best)))
-        if ratio <= 0:
+        told = _asked(wide, wide.costs.priced(counts, ratio), objectives, expired) if ratio > 0 else None
+        if told is None or told.tree is None or told.wide is None:
             break
-        found = _asked(wide, wide.costs.priced(counts, ratio), objectives, expired)
-        if found.tree is None or found.wide is None:
-            break
-        if found.bound - ratio * most > least:
-            least, price, measured = found.bound - ratio * most, ratio, found.wide
-        if taken(found.tree) > most and wide.total(found.tree) > wide.total(over):
-            over = found.tree
-        elif taken(found.tree) <= most and wide.total(found.tree) < wide.total(best):
-            best = found.tree
+        if told.bound - ratio * most > least:
+            least, price, measured = told.bound - ratio * most, ratio, told.wide
+        if taken(told.tree) > most and wide.total(told.tree) > wide.total(over):
+            over = told.tree
+        elif taken(told.tree) <= most and wide.total(told.tree) < wide.total(best):
+            best = told.tree
         else:
             break
     return Limited(best, measured, wide.total(best) + price * most)
