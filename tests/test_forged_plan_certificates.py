@@ -141,6 +141,22 @@ SPENT = {"balance": [[DOUGH, "1"], [BREAD, "1"]]}
 CUT = {"weights": [[0, "1"]]}
 ONE = bound("1", {"balance": [[BREAD, "1"]]})
 
+MEAL: dict[str, Any] = {
+    "goals": [{"id": TWICE.id("meal"), "node": "meal"}],
+    "items": items(),
+    "unreached": [],
+    "cuts": [[TWICE.id("pan")]],
+    "at": TWICE,
+}
+
+
+def fed(weight: str) -> dict[str, Any]:
+    """Give a proof for the meal that is right if the cup is filled once at most."""
+    sides = [[TWICE.id(label), weight] for label in ("cup", "dish")]
+    both = [TWICE.id("meal"), str(2 * int(weight))]
+    return {"balance": [*sides, both], "before": [[0, 1, weight]]}
+
+
 FORGED: dict[str, Forged] = {
     # --- the frame
     "verify_plan: expected the format …": plain(format="a song"),
@@ -193,20 +209,7 @@ FORGED: dict[str, Forged] = {
         proof=[{"branch": {"unit": 1}, "most": True, "up_to": PROOF, "above": PROOF}]
     ),
     "_prove_part: expected weights of conditions or a branch": plain(proof=[{**PROOF, "more": []}]),
-    "_cheapest: member … brings more than it costs, without end": plain(
-        **NO_PLAN,
-        goals=[{"id": TWICE.id("meal"), "node": "meal"}],
-        items=items(),
-        unreached=[],
-        cuts=[[TWICE.id("pan")]],
-        proof=[
-            {
-                "balance": [[TWICE.id("cup"), "1"], [TWICE.id("dish"), "1"], [TWICE.id("meal"), "2"]],
-                "before": [[0, 1, "1"]],
-            }
-        ],
-        at=TWICE,
-    ),
+    "_cheapest: member … brings more than it costs, without end": plain(**NO_PLAN, **MEAL, proof=[fed("1")]),
     "kept: a unit that never succeeds is not compared": bound(
         {"3/4": "1"}, {"balance": [[BREAD, {"3/4": "1"}]]}, objective=["success"], at=NEVER, stays=KIND
     ),
@@ -301,3 +304,89 @@ def failure(by: Any, forged: Forged) -> str:
     except Exception as error:
         return type(error).__name__
     pytest.fail("accepted")
+
+
+# --- what refuses by what it computes
+
+
+class Part(NamedTuple):
+    """A part of the source that is no check by itself, a wrong one in its place, and what passes then."""
+
+    right: str
+    wrong: str
+    forged: Forged
+
+
+PARTS = {
+    "copies in stock need not be made": Part(
+        "(o in check.goals) - there",
+        "(o in check.goals)",
+        bound("1", {"balance": [[SALT, "1"]]}, goals=goal("salt")),
+    ),
+    "what costs less than two is executed once, at most": Part(
+        "math.ceil(most / each) - 1 if exact",
+        "math.ceil(most / each) - 2 if exact",
+        bound("2", {"balance": [[DOUGH, "2"]]}, goals=goal("dough")),
+    ),
+    "a unit may bring the most": Part(
+        "found.append(self._sum([self._times(each, Fraction(most or 0)), once]))",
+        "pass",
+        bound("6", fed("5"), **MEAL),
+    ),
+    "a unit need not be executed": Part(
+        "found: list[Amount] = [{}] if low == 0 else []",
+        "found: list[Amount] = [{}] if most == 0 else []",
+        bound("3", {"balance": [[SALT, "1/2"], *PROOF["balance"]]}),
+    ),
+    "the part up to a count is proved, too": Part(
+        'yield Part(proof["up_to"], part.least, {**part.most, member: up_to})',
+        "pass",
+        bound("3", {"branch": {"unit": 3}, "most": 0, "up_to": {}, "above": {"balance": PROOF["balance"]}}),
+    ),
+    "the part above a count is proved, too": Part(
+        'yield Part(proof["above"], {**part.least, member: above}, part.most)',
+        "yield from ()",
+        bound("9", {"branch": {"unit": 1}, "most": 0, "up_to": {"balance": [[BREAD, "9"]]}, "above": {}}),
+    ),
+    "a bound is rounded up and no further": Part(
+        "math.ceil(bound.get(at, Fraction(0)) * parts)",
+        "math.ceil(bound.get(at, Fraction(0)) * parts) + 1",
+        bound("3", PROOF),
+    ),
+    "where there is nothing to be bounded, a bound is above nothing": Part(
+        "enough = self._sign(bound) > 0", "enough = self._sign(bound) >= 0", plain(**NO_PLAN, proof=[{}])
+    ),
+    "a cut before a unit says nothing where it is not executed": Part(
+        "self.constant = check.sum_of(self.constant, weight, -1)\n",
+        "pass\n",
+        bound("3", {**PROOF, "before": [[0, 4, "1"]]}, cuts=[[GOLD]]),
+    ),
+    "a member of a cut may cross it": Part(
+        "self._come(self.used if member < len(check.network) else self.executed, member, weight, -1)",
+        "pass",
+        bound("9", {"weights": [[0, "9"]]}, cuts=[[BREAD]]),
+    ),
+    "what is used up has to come": Part(
+        "(o in flow.adds) - (o in flow.uses)",
+        "-(o in flow.uses)",
+        bound("9", {"balance": [[BREAD, "9"]]}),
+    ),
+    "what is left of a limit is taken from the bound": Part(
+        "-ruled.limits[place].most",
+        "0",
+        bound(
+            "3",
+            {**PROOF, "limits": [[0, "1"]], "balance": [[DOUGH, "2"], [BREAD, "4"]]},
+            rules=[{"rule": "at_most_units", "max_units": 2}],
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_part_that_is_wrong_lets_a_forged_certificate_pass(name: str) -> None:
+    right, wrong, forged = PARTS[name]
+    assert SOURCE.count(right) == 1
+    with pytest.raises(verify.RefusedError):
+        held(verify_plan, forged)
+    assert type(held(module(SOURCE.replace(right, wrong)), forged)).__name__ == "Verified"

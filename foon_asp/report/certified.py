@@ -40,11 +40,24 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         sure = ", ".join(certificate.certified)
         what = "tree" if outcome.problem.items is None else "plan"
         return [f"proof: {outcome.proof}; the certificate {file} proves the {what} best by {sure} alone"]
-    lines = [f"proof: certificate ({file}, {counted(len(certificate.content['cuts']), 'cut')})"]
+    lines = [f"proof: certificate ({file}, {_looked_at(certificate.content)})"]
     if certificate.content["not_covered"] and certificate.claim == "optimal":
         every = "trees" if outcome.problem.items is None else "plans"
         lines.append(f"  it is best among all {every}; only the solver says that it obeys the constraints")
     return lines
+
+
+def _looked_at(content: dict[str, Any]) -> str:
+    """Say how many cuts a proof has, and of plans the balance of how many nodes it looks at."""
+    cuts = counted(len(content["cuts"]), "cut")
+    if "items" not in content:
+        return cuts
+    nodes: set[int] = set()
+    waiting = list(content["proof"])
+    for part in waiting:  # grows while it is walked through
+        nodes.update(o for o, _ in part.get("balance", ()))
+        waiting += (part[side] for side in ("up_to", "above") if side in part)
+    return f"{cuts}, the balance of {counted(len(nodes), 'node')}"
 
 
 def _all(outcome: "Outcome") -> str:
@@ -118,7 +131,7 @@ def verified_text(
         )
         how = "checked with clingo" if with_clingo else "taken on trust (--with-clingo checks them)"
         lines.append(f"{how}: {what}; rules with SHA-256 {measure.sha256}")
-    lines.append(f"proof: {counted(verified.cuts, 'cut')}, checked without a solver")
+    lines.append(f"proof: {_looked_at(content)}, checked without a solver")
     return "\n".join(lines) + "\n"
 
 
