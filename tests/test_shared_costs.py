@@ -163,10 +163,11 @@ def test_cuts_are_looked_for_until_they_bring_little(monkeypatch: pytest.MonkeyP
 
 
 def test_dear_actions_are_cut_first() -> None:
-    sharing = _Sharing(Hypergraph(3, [[], [1]], [[1], [2]], [0]), [2], range(2), [1, 10].__getitem__)
+    graph = Hypergraph(3, [[], [1], []], [[1], [2], [2]], [0])
+    sharing = _Sharing(graph, [2], range(3), [1, 4, 10**6].__getitem__)
     for _ in range(9):
-        assert sharing._separate([0.0, 0.0], lambda: False)
-    assert sharing._rows == [(1,), (0,)] * 9
+        assert sharing._separate([0.0] * 3, lambda: False)
+    assert sharing._rows == [(1, 2)] * 9
 
 
 def test_weights_are_those_wanted_and_what_is_left_goes_to_the_greatest(
