@@ -12,12 +12,16 @@ from foon_asp.asp.assembly import assemble
 from foon_asp.asp.session import OpenProgram, Session
 from foon_asp.deadline import Deadline
 from foon_asp.encoding import exact_success
+from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from foon_asp.reduce import ALL, NONE
 from tests import oracle
 from tests.hard_problem import hard_problem
-from tests.random_problems import SERIES, random_objectives, random_problem
+from tests.random_problems import MOTIONS, SERIES, random_objectives, random_problem
 from tests.test_optimum import constraint
+
+# Rules that are understood are applied before a program is asked, unless no reductions are asked for.
+AT_MOST = Settings(constraints=(Path("at_most_units"),), reductions=NONE)
 
 # Constraints that look at facts without use(U): what is not there must not be seen by them.
 NOSY = (
@@ -129,7 +133,7 @@ def test_a_kitchen_that_changes_too_much_is_grounded_anew(monkeypatch: pytest.Mo
     monkeypatch.setattr("foon_asp.asp.session._MOST_OPEN", 2)
     monkeypatch.setattr("foon_asp.asp.session._MOST_PRODUCTS", 1)
     session = Session()
-    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=5",))
+    settings = AT_MOST._replace(constants=("max_units=5",))
     rng = random.Random(1)
     problem = random_problem(3, ContainerRule.STRICT, 20)
     for _ in range(40):
@@ -146,7 +150,7 @@ def test_a_constraint_file_that_changed_is_read_again(tmp_path: Path) -> None:
         if (costs := solve(p).costs) and costs.units == 2
     )
     mine = tmp_path / "mine.lp"
-    settings = Settings(constraints=(mine,), session=Session())
+    settings = Settings(constraints=(mine,), session=Session(), reductions=NONE)
     for most, expected in ((3, Status.OPTIMAL), (1, Status.INFEASIBLE), (2, Status.OPTIMAL)):
         mine.write_text(f":- #count {{ U : use(U) }} > {most}.")
         assert solve(problem, (Objective.UNITS,), settings).status is expected
@@ -160,7 +164,7 @@ def test_a_rate_too_small_for_the_scale_of_others() -> None:
     assert problem.rates is not None
     rates = dict(problem.rates) | {problem.network.motions[0]: Fraction(1, 10**30)}
     everything = replace(problem, rates=rates, kitchen=frozenset(range(len(problem.network.objects))))
-    settings = Settings(constraints=(Path("least_rate"),), constants=("least_rate=1000",))
+    settings = Settings(constraints=(Path("least_rate"),), constants=("least_rate=1000",), reductions=NONE)
     session, rng = Session(), random.Random(seed)
     for _ in range(20):
         kitchen = frozenset(rng.sample(sorted(everything.kitchen), 3))
@@ -181,7 +185,7 @@ def test_coarse_weights_with_kept_products(part: int, scale: int, monkeypatch: p
     monkeypatch.setattr(exact_success, "_scale", lambda _: scale)
     for seed in range(25 // part):
         problem, session = random_problem(seed, ContainerRule.IMPLIED), Session()
-        settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=6",))
+        settings = AT_MOST._replace(constants=("max_units=6",))
         rng = random.Random(seed)
         for _ in range(5):
             for objectives in ([Objective.SUCCESS], [Objective.KITCHEN, Objective.SUCCESS, Objective.INPUTS]):
@@ -193,7 +197,7 @@ def test_coarse_weights_with_kept_products(part: int, scale: int, monkeypatch: p
 
 def test_a_kept_program_counts_the_items_of_the_kitchen_asked_about() -> None:
     """Two kitchens, and again the first: what counts is the kitchen of the question, not of one before."""
-    settings = Settings(constraints=(Path("at_most_units"),), constants=("max_units=9",), session=Session())
+    settings = AT_MOST._replace(constants=("max_units=9",), session=Session())
     for seed in range(3):
         problem = random_problem(seed, ContainerRule.STRICT, units=7)
         less = replace(problem, kitchen=frozenset(sorted(problem.kitchen)[1:]))
@@ -203,15 +207,20 @@ def test_a_kept_program_counts_the_items_of_the_kitchen_asked_about() -> None:
                 assert measured(kept) == measured(solve(asked, objectives, settings._replace(session=None)))
 
 
+def test_a_program_of_prices_is_not_kept() -> None:
+    """They are rounded, as success is, and one program settles what rounding may hide of one of them."""
+    problem, session = random_problem(0, ContainerRule.STRICT), Session()
+    problem = replace(problem, unit_prices=UnitPrices(dict.fromkeys(MOTIONS, Fraction(1, 3)), {}))
+    settings = AT_MOST._replace(constants=("max_units=9",), session=session)
+    for objectives, kept in (((Objective.PRICE,), 0), ((Objective.SUCCESS,), 1)):
+        solve(problem, objectives, settings)
+        assert len(session._programs) == kept
+
+
 @pytest.mark.slow
 def test_after_a_limit_the_session_goes_on() -> None:
     problem, session = hard_problem(12, 8, 3, 3), Session()
-    settings = Settings(
-        constraints=(Path("at_most_units"),),
-        constants=("max_units=99",),
-        deadline=Deadline(0),
-        session=session,
-    )
+    settings = AT_MOST._replace(constants=("max_units=99",), deadline=Deadline(0), session=session)
     assert solve(problem, (Objective.UNITS,), settings).status in {Status.UNKNOWN, Status.FEASIBLE}
     assert not session._programs  # a search that was stopped is not gone on with
     in_time = settings._replace(deadline=None)

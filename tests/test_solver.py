@@ -15,6 +15,7 @@ from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.session import Session
+from foon_asp.asp.solver import _Solver
 from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.scales import Scales
@@ -439,7 +440,7 @@ def test_without_time_there_is_a_tree_and_nothing_is_proved(
 ) -> None:
     heard = Heard()
     problem = ways(["0.5"], ["0.5", "0.5"])
-    monkeypatch.delattr("foon_asp.encoding.search.ground")
+    monkeypatch.setattr(_Solver, "_search", None)
     outcome = solve(problem, objectives, SEARCHED._replace(deadline=Deadline(0)), heard)
     assert outcome.status is Status.FEASIBLE
     assert outcome.bounds == bounds

@@ -213,8 +213,25 @@ def test_that_no_tree_is_within_a_limit_is_the_answer(monkeypatch: pytest.Monkey
     assert (outcome.status, outcome.units, prices.asked) == (Status.INFEASIBLE, None, [2])
 
 
+def test_ctrl_c_just_before_a_price_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
+    within_limits = _Solver._within_limits
+
+    def pressed(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    def instead(solver: _Solver, wide: Wide, tree: frozenset[int]) -> Outcome | None:
+        monkeypatch.setattr(Deadline, "watched", pressed)
+        return within_limits(solver, wide, tree)
+
+    monkeypatch.setattr(_Solver, "_within_limits", instead)
+    deadline = Deadline()
+    assert solve(THREE, settings=within(cut=2)._replace(deadline=deadline)).status is Status.UNKNOWN
+    assert deadline.interrupted
+
+
 def test_ctrl_c_while_a_price_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
     Prices(monkeypatch, of_2=KeyboardInterrupt())
+    monkeypatch.setattr(_Solver, "_with_loose_ends", None)  # nothing else is looked at
     deadline = Deadline()
     outcome = solve(THREE, settings=within(cut=2)._replace(deadline=deadline))
     assert (outcome.status, outcome.units, deadline.interrupted) == (Status.UNKNOWN, None, True)
