@@ -282,6 +282,8 @@ def test_renaming_formatting_and_quick_fixes(client: LanguageClient, tmp_path: P
     everything = {"start": {"line": 0, "character": 0}, "end": {"line": 99, "character": 0}}
     actions = text.whole("codeAction", range=everything, context={"diagnostics": []})
     by_title = {action["title"]: action for action in actions}
+    silencing = [title.startswith("Silence") for title in by_title]
+    assert silencing == sorted(silencing)  # what mends comes first
     after = applied(by_title["Write 'chopped' for the state 'choped' everywhere in this file"]["edit"])
     assert after.count("chopped") == 4
     mended = next(title for title in by_title if title.startswith("Mend: no tab after S5"))

@@ -213,6 +213,18 @@ def test_patch_applies_a_diff(folder: Path) -> None:
         assert (Path("a.txt").read_bytes() if Path("a.txt").exists() else b"") == after.encode()
 
 
+def test_the_name_that_is_known_is_written_for_the_one_that_is_not(tmp_path: Path, cli: Cli) -> None:
+    slips = "O\tonion\nS\tin\t[onio onions]\nM\tchop\nO\tonion\nS\tchoped\n//\nO\tsalt\nS\tchopped\n"
+    slips += (
+        "M\tspriknle\nO\tonion\nS\tunccracked\n//\n"  # one near a name of the file, three near known words
+    )
+    file = tmp_path / "a.txt"
+    file.write_text(slips)
+    assert cli("lint", file, "--fix", "--unsafe-fixes").code == 0
+    mended = slips.replace("onio ", "onion ").replace("choped", "chopped").replace("spriknle", "sprinkle")
+    assert file.read_text() == mended.replace("unccracked", "uncracked")
+
+
 def test_unsafe_fixes_are_only_made_when_asked_for(folder: Path, cli: Cli) -> None:
     file = write("a.txt", "\ufeff" + NEAR)
     ran = cli("lint", file, "--fix")
@@ -222,7 +234,8 @@ def test_unsafe_fixes_are_only_made_when_asked_for(folder: Path, cli: Cli) -> No
     assert [(f["mendable"], f["unsafe"]) for f in found] == [(False, True)]
     assert cli("lint", file, "--fix", "--unsafe-fixes").code == 0
     assert file.read_text(encoding="utf-8") == "\ufeff" + NEAR.replace("ppp", "pp")
-    file.write_text(NEAR.replace("S\tchopped\n//", "//").replace("S\tchopped", "S\tchopped\nS\tpeeled", 1))
+    once = NEAR.replace("S\tchopped\n//", "//").replace("S\tchopped", "S\tchopped\nS\tpeeled", 1)
+    file.write_text(once.replace("cho", "zwo"))
     assert cli("lint", file).out.endswith("1 file: 1 warning\n")  # each stands once: which is the slip?
 
 

@@ -46,6 +46,12 @@ def test_lines_keep_everything_else() -> None:
     assert renamed(IDS.replace("\n", "\r\n"), "object", "bowl", "dish") == dish.replace("\n", "\r\n")
 
 
+def test_an_ingredient_that_is_there_already_is_not_written_twice() -> None:
+    both = "O\ta\nS4\tcontains\t{salt, pepper,leek}\nS\tin\t[salt]\n"
+    once = "O\ta\nS4\tcontains\t{pepper,leek}\nS\tin\t[pepper]\n"
+    assert renamed(both, "object", "salt", "pepper") == once
+
+
 def mapped(unit: FunctionalUnit, kind: str, old: str, new: str) -> FunctionalUnit:
     """Rename in a unit, in the plain way."""
 

@@ -337,16 +337,17 @@ def quick_fixes(
     edited: EditedText, columns: Columns, uri: str, first: int, last: int
 ) -> Iterator[types.CodeAction]:
     """Offer what mends the findings on some lines, and to silence them."""
-    silenced = set()
+    silenced: dict[tuple[int, str], types.CodeAction] = {}
     for line, finding in islice(edited.findings(first, last), _OFFERED):
         title, edits = _mending(edited, columns, line, finding)
         if edits:
             yield _action(title, uri, edits, is_preferred=not finding.unsafe and finding.rename is None)
         if not edited.is_json and (line, finding.code) not in silenced and finding.code != "noqa":
-            silenced.add((line, finding.code))
             place = types.Range(types.Position(line, 0), types.Position(line, 0))
             comment = types.TextEdit(place, f"{silencing(finding.code)}{edited.end}")
-            yield _action(f"Silence {finding.code} on this line", uri, [comment], is_preferred=False)
+            action = _action(f"Silence {finding.code} on this line", uri, [comment], is_preferred=False)
+            silenced[line, finding.code] = action
+    yield from silenced.values()
 
 
 def _mending(

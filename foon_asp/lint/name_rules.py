@@ -1,5 +1,6 @@
 """What there is to say of names: slips of the pen, and objects that are never there."""
 
+import re
 from collections.abc import Iterator
 
 from foon_asp.lint.names import Kind, Names, times
@@ -23,7 +24,7 @@ def name_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
         verbs = kind is not Kind.OBJECT
         for name, meant in near_names(names.counts[kind], verbs, known.words, names.loose[kind]):
             said |= {(kind, name), (kind, meant)}
-            yield from _near(names, kind, name, meant)
+            yield from _near(names, kind, name, meant, known)
         for name in names.counts[kind]:
             if (kind, name) not in said and name not in known.names[kind]:
                 for finding in _misspelt(names, kind, name, known):
@@ -36,8 +37,11 @@ def name_findings(names: Names, known: Vocabulary) -> Iterator[Diagnostic]:
                 yield from _unknown(names, name, known)
 
 
-def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
+def _near(names: Names, kind: Kind, name: str, meant: str, known: Vocabulary) -> Iterator[Diagnostic]:
     counts = names.counts[kind]
+    is_slip = known.words.issuperset(words_of(meant)) and not known.words.issuperset(words_of(name))
+    # two names that stand equally often: which one is wrong?
+    rename = Rename(kind, name, meant) if counts[meant] > counts[name] or is_slip else None
     roles = ""
     if kind is Kind.OBJECT and (name in names.objects) != (meant in names.objects):
         only = name if meant in names.objects else meant
@@ -48,7 +52,6 @@ def _near(names: Names, kind: Kind, name: str, meant: str) -> Iterator[Diagnosti
             f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
             f"{roles}: if they mean the same, write one of them everywhere"
         )
-        rename = Rename(kind, name, meant) if counts[meant] > counts[name] else None  # which one is wrong?
         yield names.sheets[sheet].finding("near-name", message, index, name)._replace(rename=rename)
 
 
@@ -74,8 +77,10 @@ def _misspelt(names: Names, kind: Kind, name: str, known: Vocabulary) -> Iterato
         meant = near_word(word, known.near[kind], verbs=kind is not Kind.OBJECT)
         if meant is not None:
             message = f"{word!r} in the {kind} {name!r} is no word that is known; is it {meant!r}?"
+            right = re.sub(rf"(?<![^\W\d_]){word}(?![^\W\d_])", meant, name)
+            rename = Rename(kind, name, right) if right != name else None  # it has capitals or accents
             for sheet, index, _ in names.by_sheet(kind, name):
-                yield names.sheets[sheet].finding("misspelt", message, index, name)
+                yield names.sheets[sheet].finding("misspelt", message, index, name)._replace(rename=rename)
             return
 
 

@@ -71,8 +71,9 @@ class Vocabulary:
         found = {}
         for kind in Kind:
             alike = (Kind.STATE, Kind.MOTION) if kind in {Kind.STATE, Kind.MOTION} else (kind,)
-            names = [name for each in alike for name in self.names[each]]
-            found[kind] = by_what_is_left({word for name in names for word in words_of(name)})
+            words = {word for each in alike for name in self.names[each] for word in words_of(name)}
+            opposites = {f"un{word}" for word in words if word.endswith("ed")}
+            found[kind] = by_what_is_left(words | opposites)
         return found
 
     def usual_bracket(self, word: str) -> Bracket | None:

@@ -144,8 +144,7 @@ class Renaming:
             return line._replace(label=self._name(NameKind.OBJECT, line.label))
         if isinstance(line, MotionLine):
             return line._replace(motion=self._name(NameKind.MOTION, line.motion))
-        listed = tuple(self._name(NameKind.OBJECT, item) for item in line.listed)
-        return line._replace(attribute=self._attribute(line.attribute), listed=listed)
+        return line._replace(attribute=self._attribute(line.attribute), listed=self._items(line.listed))
 
     def _attribute(self, attribute: str | Relation | Contents) -> str | Relation | Contents:
         if isinstance(attribute, str):
@@ -153,7 +152,14 @@ class Renaming:
         word = self._name(NameKind.WORD, attribute.word)
         if isinstance(attribute, Relation):
             return Relation(word, self._name(NameKind.OBJECT, attribute.object))
-        return Contents(word, tuple(sorted(self._name(NameKind.OBJECT, i) for i in attribute.ingredients)))
+        return Contents(word, tuple(sorted(self._items(attribute.ingredients))))
+
+    def _items(self, items: tuple[str, ...]) -> tuple[str, ...]:
+        """Give ingredients with the new name, once where it stands among them already."""
+        kind, old, new = self.rename
+        if kind == NameKind.OBJECT and new in items:
+            return tuple(item for item in items if item != old)
+        return tuple(self._name(NameKind.OBJECT, item) for item in items)
 
     def _node(self, field: str) -> str:
         """Give a node in one-line notation with the new name; what is none stays."""
