@@ -167,3 +167,29 @@ def test_bounds_hold_for_every_whole_solution() -> None:
         found = math.inf if whole is None else sum(costs[c] * round(whole[c]) for c in costs)
         assert found == best
     assert proved > 45
+
+
+class Lost:
+    """HiGHS as it is where it gets lost in numbers: neither a solution nor a proof that there is none."""
+
+    def __init__(self, highs: Any) -> None:
+        self._highs = highs
+
+    def getModelStatus(self) -> None:  # noqa: N802 (a name of HiGHS)
+        """Give a status that says nothing."""
+
+    def getDualRay(self) -> tuple[None, bool, list[float]]:  # noqa: N802
+        """Give no ray."""
+        return None, False, []
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._highs, name)
+
+
+def test_where_highs_gets_lost_on_the_way_from_the_last_solution_it_begins_anew() -> None:
+    made = program(1, ({0: 2}, 3))
+    made.solve({0: 1})
+    made._highs = Lost(made._highs)
+    assert made.solve({0: 1}) == Solved([1.5], Fraction(3, 2))
+    made._highs = Lost(made._highs)
+    assert made.relaxation({0: 1}).x == [1.5]

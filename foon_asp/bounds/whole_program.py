@@ -100,8 +100,7 @@ class WholeProgram:
         """Solve the relaxation; a bound above ``cutoff`` is enough."""
         if any(u is not None and lo > u for lo, u in zip(self.lower, self.upper, strict=True)):
             return Solved(None, math.inf)
-        highs = self._send(objective)
-        highs.run()
+        highs = self._run(objective)
         if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
             solution = highs.getSolution()
             weights = list(solution.row_dual)
@@ -113,8 +112,7 @@ class WholeProgram:
 
     def relaxation(self, objective: Mapping[int, float]) -> Relaxation:
         """Solve the relaxation, and give the weights of its rows, of which nothing is proved."""
-        highs = self._send(objective)
-        highs.run()
+        highs = self._run(objective)
         if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
             solution, basis = highs.getSolution(), highs.getBasis()
             basic = self._library.HighsBasisStatus.kBasic
@@ -146,6 +144,16 @@ class WholeProgram:
         values = list(highs.getSolution().col_value) if found else None
         self._highs = None
         return values
+
+    def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
+        """Let HiGHS solve the relaxation; anew where it got lost on the way from the solution before."""
+        highs = self._send(objective)
+        highs.run()
+        if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal and not highs.getDualRay()[1]:
+            self._highs = None
+            highs = self._send(objective)
+            highs.run()
+        return highs
 
     def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Tell HiGHS what has changed."""
