@@ -1,4 +1,4 @@
-"""Measures of the user's own against ``inputs``: what a question takes after reading, and its answers.
+"""Measures of the user's own against ``inputs``: processor time of a question after reading, and its answers.
 
     python benchmarks/measures.py                            a quick run
     python benchmarks/measures.py --units 100000             both families, five harder goals each
@@ -40,9 +40,9 @@ def rules(motions: list[str]) -> str:
 
 def asked(problem: Problem, objective: Objective) -> tuple[float, tuple[object, ...]]:
     """Give the seconds that a question takes, and what its best tree costs."""
-    began = time.perf_counter()
+    began = time.process_time()
     outcome = solve(problem, (objective,), Settings())
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     assert outcome.status is Status.OPTIMAL
     assert outcome.costs is not None
     return seconds, (outcome.costs.measure(objective), outcome.costs.units)
@@ -76,10 +76,10 @@ def compare(family: Family, units: int, goals: int, rounds: int) -> list[list[st
                     given = Problem(
                         network, data.kitchen, problem.goals, data.rates, data.utensils, measures=own
                     )
-                    began = time.perf_counter()
+                    began = time.process_time()
                     given.apply_measures()
                     if own and not evaluating:
-                        evaluating = time.perf_counter() - began
+                        evaluating = time.process_time() - began
                     needed, answers[each] = asked(given, each)
                     taken.append(needed)
             if measure == SAME:

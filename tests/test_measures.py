@@ -260,6 +260,12 @@ def test_there_is_one_objective_of_a_name() -> None:
             "cost(mine,U,5) :- unit(U), output(U,O), available(O).",
             "found available/1, which differs from tree",
         ),
+        ("cost(mine,U,5) :- times(U,2).", "found times/2, which differs from tree"),
+        (
+            "cost(mine,U,5) :- inputs(U,N), N > k.",
+            "found k, which is above every number; set it, as in #const",
+        ),
+        ("cost(mine,U,1;2) :- unit(U).", r"found cost\(2\), expected a cost such as"),
         (
             "cost(mine,U,5) :- input(U,O), kitchen(O).",
             "found kitchen/1, which differs from question to question",

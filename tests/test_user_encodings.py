@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from foon_asp.encoding import encoding as encoding_rules
+from foon_asp.grounding.stated import Stated
 from foon_asp.resources import encodings_folder
 from tests.conftest import Cli
 
@@ -79,6 +81,33 @@ def test_scripts_are_refused_behind_an_include(cli: Cli, tmp_path: Path) -> None
     ran = cli("solve", "--goal", "ice", "--constraint", encoding(tmp_path, '#include "hidden.lp".\n'))
     assert ran.code == 2
     assert "hidden.lp:1:1: error: found #script" in ran.err
+
+
+NAME, TEXT = (
+    "found k, which is above every number; set it, as in #const k = 3.",
+    'found the text "3", which is',
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (":- #count { U : use(U) } > k.", NAME),
+        (":- k < #sum { N,U : use(U), inputs(U,N) }.", NAME),
+        (":- 2 { use(U) } k.", NAME),
+        (":- use(U), inputs(U,N), 1 < N < k.", NAME),
+        (':- #count { U : use(U) } > "3".', TEXT),
+        ("#const k = 2. :- #count { U : use(U) } > k.", ""),
+        (":- use(U), motion(U,M), M = k, M != k.", ""),
+        (':- use(U), motion(U,M), M > "pour".', ""),
+        (':- #max { M : use(U), motion(U,M) } > "pour".', ""),
+        (":- #count { U : use(U) } > #sup.", ""),
+    ],
+)
+def test_what_numbers_are_compared_with_is_one(text: str, said: str) -> None:
+    rules = encoding_rules.read_encoding(Stated("rule 1", text))
+    warnings = list(map(str, encoding_rules.check_encodings([rules], [])))
+    assert [said in each for each in warnings] == ([True] if said else [])
 
 
 @pytest.mark.parametrize(

@@ -2,19 +2,19 @@
 
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from clingo.ast import AST, ASTType, ComparisonOperator, Location, Transformer
+from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Location, Transformer
 from clingo.symbol import SymbolType
 
 from foon_asp.encoding.encoding_file import LARGEST, check_text, excerpt, included_files
 from foon_asp.encoding.facts import FACT_PREDICATES, quote
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import listener
-from foon_asp.grounding.parsing import parse
+from foon_asp.grounding.parsing import nodes, parse
 from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.network import Source
 from foon_asp.problem import Objective
@@ -58,6 +58,8 @@ _MESSAGE = re.compile(r"(?P<file>.+?):(?P<line>\d+):(?P<column>\d+)[-:\d]*: (?P<
 _STRING = re.compile(r'"([^"\\]|\\["\\n])*"')  # as clingo reads one
 _NEGATIVE = re.compile(r"-\d+(,|$)")  # the weight of an element
 _ESCAPED = re.compile(r"\\(.)")
+_SAME = {ComparisonOperator.Equal, ComparisonOperator.NotEqual}
+_OF_ANYTHING = {AggregateFunction.Min, AggregateFunction.Max}  # and not of numbers alone
 _EXAMPLE = ':- use(U), motion(U,"fry").'
 _WORD = re.compile(r"[a-z][A-Za-z0-9_]*")
 
@@ -238,9 +240,9 @@ def check_encodings(
     """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
     ``others`` are further files of ours that are loaded. Returns warnings: atoms that nothing defines, with
-    the nearest predicate that something does. Raises :class:`InputError` for what would change which trees
-    there are or which are best, and for what would be lost without a word: rules for predicates that are
-    ours, names that are, and statements other than rules.
+    the nearest predicate that something does, and what numbers are compared with and is none. Raises
+    :class:`InputError` for what would change which trees there are or which are best, and for what would be
+    lost without a word: rules for predicates that are ours, names that are, and statements other than rules.
     """
     errors: list[Diagnostic] = []
     known = set(PUBLIC)
@@ -264,12 +266,43 @@ def check_encodings(
         errors += _constants(encoding, names)
     if errors:
         raise InputError(errors)
-    return [
+    warnings = [
         encoding.remark(Severity.WARNING, "undefined-atom", undefined(signature, known), source)
         for encoding in added
         for signature, source in encoding.used.items()
         if signature not in known
     ]
+    constants = {name for encoding in (*added, *base, *others) for name in encoding.constants}
+    for encoding in mine:
+        for term, message in no_numbers(encoding.statements, constants):
+            warnings.append(encoding.remark(Severity.WARNING, "no-number", message, _source(term.location)))
+    return warnings
+
+
+def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
+    """Give terms that are above every number where one is compared with them, and what to say of that.
+
+    These are names that no ``#const`` sets, and texts in place of a bound of what is counted or added up.
+    """
+    for node in (node for statement in statements for node in nodes(statement)):
+        terms: list[AST] = []
+        texts = False
+        if node.ast_type == ASTType.Comparison:
+            if not _SAME.issuperset(guard.comparison for guard in node.guards):
+                terms = [node.term, *(guard.term for guard in node.guards)]
+        elif node.ast_type == ASTType.Aggregate or (
+            node.ast_type == ASTType.BodyAggregate and node.function not in _OF_ANYTHING
+        ):
+            terms = [guard.term for guard in (node.left_guard, node.right_guard) if guard is not None]
+            texts = True
+        for term in terms:
+            if term.ast_type != ASTType.SymbolicTerm:
+                continue
+            kind = term.symbol.type
+            if kind is SymbolType.Function and term.symbol.name not in constants:
+                yield term, f"found {term}, which is above every number; set it, as in #const {term} = 3."
+            elif kind is SymbolType.String and texts:
+                yield term, f"found the text {term}, which is above every number: leave out the quotes"
 
 
 @cache

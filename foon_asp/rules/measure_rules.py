@@ -24,7 +24,7 @@ from clingo.ast import (
 )
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.encoding import PUBLIC_NAMES, Signature, fault, located, undefined
+from foon_asp.encoding.encoding import PUBLIC_NAMES, Signature, fault, located, no_numbers, undefined
 from foon_asp.encoding.encoding_file import check_text
 from foon_asp.encoding.facts import FACT_PREDICATES, OBJECT_FACTS
 from foon_asp.errors import UserError
@@ -45,6 +45,7 @@ _QUESTION = "differs from question to question, and what a unit costs does not"
 _REFUSED = {
     ("use", 1): _TREE,
     ("available", 1): _TREE,
+    ("times", 2): _TREE,
     ("kitchen", 1): _QUESTION,
     ("goal", 1): _QUESTION,
     ("optimize", 2): _QUESTION,
@@ -123,6 +124,7 @@ class _Reader:
             self._check_head(rule, atoms, names)
             self._check_atoms(atoms)
         self._check_names(names)
+        self._check_numbers()
         self._check_loops()
         self._refuse_errors()
         dependent = self._dependent()
@@ -193,6 +195,14 @@ class _Reader:
                 f"{self._stated.place}: expected rules for what units cost, such as "
                 'cost(mine,U,5) :- unit(U), motion(U,"pour").'
             )
+
+    def _check_numbers(self) -> None:
+        """Refuse what is compared with numbers and is none, and costs of another form, which say nothing."""
+        for term, message in no_numbers(self._rules, [each.name for each in self._constants]):
+            self._error("no-number", message, term)
+        for atom in (head for atoms in self._atoms for head in atoms.heads):
+            if atom.name == COST[0] and _signature(atom) != COST:
+                self._error("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
 
     def _check_loops(self) -> None:
         """Refuse rules that depend on themselves: what they derive may be endless, or left open."""
