@@ -238,6 +238,19 @@ def test_a_session_in_an_editor(client: LanguageClient, tmp_path: Path) -> None:
     assert any(told_while_typing() == [] for _ in range(3))  # thrice, should the machine stand still
 
 
+@pytest.mark.slow
+def test_findings_that_stay_as_they_are_are_told_again_only_when_all_is_linted(
+    client: LanguageClient, tmp_path: Path
+) -> None:
+    text = Text(client, tmp_path / "soup.txt", f"zzz\n{SOUP}")
+    before = client.findings()
+    text.change((0, 0), (0, 0), "z")
+    text.change((0, 0), (0, 1), "")
+    assert client.findings() == before
+    assert text.ask("hover", 99, 0)
+    assert client.told == []
+
+
 def test_completion_knows_kinds_counts_and_ids(client: LanguageClient, tmp_path: Path) -> None:
     text = Text(client, tmp_path / "soup.txt", SOUP + "O\to\nS\tch\nS\tcon\nS8\tcontains\t{onion,p\nM1\nO\n")
 
@@ -309,8 +322,7 @@ def test_json_is_linted_whole(client: LanguageClient, tmp_path: Path) -> None:
     assert codes(client.findings()) == [(1, "no-inputs")]
     assert (text.ask("hover", 0, 0), text.ask("completion", 2, 5)["items"]) == (None, [])
     text.change((0, 0), (3, 0), "[]")
-    assert codes(client.findings()) == [(1, "no-inputs")]  # until it is linted
-    assert codes(client.findings()) == []
+    assert codes(client.findings()) == []  # they stay until it is linted
 
 
 @pytest.mark.slow

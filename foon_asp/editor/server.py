@@ -83,6 +83,7 @@ class Desk:
         self.texts: dict[str, EditedText] = {}
         self._timers: dict[str, asyncio.Handle] = {}
         self._telling: dict[str, asyncio.Handle] = {}
+        self._told: dict[str, str] = {}
         self._lints: dict[str, LintProcess] = {}
         self._complaint = ""
         self._kitchens: dict[Path, tuple[float, list[NodePattern]]] = {}
@@ -131,7 +132,8 @@ class Desk:
         uri = params.text_document.uri
         self._stop(uri)
         self.texts.pop(uri, None)
-        self._send(uri, [])
+        self._send(uri, "")
+        del self._told[uri]
 
     def end(self) -> None:
         """End the linting that is under way."""
@@ -210,18 +212,19 @@ class Desk:
         self.server.window_show_message(types.ShowMessageParams(kind, text))
 
     def _tell(self, uri: str, parts: Iterator[str], found: list[str]) -> None:
-        """Put findings together, part by part, while nothing is asked; then send them."""
+        """Put findings together, part by part, while nothing is asked; then send them if they are others."""
         loop = asyncio.get_running_loop()
         self._telling.pop(uri, None)
         if (left := self.server.protocol.heard + _PAUSE - loop.time()) > 0:
             self._telling[uri] = loop.call_later(left, self._tell, uri, parts, found)
         elif part := next(parts, None):
             self._telling[uri] = loop.call_soon(self._tell, uri, parts, [*found, part])
-        else:
-            self._send(uri, found)
+        elif (told := ",".join(found)) != self._told.get(uri):
+            self._send(uri, told)
 
-    def _send(self, uri: str, found: list[str]) -> None:
-        told = f'{{"uri":{json_line(uri)},"diagnostics":[{",".join(found)}]}}'
+    def _send(self, uri: str, found: str) -> None:
+        self._told[uri] = found
+        told = f'{{"uri":{json_line(uri)},"diagnostics":[{found}]}}'
         method = types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
         self.server.protocol.tell(f'{{"jsonrpc":"2.0","method":"{method}","params":{told}}}')
 
@@ -258,6 +261,7 @@ class Desk:
             return
         self._complaint = ""
         edited.linted(found)
+        self._told.pop(uri, None)  # an editor may have lost some of them with lines that came back
         self.publish(uri)
 
 
