@@ -142,13 +142,17 @@ def told(monkeypatch: pytest.MonkeyPatch, targets: int, told: Told, enough: int)
         every = range(targets)
         graph = Hypergraph(targets + 1, [[]] * targets, [[a + 1] for a in every], [0])
         goals = range(1, targets + 1)
-        share_costs(graph, goals, every, lambda _: 2, (), enough, lambda: len(asked) > 999)
+        share_costs(graph, goals, every, lambda _: 2, (), enough, lambda: len(asked) > 9999)
     return len(asked)
 
 
+# by the dearest action, 101 would be enough: a hundredth of what lacks, and no more, has to come of eight
+ENDS = [([0.0] * 30, 9), ([0.0] * 8 + [1.0] * 30, 17), ([0.0, 101.0, 101.0], 2)]
+
+
 def test_cuts_are_looked_for_until_they_bring_little(monkeypatch: pytest.MonkeyPatch) -> None:
-    # by the dearest action, 101 would be enough: a hundredth of what lacks, and no more, has to come of eight
-    for values, solved in (([0.0] * 30, 9), ([0.0] * 8 + [1.0] * 30, 17), ([0.0, 101.0, 101.0], 2)):
+    monkeypatch.setattr(shared_costs, "_SMALL", 0)  # before all targets together
+    for values, solved in ENDS:
         relaxation = Told(values, [0.0] * 50)
         assert told(monkeypatch, 50, relaxation, 202) == 40 * (solved - 1)
         assert (relaxation.solved, len(relaxation.rows)) == (solved, 40 * (solved - 1))
@@ -160,6 +164,27 @@ def test_cuts_are_looked_for_until_they_bring_little(monkeypatch: pytest.MonkeyP
     sharing = _Sharing(Hypergraph(2, [[]], [[1]], [0]), [1], [0], lambda _: 1)
     assert sharing._separate([0.0], lambda: True) is False
     assert (sharing._separate([0.0], lambda: False), sharing._rows) == (True, [(0,)])
+
+
+def test_each_target_that_needs_few_actions_has_cuts_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    for values, solved in ENDS:
+        relaxation = Told(values, [0.0] * 50)
+        assert told(monkeypatch, 50, relaxation, 202) == 2 * 50 * (solved - 1)  # the second is known
+        assert sorted(relaxation.rows) == [(a,) for a in range(50) for _ in range(solved - 1)]
+    relaxation = Told([0.0], [0.999] * 3)
+    assert (told(monkeypatch, 3, relaxation, 202), relaxation.rows) == (3, [])
+
+
+def test_targets_are_looked_at_by_themselves_only_where_that_takes_little() -> None:
+    # four things from nothing, of which the targets need one, one, three and, after a way of 32 actions, one
+    needs = [[], [], [], [], [1, 2, 3], [4], *[[6 + n] for n in range(31)]]
+    gives = [[1], [2], [3], [4], *[[5 + n] for n in range(33)]]
+    graph = Hypergraph(38, needs, gives, [0])
+    sharing = _Sharing(graph, [1, 2, 5, 37], range(37), lambda _: 1)
+    assert [cutter.actions for cutter in sharing._alone] == [[0], [1], [0, 1, 2, 4]]
+    assert [len(cutter.actions) for cutter in sharing._together] == [33]
+    assert sharing._separate([1.0] * 36 + [0.0], lambda: False)
+    assert sharing._rows == [(36,)]
 
 
 def test_dear_actions_are_cut_first() -> None:

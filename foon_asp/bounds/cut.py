@@ -7,6 +7,7 @@ Bonet and Helmert (2010) bound delete-free plans by hitting landmarks of this ki
 """
 
 import math
+import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import NamedTuple
 
@@ -26,16 +27,22 @@ class Cutter:
     ``targets`` that are there from the start are left out. ``actions`` are those that can run and that a
     target can need: only they are worth asking for, and every cut found holds for all actions that are not
     forbidden. ``hopeless`` is a cut without members where the targets cannot all be reached, or else
-    ``None``. Building one takes time linear in the size of the hypergraph.
+    ``None``. Building one takes time linear in the size of the hypergraph, and where it is known which
+    objects are ``reachable``, of what the targets can need.
     """
 
     def __init__(
-        self, graph: Hypergraph, targets: Iterable[int], forbidden: frozenset[int] = frozenset()
+        self,
+        graph: Hypergraph,
+        targets: Iterable[int],
+        forbidden: frozenset[int] = frozenset(),
+        reachable: bytearray | None = None,
     ) -> None:
         self._graph = graph
         self._forbidden = forbidden
         self.targets = sorted({o for o in targets if not graph.at_start[o]})
-        self._reachable = reachable = graph.reach(forbidden)
+        reachable = graph.reach(forbidden) if reachable is None else reachable
+        self._reachable = reachable
         self.actions: list[int] = []
         self.hopeless: Cut | None = None
         lost = [o for o in self.targets if not reachable[o]]
@@ -85,10 +92,7 @@ class Cutter:
         places = self._places
         if growth.admit_all(places[a] for a in keep if a in places):
             return None
-        refused: set[int] = set()
-        for action in order:
-            if not growth.admit(places[action]):
-                refused.add(action)
+        refused = {self.actions[place] for place in growth.refuse([places[a] for a in order])}
         reached = bytearray(self._reachable)
         takers: dict[int, int] = {}
         for o, number in self._numbers.items():
@@ -154,34 +158,42 @@ class _Growth:
 
     def admit_all(self, places: Iterable[int]) -> bool:
         """Admit actions; whether the targets are reached, after which the growth is of no more use."""
-        return not (self._left and all(self.admit(place) for place in places))
+        return not self._left or bool(self.refuse(places, most=1))
 
-    def admit(self, place: int) -> bool:
-        """Admit an action unless the targets are reached with it; whether it was admitted."""
+    def refuse(self, places: Iterable[int], most: int = sys.maxsize) -> list[int]:
+        """Admit actions one after the other, but not those with which the targets are reached.
+
+        Gives these, and ends where there are ``most`` of them.
+        """
         waiting, missing, reached = self._waiting, self._missing, self.reached
-        if missing[place]:
-            waiting[place] = True
-            return True
-        gives, takers, targets = self._gives, self._takers, self._targets
-        new: list[int] = []
-        stack = [place]
-        while stack and self._left:
-            for o in gives[stack.pop()]:
-                if not reached[o]:
-                    reached[o] = True
-                    new.append(o)
+        gives, takers, targets, left = self._gives, self._takers, self._targets, self._left
+        refused: list[int] = []
+        for place in places:
+            if missing[place]:
+                waiting[place] = True
+                continue
+            new: list[int] = []
+            stack = [place]
+            while stack and left:
+                for o in gives[stack.pop()]:
+                    if not reached[o]:
+                        reached[o] = True
+                        new.append(o)
+                        if o < targets:
+                            left -= 1
+                        for taker in takers[o]:
+                            missing[taker] -= 1
+                            if not missing[taker] and waiting[taker]:
+                                stack.append(taker)
+            if not left:
+                refused.append(place)
+                if len(refused) == most:
+                    break
+                for o in new:
+                    reached[o] = False
                     if o < targets:
-                        self._left -= 1
+                        left += 1
                     for taker in takers[o]:
-                        missing[taker] -= 1
-                        if not missing[taker] and waiting[taker]:
-                            stack.append(taker)
-        refused = not self._left
-        if refused:
-            for o in new:
-                reached[o] = False
-                if o < targets:
-                    self._left += 1
-                for taker in takers[o]:
-                    missing[taker] += 1
-        return not refused
+                        missing[taker] += 1
+        self._left = left
+        return refused

@@ -18,7 +18,9 @@ from foon_asp.bounds.relaxation import Covering
 
 PARTS = 720720  # of 1: most weights are simple fractions
 _HIT = 0.999  # a landmark of a greater share is taken to be hit
-_CUTS = 40  # that one relaxed solution is asked for
+_CUTS = 40  # before all targets that one relaxed solution is asked for; of smaller ones there are more
+_ALONE = 8  # times as many actions as there are, at most, for targets looked at by themselves
+_SMALL = 0.5  # of the actions, at most, that a target may need for this
 _STALLED = 8  # solutions after which a bound that hardly grows counts as the best there is
 _GROWS = 0.01  # of what lacks, how much these have to bring
 
@@ -77,6 +79,7 @@ class _Sharing:
         self._costs = [cost(a) for a in self._actions]
         self._dearest = max(self._costs, default=1)
         self._random = random.Random(0)
+        self._alone, self._together = ([], []) if self._cutter.hopeless else self._by_target(small)
         self._relative = [c / self._dearest for c in self._costs]  # the costs may be too great for floats
         self._covering = Covering(self._relative)
         self._rows: list[tuple[int, ...]] = []
@@ -111,22 +114,47 @@ class _Sharing:
 
     def _separate(self, x: list[float], expired: Callable[[], bool]) -> bool:
         """Add cuts that a relaxed solution misses, each beside those before; whether there are any."""
-        shares, chance = list(x), self._random.random
-        cutter, costs = self._cutter, self._relative
+        import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+        shares, relative, chance = np.array(x), np.array(self._relative), self._random.random
         found = False
-        for _ in range(_CUTS):
-            if expired():
-                return False
-            order = sorted(cutter.actions, key=lambda a: (-shares[a], costs[a] * (0.5 + chance())))
-            cut = cutter.cut((), order)
-            assert cut is not None  # without actions no target is reached
-            if sum([shares[a] for a in cut.members]) >= _HIT:
-                break
-            found = True
-            self._add(frozenset(self._objects[o] for o in cut.objects), cut.members)
-            for a in cut.members:
-                shares[a] = 1.0
+        effort = _CUTS * len(self._actions)
+        self._random.shuffle(self._alone)
+        for cutter in (*self._alone, *self._together):
+            places = np.array(cutter.actions)
+            costs = relative[places]
+            while effort > 0:
+                if expired():
+                    return False
+                effort -= len(places)
+                dear = costs * [0.5 + chance() for _ in costs]
+                order = places[np.lexsort((dear, -shares[places]))]
+                cut = cutter.cut((), order.tolist())
+                assert cut is not None  # without actions no target is reached
+                if shares[list(cut.members)].sum() >= _HIT:
+                    break
+                found = True
+                self._add(frozenset(self._objects[o] for o in cut.objects), cut.members)
+                shares[list(cut.members)] = 1.0
         return found
+
+    def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
+        """Give cutters before single targets that can need few of the actions, and one before all others."""
+        most, targets = len(self._actions), self._cutter.targets
+        alone: list[Cutter] = []
+        others: list[int] = []
+        effort = _ALONE * most if len(targets) > 1 else 0
+        everything = bytearray(b"\1") * graph.size
+        for target in targets:
+            if effort > 0:
+                cutter = Cutter(graph, [target], reachable=everything)
+                effort -= len(cutter.actions)
+                if len(cutter.actions) <= most * _SMALL:
+                    alone.append(cutter)
+                    continue
+            others.append(target)
+        together = [Cutter(graph, others, reachable=everything)] if others else []
+        return alone, together
 
     def _shared(self, x: list[float]) -> SharedCosts:
         left = [c * PARTS for c in self._costs]
