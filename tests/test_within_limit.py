@@ -3,6 +3,7 @@
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
@@ -376,3 +377,21 @@ def test_ctrl_c_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "at_costs", lambda *given: teller(*given)._replace(interrupted=True))
     with pytest.raises(KeyboardInterrupt):
         limited(teller.wide, UNITS, picked(5, 3), lambda unit: unit < 10, 2, lambda: False)
+
+
+def test_what_leads_nowhere_has_no_costs() -> None:
+    """It can run, but what takes its output cannot; where rates count, nothing knows what it costs."""
+    nowhere = small(
+        *("cut: start > a", "mix: a > end", "fry: start > b", "boil: b > c", "mix: c > end"),
+        *("peel: start > x", "grow: never > never", "blend: x, never > end"),
+    )
+    rates = dict(
+        zip(
+            nowhere.network.motions,
+            map(Fraction, ["98/100", "97/100", "6/10", "7/10", "97/100", "1/5", "1/7", "1/9"]),
+            strict=True,
+        )
+    )
+    rule = given_constraint("at_most_motion:limited_motion=cut,max_uses=0")
+    outcome = solve(replace(nowhere, rates=rates), (Objective.SUCCESS,), Settings((rule,)))
+    assert (outcome.status, outcome.units) == (Status.OPTIMAL, (2, 3, 4))

@@ -119,6 +119,8 @@ def at_costs(
     with _uncollected():
         reducer = _Reducer(wide.problem, tuple(objectives), ALL, expired, Listener(), wide.spare, rest=True)
         reducer.costs = reducer.coarse = costs
+        if not isinstance(wide.left, range):  # other objectives may count no items
+            reducer.known = {action for action in wide.left if action < len(reducer.graph.needs)}
         reducer.rounds = _FEW
         return reducer.reduce(nullcontext)
 
@@ -155,6 +157,7 @@ class _Reducer:
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse: Callable[[int], int] = CoarseCosts(problem, objectives[0])
         self.thin = self.graph.thin(_ABLE, self.coarse)
+        self.known: Collection[int] | None = None  # what can run and leads to a goal
         self.left: Collection[int]  # there before a tree is
         self.tree: set[int] = set()
         self.costs: ExactCosts | None = None
@@ -249,7 +252,7 @@ class _Reducer:
         ``None`` where there is no tree.
         """
         graph = self.graph
-        cone, _ = graph.cone()
+        cone = graph.cone()[0] if self.known is None else self.known
         made = derive(graph, cone, self.coarse, added=False)
         tree = made.tree(graph, graph.goals)
         if tree is None:
