@@ -193,3 +193,13 @@ def test_where_highs_gets_lost_on_the_way_from_the_last_solution_it_begins_anew(
     assert made.solve({0: 1}) == Solved([1.5], Fraction(3, 2))
     made._highs = Lost(made._highs)
     assert made.relaxation({0: 1}).x == [1.5]
+
+
+def test_where_floats_prove_nothing_there_is_a_solution_that_fails_rows_by_a_little() -> None:
+    wide = program(1, ({0: 1}, 2), ({0: -1}, -1), upper={0: 5})
+    wide.solve({0: 1})
+    assert wide._nearly() is None
+    narrow = program(1, ({0: 10**9}, 10**9 + 100), ({0: -(10**9)}, -(10**9)))
+    before = narrow.solve({0: 1})
+    assert narrow._nearly() == [pytest.approx(1.0)]
+    assert narrow.solve({0: 1}) == before  # the rows are as they were

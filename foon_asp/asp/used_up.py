@@ -426,7 +426,7 @@ class _Counting:
     def _measured(self, objective: Objective) -> Measure:
         row, figures = objective.row, self._figures(objective)
         if multiplies(objective):
-            classes = [self._class(figures, figure, Fraction(1)) for figure in figures]
+            classes = _classes(figures, Fraction(1))
 
             def product(counts: Mapping[int, int]) -> Fraction:
                 return -math.prod((figures[a] ** n for a, n in counts.items()), start=Fraction(1))
@@ -440,14 +440,10 @@ class _Counting:
         def total(counts: Mapping[int, int]) -> Fraction:
             return sum((figures[a] * n for a, n in counts.items()), start=Fraction(0))
 
-        return Measure(costs, 0, total, [self._class(figures, figure, Fraction(0)) for figure in figures])
+        return Measure(costs, 0, total, _classes(figures, Fraction(0)))
 
     def _figures(self, objective: Objective) -> list[Fraction]:
         return [Fraction(self._problem.figure(objective, unit)) for unit in self._units]
-
-    @staticmethod
-    def _class(figures: Sequence[Fraction], figure: Fraction, idle: Fraction) -> int:
-        return -1 if figure == idle else sorted(set(figures)).index(figure)
 
     @cached_property
     def _rates(self) -> RateScale:
@@ -596,6 +592,12 @@ class _Counting:
         solver.seconds["ground"] = solver.seconds.get("ground", 0.0) + ended.ground_seconds
         solver.seconds["solve"] = solver.seconds.get("solve", 0.0) + ended.solve_seconds
         return ended
+
+
+def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
+    """Number figures by their size, equal ones alike; -1 for the one that changes nothing."""
+    numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
+    return [-1 if figure == idle else numbers[figure] for figure in figures]
 
 
 def _sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:

@@ -7,12 +7,14 @@ from typing import Any, NamedTuple
 
 # What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
 _PARTS = (720720, 2**40)
+_GAP = 1e-6  # by which rows may fail, relatively, where floats find neither a solution nor a proof
 
 
 class Solved(NamedTuple):
     """A relaxed solution ``x``, ``None`` if there is none, and a proved lower ``bound``.
 
-    The bound is infinite where it is proved that there is no solution, and -infinite where nothing is.
+    A solution with a bound of -infinity may fail rows by a little. The bound is infinite where it is proved
+    that there is no solution, and -infinite where nothing is.
     """
 
     x: list[float] | None
@@ -106,9 +108,25 @@ class WholeProgram:
             weights = list(solution.row_dual)
             return Solved(list(solution.col_value), self._bound(objective, weights, cutoff))
         ray = [abs(weight) for weight in highs.getDualRay()[2]]
-        if any(ray) and self._bound({}, [weight / max(ray) for weight in ray], 0) > 0:
+        largest = max(ray, default=0.0)
+        if largest and self._bound({}, [weight / largest for weight in ray], 0) > 0:
             return Solved(None, math.inf)
-        return Solved(None, -math.inf)
+        return Solved(self._nearly(), -math.inf)
+
+    def _nearly(self) -> list[float] | None:
+        """Give a solution of the rows but for a little, where floats find none and prove nothing.
+
+        Rows with large parts may leave so narrow a gap that it is lost in floats.
+        """
+        highs, count = self._highs, len(self._rows)
+        every, most = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
+        least = self._np.array([float(least) for _, least in self._rows])
+        highs.changeRowsBounds(count, every, least - _GAP * self._np.maximum(1.0, abs(least)), most)
+        highs.run()
+        found = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        x = list(highs.getSolution().col_value) if found else None
+        self._highs = None
+        return x
 
     def relaxation(self, objective: Mapping[int, float]) -> Relaxation:
         """Solve the relaxation, and give the weights of its rows, of which nothing is proved."""
