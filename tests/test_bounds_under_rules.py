@@ -14,7 +14,7 @@ from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic
-from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Packing, Proof, Prover, _Node
 
 COUNT = Lexicographic([None])
 NOBODY: frozenset[int] = frozenset()
@@ -217,6 +217,29 @@ def test_what_is_used_is_not_asked_about_again() -> None:
     assert isinstance(proof.using, Branch)
     assert (proof.action, proof.using.action, proof.using.using) == (0, 1, Broken(0))
     hold(case, proof, Fraction(3), Counter())
+
+
+def test_to_go_beyond_a_limit_costs_more_than_the_derivation_in_hand() -> None:
+    spent = {0: Fraction(2)}, Fraction(0)
+    dear = [(Fraction(1),), (Fraction(10),)]
+    case = Case(Hypergraph(2, [[], []], [[1], [1]], [0]), [1], dear, [spent], NotAll([]))
+    proof = case.prover().prove([1])
+    assert isinstance(proof, Packing)
+    hold(case, proof, Fraction(10), Counter())
+
+
+def test_what_is_taken_in_part_only_is_no_derivation(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken = _Node.taken
+
+    def instead(node: _Node) -> list[int]:
+        assert node.undecided() is None
+        return taken(node)
+
+    monkeypatch.setattr(_Node, "taken", instead)
+    # each of three actions makes two of three targets: a half of each is none
+    graph = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0])
+    case = Case(graph, [1, 2, 3], [(Fraction(1),)] * 3, [], NotAll([frozenset({0, 1})], []))
+    assert isinstance(case.prover().prove([0, 2]), Branch)
 
 
 def test_a_limit_that_leaves_nothing_is_proved_without_branching() -> None:

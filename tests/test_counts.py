@@ -11,6 +11,7 @@ import pytest
 
 from foon_asp.bounds import counts as counts_module
 from foon_asp.bounds.counts import (
+    Balance,
     BetterError,
     CountBound,
     Counts,
@@ -19,6 +20,7 @@ from foon_asp.bounds.counts import (
     Level,
     Measure,
     Stopped,
+    Sum,
     SumLimit,
     _around,
     _Model,
@@ -380,6 +382,31 @@ def test_the_rows_where_copies_and_items_cost_something() -> None:
     assert model.program.upper[:4] == [0, 0, 0, None]
     reading = _Model(CountBound(flows("4*>0", ">4", start={4: 1})), [priced])
     assert rows(reading)[-1] == ({3: 1, 4: 1, 2: -1}, 0)  # read, if it was taken or made
+
+
+def test_what_rows_say_of_every_plan() -> None:
+    """What they do not say of every one, as what holds how often an action is executed, is no condition."""
+    level, limits = whole(Measure([1, 2, 0, 0]), 5), [({0: 2}, 7, False, False), ({1: 1}, 1, True, True)]
+    bound = CountBound(KITCHEN, [[1, 2]], limits, within=[level])
+    model = bound._model([])
+    knife, needed = Landmark((), (), 2, (3,)), Landmark((1, 2))
+    assert model.conditions == {
+        **dict(enumerate([Balance(3), Balance(0), Balance(1), Balance(4)], 8)),
+        **dict(enumerate([knife, needed, Sum(0), Sum(1), level], 12)),
+    }
+    model.add_landmark(Landmark((3,), (), 0))
+    assert model.conditions[17] == Landmark((3,), (), 0)
+    priced = _Model(CountBound(KITCHEN), [Measure([0] * 4, 1)])
+    asked = {12: (1, 100), 13: (2, 3), 14: (2, 100), 15: (2, 101)}
+    items = {row: Landmark((), (), action, (o,)) for row, (action, o) in asked.items()}
+    assert {row: said for row, said in priced.conditions.items() if row > 11} == items
+    # a copy that is read may be one that is there: without columns for these, a row says nothing
+    reading = flows("4*>0", start={4: 1})
+    for item, conditions in ((0, {}), (1, {4: Landmark((), (), 0, (4,))})):
+        found = _Model(CountBound(reading), [Measure([1], item)]).conditions
+        assert {row: said for row, said in found.items() if isinstance(said, Landmark)} == {
+            row - 1: said for row, said in conditions.items()
+        }
 
 
 def test_the_rows_of_limits() -> None:

@@ -314,6 +314,23 @@ def test_known_cuts_that_fall_short_are_no_proof() -> None:
     assert found.value.actions == (1, 3)
 
 
+def test_a_bound_is_rounded_up_where_it_is_no_multiple() -> None:
+    order = Lexicographic([None, None, None])
+    multiples = [Fraction(2), Fraction(0), Fraction(3, 2)]
+    prover = Prover(KITCHEN, [4], [order.zero] * 4, order, multiples=multiples)
+
+    def rounded(*bound: Fraction | int) -> tuple[list[object], int | None]:
+        found, place = prover.rounded(tuple(map(Fraction, bound)))
+        return [*found], place
+
+    third = Fraction(1, 3)
+    assert rounded(4, third, 3) == ([4, third, 3], None)
+    assert rounded(7 * third, 5, 1) == ([4, 0, 0], 0)  # what comes after counts for nothing then
+    assert rounded(-3, 5, 1) == ([-2, 0, 0], 0)
+    assert rounded(6, 5, 2) == ([6, 5, 3], 2)
+    assert Prover(KITCHEN, [4], [order.zero] * 4, order).rounded(order.zero) == (order.zero, None)
+
+
 def test_known_cuts_with_actions_of_no_use_are_left_out_of_the_relaxation() -> None:
     graph = Hypergraph(3, [[], []], [[1], [2]], [0])
     proof = Prover(graph, [1], costs(2, 1), COUNT, known=[[1, 2]]).prove([0])

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from foon_asp.bounds.whole_program import Solved, WholeProgram
+from foon_asp.bounds.whole_program import Relaxation, Solved, WholeProgram
 
 NOTHING = Solved(None, -math.inf)  # neither a solution nor a proof that there is none
 NONE = Solved(None, math.inf)
@@ -43,6 +43,16 @@ def test_the_parts_of_an_open_row_are_told_later() -> None:
     assert later.row({0: 1}, 0) == 1
     later.change(0, {0: 4})
     assert later.solve({0: 1}) == Solved([0.5, 0.0], Fraction(1, 2))
+
+
+def test_a_relaxation_in_floats_has_a_basis() -> None:
+    small = program(2, ({0: 1, 1: 1}, 3), ({0: 1}, 1), upper={0: 2})
+    assert small.relaxation({0: 2.5, 1: 3.0}) == Relaxation([2.0, 1.0], [3.0, 0.0], [1], [0])
+    assert small.relaxation({0: 3.0, 1: 2.5}) == Relaxation([1.0, 2.0], [2.5, 0.5], [0, 1], [0, 1])
+    assert (small.said(0), small.said(1)) == (({0: 1, 1: 1}, 3), ({0: 1}, 1))
+    none = program(2, ({0: 3, 1: -1}, 1), ({0: -3, 1: 1}, 1)).relaxation({0: 1.0})
+    assert (none.x, none.columns, none.rows) == (None, [], [])
+    assert none.weights[0] == none.weights[1] > 0
 
 
 def test_no_solution_is_proved_by_weights_and_never_taken_on_trust() -> None:

@@ -1,0 +1,220 @@
+"""Proofs about all plans, step by step: what weights prove, how parts are divided, what is claimed."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+import pytest
+
+from foon_asp.bounds.counts import CountBound, Flows, Landmark, Level, Measure, _Model
+from foon_asp.bounds.lexicographic import Lexicographic, Vector
+from foon_asp.bounds.plan_proof import Claim, CountProof, PlanProver, Split, Weighted
+from tests.test_counts import flows, possible, random_flows, random_limit, whole
+
+COUNT = Lexicographic([None])
+PAIR = Lexicographic([None, None])
+
+
+def one(number: int | Fraction) -> Vector:
+    return (Fraction(number),)
+
+
+def claim_of(
+    costs: Sequence[int],
+    least: int | None,
+    item: int = 0,
+    parts: int | None = 1,
+    caps: Mapping[int, int] | None = None,
+) -> Claim:
+    goal = None if least is None else one(least)
+    every = [(caps or {}).get(action) for action in range(len(costs))]
+    return Claim(COUNT, [one(cost) for cost in costs], one(item), goal, parts, every)
+
+
+def begun(made: Flows, claim: Claim, item: int = 0, **named: Any) -> tuple[PlanProver, _Model]:
+    """Give a prover in the middle of its work, and its model."""
+    prover = PlanProver(made, **named)
+    model = prover._model([Measure([0] * len(made.asks), item)])
+    prover._claim, prover._least, prover._leaves, prover._failed = claim, claim.least, 0, False
+    prover._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
+    prover._objective = {a: float(cost[0]) for a, cost in enumerate(claim.costs) if cost[0]}
+    prover._objective |= dict.fromkeys(prover._columns, float(claim.item[0])) if any(claim.item) else {}
+    return prover, model
+
+
+# --- What weights prove.
+
+
+def least_sum(
+    prover: PlanProver, model: _Model, weights: Mapping[int, int], free: bool
+) -> Fraction | int | None:
+    """Try every count of each column by itself: what costs less what is brought, and what rows leave."""
+    size, program, claim = prover._size, model.program, prover._claim
+    brought = dict.fromkeys(range(program.columns), 0)
+    total: Fraction | int = 0
+    for row, weight in weights.items():
+        parts, least = program.said(row)
+        total += weight * least
+        for column, part in parts.items():
+            brought[column] += weight * part
+    for column in (*range(size), *prover._columns):
+        low, most = program.lower[column], program.upper[column]
+        cost = claim.costs[column][0] if column < size else claim.item[0]
+        once = brought[size + column] if column < size else 0
+        each = (0 if free else cost) - brought[column]
+        if most is None and each < 0:
+            return None
+        tried = range(low, (low + 2 if most is None else most) + 1)
+        total += min(each * count - once * (count > 0) for count in tried)
+    return total
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_weights_prove_the_least_of_every_column_by_itself(seed: int) -> None:
+    choose = Random(seed)
+    proved = 0
+    for _ in range(25):
+        made = random_flows(choose)
+        size, item = len(made.asks), choose.choice((0, 0, 1, 2))
+        claim = claim_of([choose.randint(0, 3) for _ in range(size)], 1, item)
+        prover, model = begun(made, claim, item)
+        if choose.random() < 0.5:
+            model.add_landmark(Landmark((0, 1), tuple(model.stock), choose.choice((None, 1))))
+        for column in (*range(size), *prover._columns):
+            model.program.lower[column] = low = choose.choice((0, 0, 0, 1, 2))
+            most = model.program.upper[column]
+            model.program.upper[column] = choose.choice(
+                (None if most is None else max(most, low), low, low + 2)
+            )
+        rows = [row for row in model.conditions if choose.random() < 0.7]
+        weights = {row: choose.randint(1, 3) for row in rows}
+        for free in (False, True):
+            expected = least_sum(prover, model, weights, free)
+            found = prover._bound(model, {row: one(weight) for row, weight in weights.items()}, free)
+            assert found == (None if expected is None else one(expected))
+            proved += found is not None
+    assert proved > 15
+
+
+# --- How a part is divided.
+
+
+def test_what_is_branched_on() -> None:
+    made = flows(">3 5", "3 100>0", "3* 4 100 101>1", start={4: 2}, targets=(0, 1))
+    prover, model = begun(made, claim_of([1, 1, 1], 3), 1)
+    # 0 to 2 are how often, 3 to 5 whether at all, then copies of 4, and 100 and 101
+    assert [*prover._columns] == [7, 8, 6]
+    program = model.program
+
+    def choice(*x: float) -> tuple[int, int] | None:
+        return prover._choice(model, x)
+
+    rest = (0.0, 0.0, 0.0)
+    assert choice(1, 1, 1, 1, 1, 1, *rest) is None
+    assert choice(2.0, 1, 1, 0.5, 1, 1, *rest) == (0, 2)  # executed, and told so in part only
+    assert choice(2.9999999, 1, 1, 0.5, 1, 1, *rest) == (0, 3)
+    assert choice(0.4, 1, 1, 0.3, 1, 1, *rest) == (0, 1)
+    assert choice(1, 1, 1, 0.9999999, 1, 1, *rest) is None
+    program.upper[0] = 2
+    assert choice(2.0, 1, 1, 0.5, 1, 1, *rest) == (0, 2)
+    program.upper[0] = 1
+    assert choice(1, 1, 1, 0.5, 1, 1, *rest) is None
+    program.upper[0] = None
+    program.lower[0] = 1
+    assert choice(2.0, 1, 1, 0.5, 1, 1, *rest) is None
+    # what is most nearly half
+    assert choice(1, 1.8, 2.6, 1, 1, 1, *rest) == (2, 2)
+    assert choice(1.4, 1.8, 2, 1, 1, 1, *rest) == (0, 1)
+    assert choice(1, 1, 1, 1, 1, 1, 1.3, 0.6, 0.8) == (7, 0)
+    assert choice(1, 1, 1, 1, 1, 1, 1.5, 0.6, 0.8) == (6, 1)
+    assert choice(1, 1, 1.9999999, 1, 1, 1, *rest) is None
+
+
+@pytest.mark.parametrize(
+    ("column", "most", "above", "up_to"),
+    [
+        (0, 0, ({0: 1, 2: 1}, {}), ({}, {0: 0, 2: 0})),
+        (1, 0, ({1: 1, 3: 1}, {}), ({}, {1: 0, 3: 0})),
+        (0, 2, ({0: 3, 2: 1}, {}), ({}, {0: 2})),
+        (4, 0, ({4: 1}, {}), ({}, {4: 0})),
+        (4, 1, ({4: 2}, {}), ({}, {4: 1})),
+    ],
+)
+def test_the_sides_of_a_part(
+    column: int,
+    most: int,
+    above: tuple[dict[int, int], dict[int, int]],
+    up_to: tuple[dict[int, int], dict[int, int]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = flows("4>0", ">0", start={4: 2})
+    prover, model = begun(made, claim_of([1, 1], 1), 1)
+    before: tuple[list[int], list[int | None]] = (list(model.program.lower), list(model.program.upper))
+    assert before == ([0] * 5, [None, None, 1, 1, 2])
+    seen: list[tuple[dict[int, int], dict[int, int | None], int]] = []
+
+    def part(_: PlanProver, model: _Model, depth: int) -> CountProof:
+        program = model.program
+        lower = {c: new for c, new in enumerate(program.lower) if before[0][c] != new}
+        upper = {c: new for c, new in enumerate(program.upper) if before[1][c] != new}
+        seen.append((lower, upper, depth))
+        program.lower[:], program.upper[:] = [9] * 5, [9] * 5  # which the other side does not see
+        return Weighted([len(seen)])  # type: ignore[list-item]
+
+    monkeypatch.setattr(PlanProver, "_part", part)
+    split = prover._split(model, column, most, 6)
+    assert seen == [(*above, 7), (*up_to, 7)]
+    assert split == Split(column, most, Weighted([2]), Weighted([1]))  # type: ignore[list-item]
+    assert (model.program.lower, model.program.upper) == before
+
+
+# --- How much is proved.
+
+
+def cheapest(made: Flows, costs: Sequence[int], item: int, within: Sequence[Level] = ()) -> int | None:
+    """Try all counts up to a length."""
+    return min(
+        (
+            sum(costs[a] * n for a, n in counts.items()) + item * taken
+            for counts, taken in possible(made)
+            if all(sum(each.measure.costs[a] * n for a, n in counts.items()) <= each.cost for each in within)
+        ),
+        default=None,
+    )
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_cost_of_the_cheapest_counts_is_proved_and_no_more(seed: int) -> None:
+    choose, tried = Random(seed), 0
+    while tried < 4:
+        made = random_flows(choose)
+        size, item = len(made.asks), choose.choice((0, 0, 1))
+        costs = [choose.randint(1, 3) for _ in range(size)]
+        kept = [whole(Measure([choose.randint(0, 2) for _ in range(size)]), choose.randint(1, 3))]
+        kept = kept[: choose.randint(0, 1)]
+        best = cheapest(made, costs, item, kept)
+        if best is None or best > 3:
+            continue
+        tried += 1
+        for derivation in ((), range(size)):
+            for more in (0, 1, 5):
+                prover = PlanProver(made, derivation=derivation)
+                claim = claim_of(costs, best + more, item)
+                found = prover.prove_claim(claim, Measure(costs, item), kept)
+                assert found is not None
+                assert found[1] == one(best)
+                assert found[2].keys() == set(range(2 * size, 2 * size + len(found[2])))
+
+
+def test_that_there_is_no_plan_is_proved() -> None:
+    choose, none = Random(7), 0
+    for _ in range(40):
+        made = random_flows(choose)
+        size = len(made.asks)
+        limits = [random_limit(choose, size)]
+        nothing = claim_of([0] * size, None)
+        found = PlanProver(made, (), limits).prove_claim(nothing, Measure([0] * size), ())
+        assert (found is not None) == CountBound(made, (), limits).none()
+        none += found is not None
+    assert none > 5
