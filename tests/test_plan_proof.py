@@ -7,9 +7,11 @@ from typing import Any
 
 import pytest
 
+from foon_asp.bounds import plan_proof
 from foon_asp.bounds.counts import CountBound, Flows, Landmark, Level, Measure, _Model
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.bounds.plan_proof import Claim, CountProof, PlanProver, Split, Weighted
+from foon_asp.bounds.whole_program import Relaxation
 from tests.test_counts import flows, possible, random_flows, random_limit, whole
 
 COUNT = Lexicographic([None])
@@ -218,3 +220,163 @@ def test_that_there_is_no_plan_is_proved() -> None:
         assert (found is not None) == CountBound(made, (), limits).none()
         none += found is not None
     assert none > 5
+
+
+# --- What is asked, and when a part is given up.
+
+
+def test_what_a_part_is_made_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = flows("4 100>0", ">0", ">4", start={4: 2})
+    seen: list[tuple[Any, ...]] = []
+
+    def part(prover: PlanProver, model: _Model, depth: int) -> CountProof:
+        program = model.program
+        seen.append((program.upper[:3], prover._objective, depth, [*model.conditions.values()][-2:]))
+        prover._failed = len(seen) == 3
+        return Weighted(())
+
+    monkeypatch.setattr(PlanProver, "_part", part)
+    prover, kept = PlanProver(made), whole(Measure([1, 0, 1]), 7)
+    known = Landmark((0, 1))
+    prover.require([known])
+    prover.require([])
+    claim = claim_of([1, 0, 3], 4, 2, caps={1: 2, 2: 9})
+    found = prover.prove_claim(claim, Measure([1, 0, 3], 2), [kept])
+    assert found == (Weighted(()), one(4), {6: 4, 7: 100})
+    assert seen == [([7, 2, 7], {0: 1.0, 2: 3.0, 6: 2.0, 7: 2.0}, 0, [known, kept])]
+    free = PlanProver(made).prove_claim(claim_of([0, 0, 0], None), Measure([0] * 3), ())
+    assert free == (Weighted(()), None, {})
+    assert seen[1][:2] == ([None] * 3, {})
+    assert PlanProver(made).prove_claim(claim, Measure([1, 0, 3], 2), [kept]) is None
+
+
+def test_cuts_are_looked_for_some_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[bool] = []
+
+    def separate(_: object, x: Sequence[float], model: _Model, at_root: bool) -> bool:
+        asked.append(at_root)
+        return True
+
+    monkeypatch.setattr(PlanProver, "_separate", separate)
+    monkeypatch.setattr(PlanProver, "_is_enough", lambda *_: False)
+    prover, model = begun(flows(">0"), claim_of([1], 5))
+    for depth in (0, 3):
+        assert isinstance(prover._part(model, depth), Weighted)
+        assert asked == [depth == 0] * 20
+        asked.clear()
+
+
+def test_a_part_without_counts_needs_no_weights() -> None:
+    prover, model = begun(flows(">0"), claim_of([1], 5))
+    model.program.lower[0], model.program.upper[0] = 2, 1
+    assert prover._part(model, 0) == Weighted(())
+    assert (prover._least, prover._leaves) == (one(5), 0)
+    model.program.upper[0] = 2
+    assert prover._part(model, 0) != Weighted(())
+    assert (prover._least, prover._leaves) == (one(2), 1)
+
+
+# of three actions each two make one of the targets: a half of each would do, so parts are told apart
+HALF = flows(">0 1", ">0 2", ">1 2", targets=(0, 1, 2))
+
+
+def leaves(proof: CountProof, depth: int = 0) -> list[int]:
+    if isinstance(proof, Split):
+        return leaves(proof.up_to, depth + 1) + leaves(proof.above, depth + 1)
+    return [depth]
+
+
+def test_a_proof_is_given_up_where_parts_are_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    costs = [1, 1, 1]
+
+    def proved(parts: int | None = 1, **named: Any) -> tuple[Vector | None, list[int]] | None:
+        claim = claim_of(costs, 2, parts=parts)
+        found = PlanProver(HALF, **named).prove_claim(claim, Measure(costs), ())
+        return None if found is None else (found[1], leaves(found[0]))
+
+    half, whole_proof = one(Fraction(3, 2)), (one(2), [2, 2, 1])
+    assert proved() == (one(2), [0])  # a bound of 3/2 is one of 2
+    assert proved(None) == whole_proof
+    for parts in (None, 2):
+        assert proved(parts, expired=lambda: True) == (half, [0])
+    for name in ("_MOST_LEAVES", "_MOST_DEPTH"):
+        with monkeypatch.context() as patched:
+            for most, expected in ((-1, (half, [0])), (0, (half, [1, 1])), (1, whole_proof)):
+                patched.setattr(plan_proof, name, most)
+                assert proved(None) == expected
+
+
+def test_what_is_given_up_lowers_the_claim() -> None:
+    prover, _ = begun(flows(">0"), claim_of([1], 5, parts=2))
+    prover._give_up((one(Fraction(16, 5)), ()))
+    assert (prover._least, prover._failed) == (one(Fraction(7, 2)), False)
+    prover._give_up((one(4), ()))
+    assert (prover._least, prover._failed) == (one(Fraction(7, 2)), False)
+    prover._give_up(None)
+    assert prover._failed
+    none, _ = begun(flows(">0"), claim_of([0], None))
+    none._give_up((one(0), ()))
+    assert none._failed
+
+
+def test_what_is_enough() -> None:
+    prover, _ = begun(flows(">0"), claim_of([1], 3, parts=1))
+    assert [prover._is_enough(one(Fraction(n, 10))) for n in (20, 21, 30, 31)] == [False, True, True, True]
+    prover._claim = prover._claim._replace(parts=None)
+    assert [prover._is_enough(one(Fraction(n, 10))) for n in (29, 30)] == [False, True]
+    prover._least = None
+    assert [prover._is_enough(one(n)) for n in (-1, 0, Fraction(1, 9))] == [False, False, True]
+
+
+# --- Weights of what floats say.
+
+
+def rounded(found: Sequence[Mapping[int, Vector]]) -> list[dict[int, Fraction]]:
+    return [{row: weight for row, (weight,) in weights.items()} for weights in found]
+
+
+def test_weights_of_floats_are_rounded_or_those_of_the_basis() -> None:
+    prover, model = begun(flows(">0", ">0"), claim_of([1, 1], 1))
+    # rows 0 to 3 hold what is executed; only row 4, of the target, is a condition
+    assert [*model.conditions] == [4]
+
+    def made(weight: float, x: list[float], parts: int | None = 1, least: int | None = 1) -> Any:
+        prover._claim = claim_of([1, 1], least, parts=parts)
+        prover._least = prover._claim.least
+        relaxed = Relaxation(x, [9.0, 9.0, 0.0, 0.0, weight], [0], [4])
+        return rounded(prover._weights(model, relaxed))
+
+    once = [1.0, 0.0, 1.0, 0.0]
+    third = Fraction(1, 3)
+    fine = Fraction(round(2**40 / 3), 2**40)
+    assert made(1 / 3, once) == [{4: third}, {4: fine}]
+    assert made(-0.5, once) == [{}, {}]
+    assert made(1e15, once) == [{}, {}]
+    # where 1 has no parts, the weights that the basis has are solved for
+    assert made(1 / 3, once, None) == [{4: third}, {4: fine}, {4: 1}]
+    assert made(1 / 3, once, None, None) == [{4: third}, {4: fine}, {4: 1}]
+    assert made(1 / 3, [0.5, 0.0, 1.0, 0.0], None) == [{4: third}, {4: fine}]  # too far from what is claimed
+    assert made(1 / 3, [3.0, 0.0, 1.0, 0.0], None, 3) == [{4: third}, {4: fine}, {4: 1}]
+    assert prover._exact_weights(model, Relaxation(once, [], [0, 1], [4])) == []
+    assert prover._exact_weights(model, Relaxation(once, [], [2], [4])) == []  # a basis that is none
+    weights = prover._exact_weights(model, Relaxation(once, [], [0, 2], [4, 2]))
+    assert rounded(weights) == [{4: 1}]
+
+
+def test_where_there_is_no_solution_weights_are_as_great_as_wanted() -> None:
+    limit = ({0: 1}, 0, False, False)
+    prover, model = begun(flows(">0"), claim_of([1], None), limits=[limit])
+    assert [*model.conditions] == [2, 3]
+
+    def made(weights: list[float], least: int | None = None) -> Any:
+        prover._claim = claim_of([1], least)
+        prover._least = prover._claim.least
+        return rounded(prover._weights(model, Relaxation(None, [0.0, 0.0, *weights], [], [])))
+
+    model.program.upper[0] = 1
+    assert made([4.0, 4.0]) == [{2: 1, 3: 1}]
+    assert made([4.0, 2.0]) == [{2: 1, 3: Fraction(1, 2)}]
+    assert made([4.0, 4.0], 7) == [{2: 9, 3: 9}]
+    assert made([4.0, 4.0], -7) == [{2: 9, 3: 9}]
+    assert made([0.0, 0.0]) == []
+    assert made([0.0, 4.0]) == []  # which say nothing
