@@ -1,5 +1,6 @@
 """Proofs about all plans, step by step: what weights prove, how parts are divided, what is claimed."""
 
+import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from random import Random
@@ -8,7 +9,7 @@ from typing import Any
 import pytest
 
 from foon_asp.bounds import plan_proof
-from foon_asp.bounds.counts import CountBound, Flows, Landmark, Level, Measure, _Model
+from foon_asp.bounds.counts import Balance, CountBound, Flows, Landmark, Level, Measure, _Model
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
 from foon_asp.bounds.plan_proof import Claim, CountProof, PlanProver, Split, Weighted
 from foon_asp.bounds.whole_program import Relaxation
@@ -306,6 +307,28 @@ def test_a_proof_is_given_up_where_parts_are_too_many(monkeypatch: pytest.Monkey
                 assert proved(None) == expected
 
 
+def test_the_best_weights_of_a_part_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    claim = claim_of([1], 5, parts=None)
+    weights = [{2: one(Fraction(number, 4))} for number in (8, 1, 3, 2)]  # the first prove nothing
+    monkeypatch.setattr(PlanProver, "_weights", lambda *_: weights)
+    prover, model = begun(flows(">0"), claim, expired=lambda: True)
+    assert prover._part(model, 0) == Weighted([(Balance(0), one(Fraction(3, 4)))])
+    assert (prover._least, prover._failed, prover._leaves) == (one(Fraction(3, 4)), False, 1)
+    monkeypatch.setattr(PlanProver, "_weights", lambda *_: weights[:1])
+    prover, model = begun(flows(">0"), claim)
+    assert prover._part(model, 0) == Weighted([])
+    assert prover._failed
+    monkeypatch.undo()
+    circle = flows("1*>0", "0*>1", ">0", targets=(0,))
+    prover, model = begun(circle, claim_of([1, 1, 5], 5, parts=None), expired=lambda: True)
+    prover._part(model, 0)
+    assert prover._landmarks == []  # there is no time for more
+    prover, model = begun(circle, claim_of([1, 1, 5], 5, parts=None))
+    prover._part(model, 0)
+    assert prover._least == one(5)
+    assert prover._landmarks != []
+
+
 def test_what_is_given_up_lowers_the_claim() -> None:
     prover, _ = begun(flows(">0"), claim_of([1], 5, parts=2))
     prover._give_up((one(Fraction(16, 5)), ()))
@@ -357,6 +380,11 @@ def test_weights_of_floats_are_rounded_or_those_of_the_basis() -> None:
     assert made(1 / 3, once, None, None) == [{4: third}, {4: fine}, {4: 1}]
     assert made(1 / 3, [0.5, 0.0, 1.0, 0.0], None) == [{4: third}, {4: fine}]  # too far from what is claimed
     assert made(1 / 3, [3.0, 0.0, 1.0, 0.0], None, 3) == [{4: third}, {4: fine}, {4: 1}]
+    prover._claim = prover._claim._replace(order=Lexicographic([[Fraction(1, 2)]]))  # of rates
+    rate = -math.log(0.5)
+    found = prover._weights(model, Relaxation(once, [0.0, 0.0, 0.0, 0.0, rate * 0.75], [0], [4]))
+    assert rounded(found)[:2] == [{4: Fraction(3, 4)}] * 2
+    prover._claim = claim_of([1, 1], 1)
     assert prover._exact_weights(model, Relaxation(once, [], [0, 1], [4])) == []
     assert prover._exact_weights(model, Relaxation(once, [], [2], [4])) == []  # a basis that is none
     weights = prover._exact_weights(model, Relaxation(once, [], [0, 2], [4, 2]))

@@ -95,10 +95,7 @@ class PlanProver(CountBound):
         """Prove a part, or lower what is claimed to what is proved of it."""
         program = model.program
         model.tighten()
-        if any(
-            most is not None and least > most
-            for least, most in zip(program.lower, program.upper, strict=True)
-        ):
+        if program.is_empty:
             return Weighted(())
         best: tuple[Vector, dict[int, Vector]] | None = None
         rounds = 0
@@ -243,8 +240,7 @@ class PlanProver(CountBound):
         found: list[Vector] = []
         for row, weight in weights.items():
             parts, least = program.said(row)
-            if least:
-                found.append(times(weight, Fraction(least)))
+            found.append(times(weight, Fraction(least)))
             for column, part in parts.items():
                 if part:
                     loads.setdefault(column, []).append(times(weight, Fraction(part)))

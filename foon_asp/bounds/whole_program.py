@@ -58,6 +58,11 @@ class WholeProgram:
         """How many columns there are."""
         return len(self.lower)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether some column has nothing between its bounds."""
+        return any(most is not None and self.lower[c] > most for c, most in enumerate(self.upper))
+
     def column(self, lower: int, upper: int | None) -> int:
         """Add a column, and give its number."""
         self.lower.append(lower)
@@ -100,7 +105,7 @@ class WholeProgram:
 
     def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
         """Solve the relaxation; a bound above ``cutoff`` is enough."""
-        if any(u is not None and lo > u for lo, u in zip(self.lower, self.upper, strict=True)):
+        if self.is_empty:
             return Solved(None, math.inf)
         highs = self._run(objective)
         if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
