@@ -11,12 +11,21 @@ import pytest
 
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.encoding.facts import write_product
+from foon_asp.encoding.encoding import read_encoding
+from foon_asp.encoding.facts import (
+    FACT_PREDICATES,
+    READ_BY_OURS,
+    write_facts,
+    write_facts_read,
+    write_product,
+)
+from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.resources import encodings_folder
 from tests.conftest import Cli
+from tests.random_problems import random_problem
 
 MINE = ':- use(U), motion(U,"whisk").\n:- #count { U : use(U), motion(U,"pour") } > 3.\n'
 
@@ -101,3 +110,27 @@ def test_the_same_input_gives_the_same_tree(tmp_path: Path) -> None:
             )
             outputs.add(ended.stdout)
     assert len(outputs) == 2
+
+
+def test_what_encodings_of_ours_look_at_is_always_written() -> None:
+    folder = encodings_folder()
+    files = [folder / name for name in ("task_tree.lp", "objectives.lp", "show.lp", "exact_success.lp")]
+    read = {each for file in (*files, *folder.glob("questions/*.lp")) for each in read_encoding(file).used}
+    facts = {(name, arity) for name, arity in FACT_PREDICATES.items()} - {("uses_up", 2), ("stays", 2)}
+    assert read & facts <= READ_BY_OURS
+
+
+def test_facts_that_are_read_are_those_that_are_written() -> None:
+    """All of them where everything is looked at, and else no others."""
+    problem = random_problem(7, ContainerRule.STRICT)
+    units = range(len(problem.network))
+    scales = Scales(problem, units, (Objective.SUCCESS, Objective.UNITS))
+
+    def atoms(text: str) -> set[str]:
+        return {atom.strip(". ") for line in text.splitlines() for atom in line.split(". ")}
+
+    every = atoms(write_facts(problem, list(units), scales, set(FACT_PREDICATES.items())))
+    assert atoms(write_facts_read(problem, list(units), set(FACT_PREDICATES.items()), scales)) == every
+    few = atoms(write_facts_read(problem, list(units), {("needs", 2), ("risk", 2), ("label", 2)}, scales))
+    names = {"needs", "risk", "label", "unit", "object", "goal", "utensil"}
+    assert few == {atom for atom in every if atom.partition("(")[0] in names}

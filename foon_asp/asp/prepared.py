@@ -69,18 +69,22 @@ class Prepared:
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
-        from foon_asp.encoding.facts import write_below, write_facts, write_required  # noqa: PLC0415
+        from foon_asp.encoding import facts as writing  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
-            looked_at = None if self.program.own else self.program.looked_at
-            facts = write_facts(self.problem, self.units, self.scales, looked_at)
+            if self.asked is not None:  # it is known what the rules look at, and nobody sees these facts
+                read = writing.READ_BY_OURS | self.program.looked_at
+                facts = writing.write_facts_read(self.problem, self.units, read, self.scales)
+            else:
+                looked_at = None if self.program.own else self.program.looked_at
+                facts = writing.write_facts(self.problem, self.units, self.scales, looked_at)
             bounded = self.settings.bounded
-            facts += write_below(bounded.below, self.scales) if bounded else ""
+            facts += writing.write_below(bounded.below, self.scales) if bounded else ""
             if self.kept is None or self.kept.restriction is None or self.rest:
                 return facts
             number, left = self.problem.network.unit_number, frozenset(self.units)
             sets = self.kept.restriction.required
-            return facts + write_required([map(number, sorted(left & units)) for units in sets])
+            return facts + writing.write_required([map(number, sorted(left & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
         """Whether a tree keeps to all rules of the user's, which see no further than the tree.

@@ -44,6 +44,23 @@ FACT_PREDICATES = {
     "stock": 2,
 }
 
+# What encodings of ours look at, those of questions as well.
+READ_BY_OURS = frozenset(
+    (name, FACT_PREDICATES[name])
+    for name in (
+        "unit",
+        "needs",
+        "gives",
+        "kitchen",
+        "goal",
+        "inputs",
+        "ingredients",
+        "risk",
+        "cost",
+        "optimize",
+    )
+)
+
 OBJECT_FACTS = frozenset(("object", "label", "state", "ingredient", "located"))  # each about one object node
 
 _Atom = tuple[str, str]  # the name of the predicate, and the arguments as text
@@ -86,29 +103,34 @@ def write_facts(
     return "\n".join(lines) + "\n"
 
 
-def write_facts_read(problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]]) -> str:
+def write_facts_read(
+    problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]], scales: Scales | None = None
+) -> str:
     """Describe units, their object nodes and the goals as :func:`write_facts` does, by some predicates alone.
 
-    Those that depend on scales are not among them. Raises :class:`UserError` as that does.
+    Without ``scales``, those that depend on them are not among them. Raises :class:`UserError` as that does.
     """
     seen = problem.as_seen or problem
     name = problem.network.object_number
     nodes = described(problem, units)
     lines: list[str] = []
     prices = hundredths(problem, units, read) if _OF_RULES & {*read} else None
+    of_objects = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
 
     def add(subject: str, atoms: Iterable[_Atom]) -> None:
         wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
         lines.append(". ".join([subject, *wanted]) + ".")
 
     for unit in units:
-        atoms = _unit_atoms(problem, unit, None, prices)
-        if problem.rates is not None:
+        atoms = _unit_atoms(problem, unit, scales, prices)
+        if problem.rates is not None and not (scales and scales.rates):
             number = problem.network.unit_number(unit)
             atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
         add(_unit_atom(problem, unit), atoms)
     for o in nodes:
-        atoms = _object_atoms(problem, o)
+        atoms = [
+            (each, f"{name(o)},{said}") for each, said in object_facts(problem.network.objects[o], of_objects)
+        ]
         if o in problem.kitchen:
             atoms.append(("kitchen", f"{name(o)}"))
         add(_object_atom(problem, o), atoms)
