@@ -15,8 +15,8 @@ differ.
 """
 
 import argparse
-import os
 import random
+import resource
 import subprocess
 import sys
 import tempfile
@@ -237,8 +237,8 @@ def _timed(problem: Problem, objectives: tuple[Objective, ...], settings: Settin
 def _spent() -> float:
     """Give the seconds of processors spent so far; the processes of clingo are ended, so that they count."""
     _end_all()
-    times = os.times()
-    return times.user + times.system + times.children_user + times.children_system
+    found = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(each.ru_utime + each.ru_stime for each in found)
 
 
 def _asked(outcome: Outcome, objectives: tuple[Objective, ...], asked: Asked, limit: float) -> Measured:

@@ -1,7 +1,7 @@
 """A limit on how many of some units a tree has, by prices, against all trees there are."""
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -56,7 +56,8 @@ def test_better_trees_within_a_limit_are_within_what_is_left(
             assert not kept, (seed, names)
             continue
         [mine] = [tree for tree in kept if tree.units == limit.tree]
-        within = limit.wide.within(limit.allowed, lambda: False)
+        wide = reduced.wide
+        within = wide.within(wide.total(limit.tree), lambda: False) if limit.units is None else limit.units
         left_out += within < reduced.wide.everything()
         for tree in kept:
             if tree.key(by) < mine.key(by) and not any(other.units < tree.units for other in found):
@@ -92,7 +93,7 @@ def test_a_tree_within_one_limit_may_be_beyond_another(cuts: int, boils: int, un
     assert (outcome.costs.units if outcome.costs else None) == units
 
 
-def test_what_a_price_allows_is_what_it_adds_to_a_tree_within_the_limit() -> None:
+def test_what_is_left_has_the_tree_within_the_limit() -> None:
     by = levels((Objective.UNITS,))
     wide = reduce(THREE, by, rest=True).wide
     assert wide is not None
@@ -101,10 +102,8 @@ def test_what_a_price_allows_is_what_it_adds_to_a_tree_within_the_limit() -> Non
         assert found is not None
         assert found.tree is not None
         assert len(found.tree & {0, 1, 2}) <= most
-        # three units more for three cuts fewer: each cut is priced at 1
-        assert found.allowed == len(found.tree) + most
-        left = found.wide.within(found.allowed, lambda: False)
-        assert {0, 4, 6, 8, 9} <= left
+        assert found.units is not None
+        assert found.tree <= found.units
     problem = small("cut: start > p", "fry: start > q", "cut: start > q", "mix: p, q > end")
     wide = reduce(problem, by, rest=True).wide
     assert wide is not None
@@ -124,24 +123,22 @@ class Prices:
         self.found: list[Limited] = []
         self._said = said
         monkeypatch.setattr(module, "limited", self)
-        self.looked_up: list[tuple[Wide, int | None]] = []
+        self.looked_up: list[frozenset[int]] = []
         up_to = _Solver._up_to
 
-        def noted(
-            solver: _Solver, wide: Wide, tree: frozenset[int], ended: None, allowed: int | None = None
-        ) -> Outcome:
-            self.looked_up.append((wide, allowed))
-            return up_to(solver, wide, tree, ended, allowed)
+        def noted(solver: _Solver, wide: Wide, tree: frozenset[int], ended: None) -> Outcome:
+            self.looked_up.append(tree)
+            return up_to(solver, wide, tree, ended)
 
         monkeypatch.setattr(_Solver, "_up_to", noted)
-        self.within: list[int] = []
-        within = Wide.within
+        self.looked_at: list[frozenset[int]] = []
+        look_at = _Solver._look_at
 
-        def looked(wide: Wide, most: int, expired: Callable[[], bool]) -> frozenset[int]:
-            self.within.append(most)
-            return within(wide, most, expired)
+        def looked(solver: _Solver, units: Collection[int]) -> None:
+            self.looked_at.append(frozenset(units))
+            look_at(solver, units)
 
-        monkeypatch.setattr(Wide, "within", looked)
+        monkeypatch.setattr(_Solver, "_look_at", looked)
 
     def __call__(
         self,
@@ -183,8 +180,18 @@ def test_limits_that_the_best_tree_keeps_to_have_no_price(monkeypatch: pytest.Mo
     [found] = prices.found
     assert (outcome.status, prices.asked) == (Status.OPTIMAL, [2])
     assert (heard[0], heard[-1]) == (len(found.tree or ()), 5)
-    assert prices.looked_up == [(found.wide, found.allowed)]
-    assert prices.within == [found.allowed] != [found.wide.total(found.tree or frozenset())]
+    assert found.units is not None
+    assert (prices.looked_up, prices.looked_at) == ([], [found.units])
+
+
+def test_where_no_price_tells_all_units_of_trees_as_cheap_are_looked_at(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tree = frozenset({0, 3, 4, 5, 6, 7, 8, 9})  # with more units than it needs
+    prices = Prices(monkeypatch, of_2=Limited(tree))
+    outcome = solve(THREE, settings=within(cut=2))
+    assert outcome.costs is not None
+    assert (outcome.status, outcome.costs.units, prices.looked_up) == (Status.OPTIMAL, 5, [tree])
 
 
 def test_where_the_price_of_a_limit_tells_nothing_the_next_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -192,23 +199,19 @@ def test_where_the_price_of_a_limit_tells_nothing_the_next_is_asked(monkeypatch:
     outcome = solve(THREE, settings=within(cut1=2, cut2=1))
     assert outcome.costs is not None
     assert (outcome.status, outcome.costs.units, prices.asked) == (Status.OPTIMAL, 6, [2, 1])
-    assert [wide for wide, _ in prices.looked_up] == [found.wide for found in prices.found]
+    assert (prices.looked_up, prices.looked_at) == ([], [found.units for found in prices.found])
 
 
 def test_a_tree_that_breaks_another_limit_is_not_taken_from_a_price(monkeypatch: pytest.MonkeyPatch) -> None:
-    wide = reduce(THREE, levels((Objective.UNITS,)), rest=True).wide
-    assert wide is not None
-    prices = Prices(monkeypatch, of_2=Limited(frozenset({0, 1, 6, 8, 9}), wide, 9))
+    prices = Prices(monkeypatch, of_2=Limited(frozenset({0, 1, 6, 8, 9})))
     outcome = solve(THREE, settings=within(cut1=2, cut2=1))
     assert outcome.costs is not None
     assert (outcome.status, outcome.costs.units, prices.asked) == (Status.OPTIMAL, 6, [2, 1])
-    assert [found.wide for found in prices.found][1:] == [wide for wide, _ in prices.looked_up]
+    assert (prices.looked_up, prices.looked_at) == ([], [found.units for found in prices.found[1:]])
 
 
 def test_that_no_tree_is_within_a_limit_is_the_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    wide = reduce(THREE, levels((Objective.UNITS,)), rest=True).wide
-    assert wide is not None
-    prices = Prices(monkeypatch, of_2=Limited(None, wide, 0))
+    prices = Prices(monkeypatch, of_2=Limited(None))
     monkeypatch.setattr(_Solver, "_run", None)  # nothing is searched
     outcome = solve(THREE, settings=within(cut1=2, cut2=1))
     assert (outcome.status, outcome.units, prices.asked) == (Status.INFEASIBLE, None, [2])
@@ -239,7 +242,10 @@ def test_ctrl_c_while_a_price_is_asked_about(monkeypatch: pytest.MonkeyPatch) ->
     assert outcome.stopped == "ctrl-C while cutting the network"
 
 
-def test_a_tree_that_a_price_finds_when_time_is_up_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("units", [None, frozenset(range(10))])
+def test_a_tree_that_a_price_finds_when_time_is_up_is_not_lost(
+    units: frozenset[int] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
     settings, by = within(cut=2), (Objective.UNITS,)
     heard = _Heard(THREE, by, Reporter())
     first = prepare(THREE, by, settings, assemble(settings, print), heard)
@@ -249,7 +255,7 @@ def test_a_tree_that_a_price_finds_when_time_is_up_is_not_lost(monkeypatch: pyte
     assert wide is not None
     solver = _Solver(first, by, heard, {})
     solver.deadline = Deadline(0.0)
-    found = Limited(frozenset({0, 1, 7, 8, 9}), wide, 5)
+    found = Limited(frozenset({0, 1, 7, 8, 9}), units)
     monkeypatch.setattr(module, "limited", lambda *_: found)
     outcome = solver._within_limits(wide, first.tree)
     assert outcome is not None
@@ -260,7 +266,7 @@ def test_a_tree_that_a_price_finds_when_time_is_up_is_not_lost(monkeypatch: pyte
 
 PICK = plain_problem([([0], [1])] * 30, [1])
 UNITS = levels((Objective.UNITS,))
-Told = tuple[frozenset[int] | None, int, bool]  # a tree, a bound, and whether cuts are known
+Told = tuple[frozenset[int] | None, int, int]  # a tree, a bound, and how many units are left
 
 
 def picked(counted: int, others: int) -> frozenset[int]:
@@ -275,8 +281,8 @@ class Teller:
         wide = reduce(PICK, UNITS, rest=True).wide
         assert wide is not None
         self.wide = wide  # the bound of its cuts is 1
-        self.anew = [replace(wide) for _ in told]
         self.costs: list[ExactCosts] = []
+        self.known: list[tuple[Collection[int], int]] = []
         self._told = told
 
     @property
@@ -289,68 +295,69 @@ class Teller:
         return limited(self.wide, UNITS, picked(5, 3), lambda unit: unit < 10, most, lambda: False)
 
     def __call__(
-        self, wide: Wide, objectives: Sequence[Objective], costs: ExactCosts, expired: Callable[[], bool]
+        self,
+        wide: Wide,
+        objectives: Sequence[Objective],
+        costs: ExactCosts,
+        expired: Callable[[], bool],
+        known: Collection[int],
+        below: int,
     ) -> Reduced:
         assert (wide, objectives, expired()) == (self.wide, UNITS, False)
         assert costs(10) == 1
-        tree, bound, known = self._told[len(self.costs)]
-        anew = self.anew[len(self.costs)] if known else None
+        tree, bound, left = self._told[len(self.costs)]
         self.costs.append(costs)
-        return Reduced(tree, (), False, None, bound, None, wide=anew)
+        self.known.append((known, below))
+        return Reduced(tree, tuple(range(left)), False, None, bound, None)
 
 
 @pytest.mark.parametrize(
-    ("told", "prices", "tree", "known_by", "allowed"),
+    ("told", "prices", "tree", "left"),
     [
         # a tree of 14 units within the limit: 6 more for 3 fewer that count
-        ([(picked(2, 12), 0, True), (picked(1, 13), 5, True)], [2], picked(2, 12), 0, 14),
-        # the bound is beyond the one known, by the price of two
-        ([(picked(2, 12), 0, True), (picked(1, 13), 6, True)], [2], picked(2, 12), 1, 14 + 2 * 2),
-        ([(picked(2, 12), 0, True), (None, 99, True)], [2], picked(2, 12), 0, 14),
-        ([(picked(2, 12), 0, True), (picked(2, 12), 99, False)], [2], picked(2, 12), 0, 14),
+        ([(picked(2, 12), 0, 9), (picked(1, 13), 5, 9)], [2], picked(2, 12), 9),
+        ([(picked(2, 12), 0, 9), (None, 99, 9)], [2], picked(2, 12), None),
         # a price is rounded up, and none is asked for where the tree within the limit is as good
-        ([(picked(2, 11), 0, True), (None, 0, False)], [2], picked(2, 11), 0, 13),
-        ([(picked(2, 7), 0, True), (None, 0, False)], [1], picked(2, 7), 0, 9),
-        ([(picked(2, 6), 0, True)], [], picked(2, 6), 0, 8),
-        ([(picked(1, 2), 0, True)], [], picked(1, 2), 0, 3),
+        ([(picked(2, 11), 0, 9), (None, 0, 9)], [2], picked(2, 11), None),
+        ([(picked(2, 7), 0, 9), (None, 0, 9)], [1], picked(2, 7), None),
+        ([(picked(2, 6), 0, 9)], [], picked(2, 6), None),
+        ([(picked(1, 2), 0, 9)], [], picked(1, 2), None),
         # a dearer tree beyond the limit comes instead of the one before, but no cheaper one, nor one as dear
-        ([(picked(2, 12), 0, True), (picked(4, 5), 6, True), (None, 0, False)], [2, 3], picked(2, 12), 1, 18),
-        ([(picked(2, 12), 0, True), (picked(3, 5), 6, True)], [2], picked(2, 12), 1, 18),
-        ([(picked(2, 12), 0, True), (picked(3, 2), 6, True)], [2], picked(2, 12), 1, 18),
+        ([(picked(2, 12), 0, 9), (picked(4, 5), 6, 9), (None, 0, 8)], [2, 3], picked(2, 12), 9),
+        ([(picked(2, 12), 0, 9), (picked(3, 5), 6, 9)], [2], picked(2, 12), 9),
+        ([(picked(2, 12), 0, 9), (picked(3, 2), 6, 9)], [2], picked(2, 12), 9),
         # a cheaper tree within the limit comes instead of the one before
-        ([(picked(2, 12), 0, True), (picked(2, 9), 6, True), (None, 0, False)], [2, 1], picked(2, 9), 1, 15),
-        # two prices are tried, and the one of the greatest bound is taken
-        (
-            [(picked(2, 12), 0, True), (picked(4, 5), 6, True), (picked(4, 6), 8, True)],
-            *([2, 3], picked(2, 12), 1, 14 + 2 * 2),
-        ),
-        (
-            [(picked(2, 13), 0, True), (picked(4, 5), 9, True), (None, 10, True)],
-            *([3, 3], picked(2, 13), 1, 15 + 2 * 3),
-        ),
-        (
-            [(picked(2, 13), 0, True), (picked(4, 5), 9, True), (picked(3, 5), 10, True)],
-            *([3, 3], picked(2, 13), 2, 15 + 2 * 3),
-        ),
-        (
-            [(picked(2, 12), 0, True), (picked(4, 5), 6, True), (picked(2, 11), 9, True)],
-            *([2, 3], picked(2, 11), 2, 13 + 2 * 3),
-        ),
+        ([(picked(2, 12), 0, 9), (picked(2, 9), 6, 9), (None, 0, 8)], [2, 1], picked(2, 9), 9),
+        ([(picked(2, 12), 0, 9), (picked(4, 5), 6, 9), (picked(2, 11), 9, 9)], [2, 3], picked(2, 11), 9),
+        # two prices are tried, and the fewest units that one of them leaves are taken
+        ([(picked(2, 12), 0, 9), (picked(4, 5), 6, 9), (picked(4, 6), 8, 8)], [2, 3], picked(2, 12), 8),
+        ([(picked(2, 13), 0, 9), (picked(4, 5), 9, 8), (picked(3, 5), 10, 9)], [3, 3], picked(2, 13), 8),
+        # few are enough at once
+        ([(picked(2, 12), 0, 9), (picked(4, 5), 6, 7)], [2], picked(2, 12), 7),
+        ([(picked(2, 12), 0, 9), (picked(2, 9), 6, 7)], [2], picked(2, 9), 7),
     ],
 )
 def test_prices_follow_from_what_was_told(
     told: list[Told],
     prices: list[int],
     tree: frozenset[int],
-    known_by: int,
-    allowed: int,
+    left: int | None,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(module, "_FEW", 7)
     teller = Teller(told)
     found = teller.limited(2, monkeypatch)
     assert teller.prices == [31, *prices]  # the first is more than all units cost
-    wide = teller.anew[known_by] if known_by else teller.wide
-    assert found == Limited(tree, wide, allowed)
+    assert found == Limited(tree, None if left is None else frozenset(range(left)))
+    assert teller.known[0] == (frozenset(), 0)
+    # what is better than the best tree within the limit costs less than that and the price of two
+    best = [told[0][0]]
+    for each, _, _ in told[1:]:
+        assert best[-1] is not None
+        better = each is not None and len(each & {*range(10)}) <= 2 and len(each) < len(best[-1])
+        best.append(each if better else best[-1])
+    wanted = zip(best, prices, strict=False)
+    assert teller.known[1:] == [(tree, len(tree or ()) + 2 * price) for tree, price in wanted]
 
 
 @pytest.mark.parametrize("most", range(3))
@@ -359,21 +366,21 @@ def test_a_limit_that_nothing_keeps_is_told_from_one_of_which_nothing_is_known(
 ) -> None:
     beyond = 31 * (most + 1)  # so much one more unit that counts costs, at a price beyond all units
     for tree in (None, picked(most, 1), picked(most + 1, 1)):
-        teller = Teller([(tree, beyond, True)])
-        assert teller.limited(most, monkeypatch) == Limited(None, teller.wide, 0)
+        teller = Teller([(tree, beyond, 9)])
+        assert teller.limited(most, monkeypatch) == Limited(None)
         [costs] = teller.costs
         assert [costs.met(Cuts(bound, {}, []), range(most + 1)) for bound in (beyond - 1, beyond)] == [0, 1]
         assert costs.met(Cuts(0, {}, []), picked(most, 10))
     for tree in (None, picked(most + 1, 0), picked(most + 1, 10)):
-        assert Teller([(tree, beyond - 1, True)]).limited(most, monkeypatch) is None
+        assert Teller([(tree, beyond - 1, 9)]).limited(most, monkeypatch) is None
     tree = picked(most, 1)
-    found = Teller([(tree, beyond - 1, True)]).limited(most, monkeypatch)
+    found = Teller([(tree, beyond - 1, 9)]).limited(most, monkeypatch)
     assert found is not None
-    assert (found.tree, found.allowed) == (tree, most + 1)
+    assert (found.tree, found.units) == (tree, None)
 
 
 def test_ctrl_c_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    teller = Teller([(picked(2, 12), 0, True)])
+    teller = Teller([(picked(2, 12), 0, 9)])
     monkeypatch.setattr(module, "at_costs", lambda *given: teller(*given)._replace(interrupted=True))
     with pytest.raises(KeyboardInterrupt):
         limited(teller.wide, UNITS, picked(5, 3), lambda unit: unit < 10, 2, lambda: False)

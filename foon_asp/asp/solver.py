@@ -21,10 +21,12 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.encoding.scales import Scales
     from foon_asp.grounding.grounded import Grounded
     from foon_asp.grounding.run import Run
+    from foon_asp.grounding.stated import Loaded
 
 _NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
 _LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer of these
-_MANY = 3000  # units that are known then, at most about
+_GROWN = 1.5  # times as many of them are known each time, if that is what leads to what they need
+_MANY = 5000  # units that are known then, at most about
 _MORE = 4  # times as many, where there is none
 
 Units = frozenset[int]
@@ -140,6 +142,7 @@ class _Solver:
         self._scales: Scales | None = None  # before clingo is asked anything
         self._open: OpenProgram | None = None
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
+        self._loose = False  # whether what is found may have loose ends
 
     def solve(self) -> Outcome:
         try:
@@ -186,14 +189,14 @@ class _Solver:
         if not wide.spare and (found := self._within_limits(wide, tree)) is not None:
             return found
         ended = None if wide.spare else self._with_loose_ends(wide, tree)
-        is_best = ended is not None and self._scaled().rounded is None
+        is_best = ended is not None
         if ended is None:
             ended = self._near(wide, tree)
         if ended.units is None:
             return self._outcome(Status.INFEASIBLE if ended.exhausted else Status.UNKNOWN, None, {})
         self.heard.tree(ended.units)
         if is_best:
-            return self._ended(ended, ended.units)
+            return self._optimal(self._in_hand(ended.units))
         if not ended.exhausted:
             return self._limited(ended.units, ())
         return self._up_to(wide, self._in_hand(ended.units), ended)
@@ -220,7 +223,10 @@ class _Solver:
                 return self._outcome(Status.INFEASIBLE, None, {})
             if self.first.keeps(found.tree):
                 self.heard.tree(found.tree)
-                return self._up_to(found.wide, found.tree, None, found.allowed)
+                if found.units is not None:
+                    self._look_at(found.units | found.tree)
+                    return self._search(found.tree)
+                return self._up_to(wide, found.tree, None)
         return None
 
     def _near(self, wide: Wide, tree: Units) -> "Run":
@@ -234,16 +240,14 @@ class _Solver:
             if ended.units is not None or not ended.exhausted or among >= known:
                 return ended
 
-    def _up_to(self, wide: Wide, tree: Units, ended: "Run | None", allowed: int | None = None) -> Outcome:
+    def _up_to(self, wide: Wide, tree: Units, ended: "Run | None") -> Outcome:
         """Look for what is better than a tree, among all units that trees up to its cost can have.
 
-        ``ended`` is the search that found the tree, if one did; ``allowed`` is the most that a better tree
-        costs, if that is another figure.
+        ``ended`` is the search that found the tree, if one did.
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
-                limit = wide.total(tree) if allowed is None else allowed
-                within = wide.within(limit, lambda: self.deadline.passed)
+                within = wide.within(wide.total(tree), lambda: self.deadline.passed)
         except KeyboardInterrupt:
             return self._limited(tree, ())
         if ended is not None and ended.units is not None and within <= set(self.first.units):
@@ -263,22 +267,51 @@ class _Solver:
         program, number = self.program, self.problem.network.unit_number
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
         sets = wide.landmarks()
-        text = write_objectives(self.levels)
-        text += write_required([map(number, sorted(each)) for each in sets])
+        required = write_required([map(number, sorted(each)) for each in sets])
         first = tree.union(*(each for each in sets if len(each) <= _NEAR))
         known = wide.with_only_makers(first, _MANY)
+        by: tuple[Objective, ...] = (Objective.UNITS,)  # quick to ask, and enough to see that there is none
         for _ in range(_LOOSE):
             self._look_at(known.union(wide.makers(known), *sets))
             asked = replace(self.first, program=program._replace(files=files))
-            ended = asked.run(text + write_known(map(number, sorted(known))))
+            text = required + write_known(map(number, sorted(known)))
+            ended = asked.run(text + write_objectives(by))
+            if by != self.levels and ended.units is not None and self._ids(ended.units) <= known:
+                by = self.levels
+                ended = asked.run(text + write_objectives(by)) if ended.exhausted else ended
             if not ended.exhausted or ended.units is None:
                 return ended if ended.exhausted else None
             ended.units = self._ids(ended.units)
-            if ended.units <= known or len(known) > _MANY:
-                return ended if ended.units <= known else None
+            if ended.units <= known:
+                return self._settled_with_loose_ends(ended, files, text, known)
+            if len(known) > _MANY:
+                return None
             fresh = wide.beside(ended.units - known)
-            known |= wide.with_only_makers(fresh | wide.makers(fresh), _MANY)
+            enough = min(_MANY, len(known) * _GROWN)
+            while fresh and len(known) < enough:
+                fresh = wide.with_only_makers(fresh | wide.makers(fresh), _MANY) - known
+                known |= fresh
         return None
+
+    def _settled_with_loose_ends(
+        self, ended: "Run", files: tuple["Loaded", ...], text: str, known: Collection[int]
+    ) -> "Run | None":
+        """Examine what rounding may have hidden among trees with loose ends, too.
+
+        ``None`` where the best has loose ends.
+        """
+        assert ended.units is not None
+        self._measures_agree(ended.units, ended.cost, self.levels)
+        if self._scaled().rounded is None:
+            return ended
+        program, rules = self.program, self.rules
+        self.program, self.rules, self._loose = program._replace(files=files), rules + text, True
+        try:
+            best, proved = self._settle(ended.units)
+        finally:
+            self.program, self.rules, self._loose = program, rules, False
+        ended.units = best
+        return ended if proved and best <= set(known) else None
 
     def _look_at(self, units: Collection[int]) -> None:
         """Search among these units from now on."""
@@ -358,7 +391,8 @@ class _Solver:
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
         def on_tree(units: Units) -> None:
-            self.heard.tree(self._ids(units))
+            if not self._loose:
+                self.heard.tree(self._ids(units))
 
         try:
             if (

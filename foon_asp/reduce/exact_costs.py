@@ -63,6 +63,11 @@ class ExactCosts:
         return costs
 
     @property
+    def limited(self) -> bool:
+        """Whether any tree below a limit will do."""
+        return self._limit is not None
+
+    @property
     def beyond(self) -> int:
         """More than any set of actions costs."""
         first = self._objectives[0]
@@ -114,9 +119,9 @@ class ExactCosts:
         total = sum(map(self, tree))
         if self._limit is not None:
             return cuts.bound >= self._limit or total < self._limit
-        if not self.doubt or self._price:  # with a price, it is the bound that counts
+        if not self.doubt:
             return cuts.bound >= total
-        if cuts.bound + self.doubt < total:
+        if self._price or cuts.bound + self.doubt < total:  # a price is no product of rates
             return False
         rates = [rate for rate, weight in self._weights.items() if weight]
         order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])

@@ -10,7 +10,7 @@ def near(
     graph: Graph,
     allowed: Container[int],
     rest: Callable[[int], int],
-    limit: int,
+    limit: float,
     before: Mapping[int, int] | None = None,
     most: int | None = None,
     least: int = 0,
@@ -21,7 +21,8 @@ def near(
     actions to a goal, each needing what the one before gives, so the rests along the way count (no action
     that ``a`` builds upon is among them). With ``before``, the least rests of an action with all that it
     needs, those count instead of its own. Dijkstra's algorithm from the goals, which goes no farther than the
-    limit lets it, and only until it has ``most`` actions, if given. No rest is below ``least``.
+    limit lets it, and only until it has ``most`` actions, if given; ``limit`` is
+    ``math.inf`` where there is none. No rest is below ``least``.
     """
     needs, makers, start = graph.needs, graph.makers, graph.start
     buckets: dict[int, list[int]] = {0: list(graph.goals)}

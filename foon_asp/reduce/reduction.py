@@ -2,7 +2,6 @@
 
 import gc
 import math
-import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import replace
@@ -113,14 +112,27 @@ def reduce(
 
 
 def at_costs(
-    wide: Wide, objectives: Sequence[Objective], costs: ExactCosts, expired: Callable[[], bool]
+    wide: Wide,
+    objectives: Sequence[Objective],
+    costs: ExactCosts,
+    expired: Callable[[], bool],
+    in_hand: Collection[int] = (),
+    below: int = 0,
 ) -> Reduced:
-    """Ask the same for other costs; of what comes back, the tree, the bound and ``wide`` say something."""
+    """Ask the same for other costs; ``in_hand`` is a tree.
+
+    With ``below``, only units are left out that only trees have that cost as much, and no less than the tree
+    found.
+    """
     with _uncollected():
-        reducer = _Reducer(wide.problem, tuple(objectives), ALL, expired, Listener(), wide.spare, rest=True)
+        reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
+        reducer = _Reducer(
+            wide.problem, tuple(objectives), frozenset(reductions), expired, Listener(), wide.spare, rest=True
+        )
         reducer.costs = reducer.coarse = costs
         if not isinstance(wide.left, range):  # other objectives may count no items
             reducer.known = {action for action in wide.left if action < len(reducer.graph.needs)}
+        reducer.in_hand, reducer.below = wide.actions(in_hand), below
         reducer.rounds = _FEW
         return reducer.reduce(nullcontext)
 
@@ -160,6 +172,8 @@ class _Reducer:
         self.known: Collection[int] | None = None  # what can run and leads to a goal
         self.left: Collection[int]  # there before a tree is
         self.tree: set[int] = set()
+        self.in_hand: set[int] = set()  # a tree, where one is known
+        self.below = 0  # what is cheaper counts, though it is no cheaper than the tree in hand
         self.costs: ExactCosts | None = None
         self.bound = 0
         self.cuts: Cuts | None = None
@@ -175,6 +189,10 @@ class _Reducer:
                 hopeless = guide is None
                 if guide is not None and self.reductions:
                     if not self.extending:  # else it was heard of
+                        if self.in_hand:
+                            self.tree = min(
+                                self.tree, self.in_hand, key=lambda tree: sum(map(self.coarse, tree))
+                            )
                         self._take(without_spare(self.graph, self.tree, self.coarse))
                     settled = self._narrow(guide)
                 ended = True
@@ -238,7 +256,7 @@ class _Reducer:
         if not self.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= _LARGE:
             return None
         everything = range(size)
-        few = near(self.thin, everything, self.coarse, sys.maxsize, most=_FIRST)
+        few = near(self.thin, everything, self.coarse, math.inf, most=_FIRST)
         found = narrow(self.thin, few, self.coarse, size // 4) if len(few) >= _FIRST else None
         if found is None:
             return None
@@ -271,6 +289,10 @@ class _Reducer:
         costs = self.costs
         if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
             self._follow_added(costs)
+        if costs is not None and costs.limited:  # a cheap tree is all that is asked for
+            self._improve(costs, Cuts(0, {}, []), thorough=False)
+            if self._met(costs, Cuts(0, {}, [])):
+                return True
         thorough = False  # as a last resort
         for _ in range(self.rounds):
             before = len(self.left), self.tree
@@ -337,11 +359,11 @@ class _Reducer:
             self.listener.bound(costs, bound)
         only_better = Reduction.BOUNDS in self.reductions
         if Reduction.DEAR in self.reductions:
-            limit = (total + costs.doubt - only_better) * PARTS - shared.bound
+            limit = (max(total, self.below) + costs.doubt - only_better) * PARTS - shared.bound
             self.left = dear_left_out(self.graph, self.left, shared.left.__getitem__, limit, self.expired)
         if Reduction.DOMINATED in self.reductions:
             self.left = undominated(self.graph, self.left, costs)
-        return only_better and not costs.doubt and bound == total
+        return only_better and not costs.doubt and bound == total >= self.below
 
     def _follow_added(self, costs: ExactCosts) -> None:
         """Take the tree to which estimates lead that add needs up, if it is better than the one in hand."""
@@ -376,7 +398,8 @@ class _Reducer:
 
     def _met(self, costs: ExactCosts, cuts: Cuts) -> bool:
         """Whether cuts prove that nothing is better than the tree in hand, and nothing else is wanted."""
-        return Reduction.BOUNDS in self.reductions and costs.met(cuts, self.tree)
+        enough = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
+        return enough and costs.met(cuts, self.tree)
 
     def _improve(self, costs: ExactCosts, cuts: Cuts, thorough: bool) -> None:
         """Look for better trees near what cuts leave."""
@@ -388,7 +411,7 @@ class _Reducer:
 
     def _drop_dear(self, costs: ExactCosts, cuts: Cuts) -> None:
         """Leave out what only trees have that are no better than the one in hand."""
-        limit = self._total(costs) - cuts.bound + costs.doubt
+        limit = max(self._total(costs), self.below) - cuts.bound + costs.doubt
         if Reduction.BOUNDS in self.reductions:
             limit -= 1  # what is as good is not looked for
         self.left = dear_left_out(self.graph, self.left, rests(costs, cuts), limit, self.expired)

@@ -1,6 +1,6 @@
 """What trees up to a cost can have: a question made small for rules that decide which trees count."""
 
-import sys
+import math
 from collections.abc import Callable, Collection, Container, Iterable
 from dataclasses import dataclass
 
@@ -65,14 +65,19 @@ class Wide:
 
     def total(self, units: Iterable[int]) -> int:
         """Give what a tree costs, with the items that it takes where these are counted."""
+        return sum(map(self.costs, self.actions(units)))
+
+    def actions(self, units: Iterable[int]) -> set[int]:
+        """Give the units of a tree with the taking of the items that it needs, where these are counted."""
         tree = set(units)
+        if self.graph.start:
+            return tree
         needed = {o for unit in tree for o in self.problem.needs[unit]}
-        tree |= {self.graph.units + o for o in needed & self.problem.kitchen}
-        return sum(map(self.costs, tree))
+        return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest(self, most: int) -> frozenset[int]:
         """Give at least so many units, those nearest to the goals by what cuts leave, or all."""
-        return self._units(near(self.graph, self.left, rests(self.costs, self.cuts), sys.maxsize, most=most))
+        return self._units(near(self.graph, self.left, rests(self.costs, self.cuts), math.inf, most=most))
 
     def everything(self) -> frozenset[int]:
         """Give all units that a tree can have, whatever it costs."""

@@ -9,6 +9,7 @@ from foon_asp.reduce.reduction import Reduced, at_costs
 from foon_asp.reduce.wide import Wide
 
 _PRICES = 2  # that are tried
+_FEW = 1000  # units that clingo chooses from faster than another price is tried
 
 Units = frozenset[int]
 
@@ -16,13 +17,12 @@ Units = frozenset[int]
 class Limited(NamedTuple):
     """What prices tell of the trees within a limit.
 
-    ``tree`` is one of them, and ``None`` where there is none. Better ones cost ``allowed`` at most, as
-    ``wide`` measures trees, with a price.
+    ``tree`` is one of them, and ``None`` where there is none. Better ones have no units but these; ``units``
+    are ``None`` where no price tells.
     """
 
     tree: Units | None
-    wide: Wide
-    allowed: int
+    units: Units | None = None
 
 
 def limited(
@@ -48,30 +48,41 @@ def limited(
     most_of_all = few.beyond * (most + 1)
     found = _asked(wide, few.priced(counts, few.beyond, most_of_all), (Objective.UNITS,), expired)
     if found.bound >= most_of_all:
-        return Limited(None, wide, 0)
+        return Limited(None)
     if found.tree is None or taken(found.tree) > most:
         return None
-    best, over, least, price, measured = found.tree, tree, wide.cuts.bound, 0, wide
+    best, over = found.tree, tree
+    left: Units | None = None
     for _ in range(_PRICES):
         ratio = -(-(wide.total(best) - wide.total(over)) // (taken(over) - taken(best)))
-        told = _asked(wide, wide.costs.priced(counts, ratio), objectives, expired) if ratio > 0 else None
-        if told is None or told.tree is None or told.wide is None:
+        if ratio <= 0:
             break
-        if told.bound - ratio * most > least:
-            least, price, measured = told.bound - ratio * most, ratio, told.wide
-        if taken(told.tree) > most and wide.total(told.tree) > wide.total(over):
-            over = told.tree
-        elif taken(told.tree) <= most and wide.total(told.tree) < wide.total(best):
-            best = told.tree
-        else:
+        allowed = wide.total(best) + ratio * most
+        found = _asked(wide, wide.costs.priced(counts, ratio), objectives, expired, best, allowed)
+        if found.tree is None:
             break
-    return Limited(best, measured, wide.total(best) + price * most)
+        better = taken(found.tree) <= most and wide.total(found.tree) < wide.total(best)
+        best = found.tree if better else best
+        if left is None or len(found.units) < len(left):
+            left = frozenset(found.units)
+        if taken(found.tree) > most and wide.total(found.tree) > wide.total(over):
+            over = found.tree
+        elif not better:
+            break
+        if len(left) <= _FEW:
+            break
+    return Limited(best, left)
 
 
 def _asked(
-    wide: Wide, costs: ExactCosts, objectives: Sequence[Objective], expired: Callable[[], bool]
+    wide: Wide,
+    costs: ExactCosts,
+    objectives: Sequence[Objective],
+    expired: Callable[[], bool],
+    known: Units = frozenset(),
+    below: int = 0,
 ) -> Reduced:
-    found = at_costs(wide, objectives, costs, expired)
+    found = at_costs(wide, objectives, costs, expired, known, below)
     if found.interrupted:
         raise KeyboardInterrupt
     return found
