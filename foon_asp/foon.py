@@ -342,7 +342,7 @@ class Foon:
             UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
         how = items_of(self._dataset, items, stock, stays)
-        return self._dataset.problem(self._dataset.named_goals(goals), containers, items=how)
+        return self._dataset.nearby(self._dataset.named_goals(goals), containers, how)
 
     @typed
     def vary(

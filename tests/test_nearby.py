@@ -7,15 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.asp import Settings, Status, solve
+import foon_asp
+from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
-from foon_asp.dataset.nearby import Nearby
+from foon_asp.dataset.nearby import Nearby, NearbyProblem
 from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
 from foon_asp.deadline import Deadline
+from foon_asp.foon import Foon
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.proof import verify
 from foon_asp.questions import answer
 from foon_asp.questions.answer import answered_nearby
+from foon_asp.questions.certify import certified
 from foon_asp.rules.constraint import RuleText
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles
@@ -40,8 +44,13 @@ def stored(problem: Problem, folder: Path) -> StoredDataset:
     return dataset
 
 
-def asked(near: Problem | Nearby) -> Nearby:
-    assert isinstance(near, Nearby)
+def near_of(problem: Problem) -> Nearby | None:
+    return problem.near() if isinstance(problem, NearbyProblem) else None
+
+
+def asked(problem: Problem) -> Nearby:
+    near = near_of(problem)
+    assert near is not None
     return near
 
 
@@ -106,8 +115,8 @@ def test_random_problems(rule: ContainerRule, part: int, tmp_path: Path) -> None
             *((o,) for o in random.Random(seed).sample(range(len(problem.network.objects)), 3)),
         }:
             for objectives in LISTS:
-                near = dataset.nearby(goals, rule.value, first=1)
-                if isinstance(near, Problem):
+                near = near_of(dataset.nearby(goals, rule.value, first=1))
+                if near is None:
                     continue
                 before = len(near.problem.network)
                 found = answered_nearby(near, objectives, Settings())
@@ -136,7 +145,7 @@ def test_the_command_reads_near_the_goal(tmp_path: Path, cli: Cli, monkeypatch: 
             read.append(len(self.problem.network))
 
     monkeypatch.setattr("foon_asp.dataset.stored_dataset.Nearby", Counted)
-    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (1,))
+    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (None, 1))
     near = json.loads(cli(*words).out)
     assert read
     assert read[-1] < len(SHORT + LONG)
@@ -160,8 +169,8 @@ def test_other_questions_read_all_that_the_goal_needs(
     words: tuple[str, ...], tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     two_ways(tmp_path).close()
-    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (1,))
-    monkeypatch.setattr("foon_asp.questions.solve.answered_nearby", None)
+    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (None, 1))
+    monkeypatch.setattr("foon_asp.questions.answer.answered_nearby", None)
     said = cli("solve", "--network", tmp_path / "stew.foon", "--goal", "stew", *words)
     assert said.code == 0, said.err
     assert "3 units" in said.out or "3 executions" in said.out
@@ -179,8 +188,8 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
         if not hold_for_parts(how):
             continue
         dataset = stored(problem, tmp_path)
-        near = dataset.nearby(problem.goals, rule.value, first=1)
-        if isinstance(near, Problem):
+        near = near_of(dataset.nearby(problem.goals, rule.value, first=1))
+        if near is None:
             continue
         objectives = rng.choice(LISTS)
         found = answered_nearby(near, objectives, how)
@@ -209,3 +218,35 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
 )
 def test_rules_that_hold_for_parts(text: str, holds: bool) -> None:
     assert hold_for_parts(Settings((RuleText(text),))) is holds
+
+
+@SERIES
+@pytest.mark.parametrize("rule", list(ContainerRule))
+def test_a_certificate_of_a_store_is_one_of_the_text(rule: ContainerRule, part: int, tmp_path: Path) -> None:
+    claims, little = set(), 0
+    for seed in range(30 // part):
+        problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
+        dataset = stored(problem, tmp_path)
+        rng = random.Random(seed)
+        objectives = rng.choice((*LISTS, (Objective.KITCHEN,)))
+        goals = (rng.randrange(len(problem.network.objects)),) if seed % 2 else problem.goals
+        first = rng.choice((1, 1, 1000))
+        found = certified(dataset.nearby(goals, rule.value, None, first), objectives, Settings())
+        expected = solve(replace(problem, goals=goals), objectives)
+        assert found.answer.status is expected.status, seed
+        assert found.certificate is not None, seed
+        assert found.answer.proof is Proof.CERTIFICATE
+        whole = problem.network, problem.kitchen, problem.rates, problem.utensils, dataset.unit_prices
+        there = verify.verify(found.certificate.content, *whole)
+        here = foon_asp.verify(Foon(dataset, "a store"), found.certificate)
+        computed = foon_asp.verify(Foon(dataset, "a store"), found.certificate, full=True)
+        assert here.verified == there == computed.verified
+        assert (here.stated, computed.stated) == (("kitchen", "network", "prices"), ())
+        if expected.costs is not None:
+            order = levels(objectives)
+            assert there.claim == "optimal"
+            assert there.costs == tuple(expected.costs.measure(each) for each in order)
+        claims.add(there.claim)
+        little += len(found.answer.problem.network) < len(problem.network)
+    assert claims == {"optimal", "infeasible"}
+    assert little > 20 // part

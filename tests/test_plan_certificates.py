@@ -13,6 +13,7 @@ import pytest
 from foon_asp.asp import Outcome, Settings, Status
 from foon_asp.asp.optimum import solve
 from foon_asp.certificate import Certificate, certify_outcome
+from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
 from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp, levels
 from foon_asp.proof.verify import RefusedError, Verified, seal
@@ -44,8 +45,7 @@ RULES: list[tuple[str, tuple[str, ...]]] = [
 
 def check(content: Any, problem: Problem) -> Verified:
     """Verify a certificate against the data of a problem."""
-    data = (problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
-    return verify_any(content, *data)
+    return verify_any(content, subject_of(problem))
 
 
 def certified(

@@ -23,10 +23,12 @@ from foon_asp.asp.bare_program import bare_program
 from foon_asp.errors import UserError
 from foon_asp.network import Network, starting_nodes
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.store import builder
+from foon_asp.proof.verify import digests
+from foon_asp.store import builder, numbering
 from foon_asp.store.block import SIZES, VERSION, Table, seal, unseal
 from foon_asp.store.import_files import import_files
 from foon_asp.store.store import Store
+from foon_asp.text import reader
 from foon_asp.text.data_folder import Data, DataFiles, find_data, read_data
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.goal_name import find_goal
@@ -146,6 +148,8 @@ def assert_holds(store: Path, data: Data) -> None:
     assert opened.rates == data.rates
     assert opened.utensils == data.utensils
     assert (opened.units, opened.objects) == (len(data.network), len(data.network.objects))
+    stated = digests(network, kitchen, data.rates, data.utensils, data.unit_prices)
+    assert opened.digests == {name: stated[name] for name in opened.digests}
     for unit in range(len(network)):
         assert network.unit_id(network.unit(unit)) == unit
         assert opened.unit_id(network.unit(unit)) == unit
@@ -224,6 +228,41 @@ def test_copies_that_come_much_later(tmp_path: Path, monkeypatch: pytest.MonkeyP
     imported = import_files(DataFiles(tuple(files)), store)
     assert (imported.copies, imported.units) == (4 * imported.units, 3 * SIZES[Table.UNIT] + 5)
     assert_holds(store, read_data(DataFiles(tuple(files))))
+
+
+def test_an_import_that_remembers_little(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stores = [tmp_path / "one.foon", tmp_path / "other.foon"]
+    import_files(find_data(KITCHEN), stores[0])
+    monkeypatch.setattr(builder, "_REMEMBERED", 3)
+    monkeypatch.setattr(reader, "_REMEMBERED", 3)
+    monkeypatch.setattr(reader, "_PIECE", 50)
+    monkeypatch.setattr(numbering, "_LEAST", 1)
+    import_files(find_data(KITCHEN), stores[1])
+    assert_holds(stores[1], read_data(find_data(KITCHEN)))
+    one, other = (sqlite3.connect(store) for store in stores)
+    for table in Table:
+        rows = f"SELECT * FROM {table} ORDER BY number"
+        assert one.execute(rows).fetchall() == other.execute(rows).fetchall(), table
+
+
+@pytest.mark.parametrize("listed", [False, True])
+def test_prices_have_the_digest_that_certificates_name(tmp_path: Path, listed: bool) -> None:
+    network, prices = tmp_path / "tasks.jsonl", tmp_path / "prices.txt"
+    units = [("go", 'a"b', "c", 3), ("go", "c", "d", "0.5"), ("stay", "é", "a", None), ("go", "d", "a", 1)]
+    network.write_text(
+        "".join(
+            json.dumps(
+                {"id": name, "inputs": [need], "outputs": [give]} | ({"price": price} if price else {})
+            )
+            + "\n"
+            for name, need, give, price in units
+        ),
+        encoding="utf-8",
+    )
+    prices.write_text("stay\t7\n", encoding="utf-8")
+    files = DataFiles((network,), unit_prices=prices if listed else None)
+    import_files(files, tmp_path / "tasks.foon")
+    assert_holds(tmp_path / "tasks.foon", read_data(files))
 
 
 def test_units_without_outputs_and_names_of_any_letters(tmp_path: Path) -> None:
@@ -394,13 +433,67 @@ def test_proofs_speak_about_the_whole_network(cli: Cli, kitchen_store: Path, tmp
     proofs = tmp_path / "text.json", tmp_path / "store.json"
     for proof, words in zip(proofs, (("--data", KITCHEN), ("--network", kitchen_store)), strict=True):
         assert cli("solve", "--goal", "macaroni", "--certificate", proof, *words).code == 0
-    assert proofs[0].read_bytes() == proofs[1].read_bytes()
-    assert cli("verify", proofs[0], "--network", kitchen_store) == cli("verify", proofs[1])
-    assert "verified" in cli("verify", proofs[0], "--network", kitchen_store).out
+    for proof in proofs:
+        said = cli("verify", proof)
+        assert said.out.startswith("goal: macaroni; cooked")
+        assert cli("verify", proof, "--network", kitchen_store, "--full") == said
+        here = cli("verify", proof, "--network", kitchen_store)
+        assert here.out == said.out + (
+            "taken on trust: the digests of kitchen, network and prices that the store states "
+            "(--full computes them)\n"
+        )
+        assert here.code == said.code == 0
     tree = tmp_path / "tree.txt"
     tree.write_text(cli("solve", "--goal", "macaroni", "--format", "foon").out, encoding="utf-8")
     given = ("certify", "--goal", "macaroni", "--tree", tree)
     assert cli(*given, "--network", kitchen_store) == cli(*given, "--data", KITCHEN)
+
+
+@pytest.mark.parametrize("name", ["network", "kitchen", "prices"])
+def test_a_digest_that_is_not_true_is_trusted_and_found(
+    name: str, cli: Cli, soup: tuple[DataFiles, Path], tmp_path: Path
+) -> None:
+    files, store = soup
+    proof, asked = tmp_path / "proof.json", ("--network", store)
+    assert cli("certify", "--goal", SOUP_NODE, "-o", proof, *asked).code == 0
+    with contextlib.closing(Store(store)) as opened:
+        digests = opened.digests
+    forged(store, Table.ABOUT, 6, {**digests, name: "0" * 64})
+    refused = cli("verify", proof, *asked)
+    assert (refused.code, refused.out) == (1, f"refused: {name}: not the one that the certificate is about\n")
+    assert cli("certify", "--goal", SOUP_NODE, "-o", proof, *asked).code == 0
+    assert "taken on trust" in cli("verify", proof, *asked).out
+    assert cli("verify", proof, "--data", files.network[0].parent).code == 1  # the text is not what it names
+    full = cli("verify", proof, *asked, "--full")
+    assert full.code == 2
+    assert f"the digest of the {name} that the store states is not that of what is in it" in full.err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--kitchen", "kitchen.txt"),
+        ("--kitchen", "@starting"),
+        ("--unit-prices", "prices.txt"),
+        ("--rates", "rates.txt"),
+    ],
+)
+def test_what_is_given_beside_a_store_is_digested(
+    words: tuple[str, str], cli: Cli, soup: tuple[DataFiles, Path], tmp_path: Path
+) -> None:
+    files, store = soup
+    (tmp_path / "kitchen.txt").write_text("O\tleek\nS\twhole\nO\tknife\n", encoding="utf-8")
+    (tmp_path / "prices.txt").write_text("chop\t1\nadd\t2\ncook\t3\neat\t4\n", encoding="utf-8")
+    (tmp_path / "rates.txt").write_text("chop\t0.5\nadd\t0.5\ncook\t1\neat\t1\n", encoding="utf-8")
+    option, file = words
+    beside = (option, file if file[0] == "@" else tmp_path / file)
+    proof = tmp_path / "proof.json"
+    made = cli("certify", "--goal", SOUP_NODE, "-o", proof, "--network", store, *beside)
+    assert made.code in {0, 1}, made.err  # without pots there is no tree
+    for more in ((), ("--full",)):
+        assert cli("verify", proof, "--network", store, *beside, *more).code == 0
+    assert cli("verify", proof, "--data", files.network[0].parent, *beside).code == 0
+    assert cli("verify", proof, "--network", store).code == 1
 
 
 @pytest.mark.parametrize("verb", ["lint", "fmt", "convert", "merge"])

@@ -277,7 +277,7 @@ def test_a_store_of_before_there_were_prices_is_refused(tmp_path: Path, cli: Cli
     ran = cli("solve", "--network", str(tmp_path / "net.foon"), "--goal", "b")
     assert ran.code == 2
     assert (
-        "has version 1 of the store format, this foon-asp reads version 3: import its source files again"
+        "has version 1 of the store format, this foon-asp reads version 4: import its source files again"
         in ran.err
     )
 

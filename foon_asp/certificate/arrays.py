@@ -154,13 +154,14 @@ class Arrays:
         return parts
 
     def member(self, action: int) -> dict[str, int]:
-        """Name an action as certificates do."""
-        if action < len(self.problem.network):
-            return {"unit": action}
+        """Name an action as certificates do, by ids in the whole network."""
+        network = self.problem.network
+        if action < len(network):
+            return {"unit": network.unit_number(action)}
         first = len(self.graph.needs) - len(self._steps)
         if action >= first:
             return {"step": action - first}
-        return {"item": sorted(self.items)[action - len(self.problem.network)]}
+        return {"item": network.object_number(sorted(self.items)[action - len(network)])}
 
     def _rates(self) -> Iterable[Fraction]:
         return map(self.problem.rate, range(len(self.problem.network)))

@@ -64,13 +64,16 @@ def certify(
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
     cuts: Sequence[Sequence[int]] = (),
+    subject: verify.Subject | None = None,
 ) -> Certificate | None:
     """Prove a tree optimal by a lexicographic list of objectives, or by as many from the first as can be.
 
     ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that is
     not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
     trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
-    each, that are tried first: :attr:`foon_asp.asp.Outcome.cuts`. ``None`` where nothing is found before
+    each, that are tried first: :attr:`foon_asp.asp.Outcome.cuts`. ``subject`` is the whole that the network
+    is a part of, if it is one: with all makers of each node that is neither at hand nor an output alone, and
+    without constraints. ``None`` where nothing is found before
     ``expired`` says so, for objectives that need rates with rates of 0 or with rates that are not those of
     the motions, and where nothing is found within the limits of ``verify``, as where products of rates are
     too close to be compared, or too long to be written.
@@ -95,7 +98,7 @@ def certify(
                 raise NotBestError(guide, problem.costs(guide)) from None
             break
         if proof is not None:
-            certificate = _write(arrays, covered, "optimal", units, proof)
+            certificate = _write(arrays, covered, "optimal", units, proof, subject)
             if certificate is not None:
                 return certificate
         if expired():
@@ -105,13 +108,16 @@ def certify(
     if relaxed is None:
         return None
     packing, bound = relaxed
-    return _write(arrays, covered, "bound", units, packing, bound)
+    return _write(arrays, covered, "bound", units, packing, subject, bound)
 
 
 def certify_infeasible(
-    problem: Problem, covered: Coverage = NOTHING, expired: Callable[[], bool] = lambda: False
+    problem: Problem,
+    covered: Coverage = NOTHING,
+    expired: Callable[[], bool] = lambda: False,
+    subject: verify.Subject | None = None,
 ) -> Certificate | None:
-    """Prove that there is no tree.
+    """Prove that there is no tree; ``subject`` is as for :func:`certify`.
 
     ``None`` where only constraints that are not covered leave none, and where no proof is found before
     ``expired`` says so.
@@ -121,7 +127,7 @@ def certify_infeasible(
     arrays = Arrays(problem, (), covered)
     never = min(arrays.ruled.never, default=None)
     proof = _prover(arrays, expired).prove_none() if never is None else Broken(never)
-    return None if proof is None else _write(arrays, covered, "infeasible", None, proof)
+    return None if proof is None else _write(arrays, covered, "infeasible", None, proof, subject)
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
@@ -138,9 +144,11 @@ def _write(
     claim: str,
     units: Sequence[int] | None,
     proof: Proof,
+    subject: verify.Subject | None,
     bound: Vector | None = None,
 ) -> Certificate | None:
-    problem = arrays.problem
+    problem, network = arrays.problem, arrays.problem.network
+    subject = subject or subject_of(problem)
     cuts: dict[tuple[int, ...], int] = {}
     places, own = list(arrays.ruled.limits), arrays.own_limits
     of_own: dict[int, int] = {}
@@ -191,18 +199,18 @@ def _write(
         "format": verify.FORMAT,
         "version": verify.VERSION,
         "claim": claim,
-        **head(problem, arrays.objectives, rules, covered),
-        "tree": None if units is None else list(units),
+        **head(problem, arrays.objectives, rules, covered, subject),
+        "tree": None if units is None else list(map(network.unit_number, units)),
         "costs": costs,
         "bound": least,
-        "cuts": [list(objects) for objects in cuts],
+        "cuts": [list(map(network.object_number, objects)) for objects in cuts],
         "proof": found,
     }
-    return sealed(content, arrays.objectives, problem)
+    return sealed(content, arrays.objectives, subject)
 
 
 def sealed(
-    content: dict[str, Any], objectives: tuple[Objective, ...], problem: Problem
+    content: dict[str, Any], objectives: tuple[Objective, ...], subject: verify.Subject
 ) -> Certificate | None:
     """Seal a certificate and verify it as it is written; ``None`` where that is beyond the limits.
 
@@ -210,11 +218,11 @@ def sealed(
     """
     certificate = Certificate(content, content["claim"], objectives)
     try:
-        verified = _verified(certificate, problem)
+        verified = _verified(certificate, subject)
         for measure in verified.trusted:  # of all units, those that the proof looks at
             content["measures"][measure.name]["costs"] = _by_cost(measure.costs)
         if verified.trusted:
-            _verified(certificate, problem)
+            _verified(certificate, subject)
     except verify.LimitError:
         return None
     except verify.RefusedError as refused:
@@ -222,32 +230,36 @@ def sealed(
     return certificate
 
 
-def _verified(certificate: Certificate, problem: Problem) -> verify.Verified:
+def _verified(certificate: Certificate, subject: verify.Subject) -> verify.Verified:
     content = certificate.content
     content["seal"] = verify.seal(content)
-    return verify_any(
-        verify.read_certificate(certificate.text()),
-        problem.network,
-        problem.kitchen,
-        problem.rates,
-        problem.utensils,
-        problem.unit_prices,
+    return verify_any(verify.read_certificate(certificate.text()), subject)
+
+
+def subject_of(problem: Problem) -> verify.Subject:
+    """Give what certificates of a problem over a whole network speak about."""
+    return verify.Subject(
+        *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     )
 
 
 def head(
-    problem: Problem, objectives: Sequence[Objective], rules: Sequence[Rule], covered: Coverage
+    problem: Problem,
+    objectives: Sequence[Objective],
+    rules: Sequence[Rule],
+    covered: Coverage,
+    subject: verify.Subject,
 ) -> dict[str, Any]:
     """Give what certificates of all kinds say of the question that they are about."""
+    network = problem.network
     return {
-        "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
+        "goals": [
+            {"id": network.object_number(goal), "node": str(network.objects[goal])} for goal in problem.goals
+        ],
         "containers": str(problem.containers),
-        "level": problem.network.level,
+        "level": network.level,
         "objective": [str(objective) for objective in objectives],
-        "digests": verify.digests(
-            *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
-            rules=rules,
-        ),
+        "digests": subject.digests(rules),
         "rules": [dict(rule) for rule in rules],
         "measures": {
             str(objective): _measure(problem, objective)
@@ -261,11 +273,12 @@ def head(
 def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
     """Give the rules of a measure, and what they say of all units."""
     rules = problem.measures[objective].text
+    numbers = map(problem.network.unit_number, range(len(problem.network)))
     costs = problem.figures(objective, range(len(problem.network)))
     return {
         "rules": rules,
         "sha256": hashlib.sha256(rules.encode()).hexdigest(),
-        "costs": _by_cost(dict(enumerate(costs))),
+        "costs": _by_cost(dict(zip(numbers, costs, strict=True))),
     }
 
 

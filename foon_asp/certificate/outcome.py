@@ -14,27 +14,31 @@ from foon_asp.certificate.coverage import Coverage, coverage
 from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for_plans
 from foon_asp.errors import BugError
 from foon_asp.problem import Problem, levels, multiplies
-from foon_asp.proof.verify import trusted
+from foon_asp.proof.verify import Subject, trusted
 
 _WRITTEN = 13_000  # bits of a number that is printed; Python writes at most 4,300 digits
 
 
 def certify_outcome(
-    outcome: Outcome, settings: Settings, expired: Callable[[], bool] = lambda: False
+    outcome: Outcome,
+    settings: Settings,
+    expired: Callable[[], bool] = lambda: False,
+    subject: Subject | None = None,
 ) -> tuple[Outcome, Certificate | None]:
     """Find a certificate for an answer to a question under these settings, and mark the answer with it.
 
     The answer is marked ``certificate`` where the whole of its claim is proved; where only the first of its
     objectives are, it says for each. Where more than a bound is proved only by taking on trust what rules of
     the user's own remove and ask for, the answer is left as it is. Raises :class:`BugError` when a tree that
-    the solver called optimal is not, and when answer and certificate cannot both be true.
+    the solver called optimal is not, and when answer and certificate cannot both be true. ``subject`` is the
+    whole that its network is a part of, as for :func:`~foon_asp.certificate.certify`.
     """
     began = time.perf_counter()
     covered = coverage(settings)
     plans = outcome.problem.items is not None
     if plans:
         covered = covered_for_plans(covered)
-    found = _certified(outcome, settings, covered, expired)
+    found = _certified(outcome, settings, covered, expired, subject)
     if (
         not plans
         and covered.not_covered
@@ -60,18 +64,22 @@ def certify_outcome(
 
 
 def _certified(
-    outcome: Outcome, settings: Settings, covered: Coverage, expired: Callable[[], bool]
+    outcome: Outcome,
+    settings: Settings,
+    covered: Coverage,
+    expired: Callable[[], bool],
+    subject: Subject | None = None,
 ) -> Certificate | None:
     """Find a certificate among trees that keep to what is covered."""
     if outcome.problem.items is not None:
         return _certified_plan(outcome, covered, expired)
     if outcome.status is Status.INFEASIBLE:
-        return certify_infeasible(outcome.problem, covered, expired)
+        return certify_infeasible(outcome.problem, covered, expired, subject)
     if outcome.status is not Status.OPTIMAL or outcome.units is None:
         return None
     wanted = levels(outcome.objectives)
     try:
-        return certify(outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts)
+        return certify(outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts, subject)
     except NotBestError as better:
         why = f"there is a better tree, {_tree(outcome, better.units)}"
         raise _contradiction(outcome, settings, why) from None
@@ -94,7 +102,8 @@ def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> s
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])
-    if (goals, content["containers"]) != (problem.goals, str(problem.containers)):
+    asked = tuple(map(problem.network.object_number, problem.goals))
+    if (goals, content["containers"]) != (asked, str(problem.containers)):
         return f"the certificate speaks of the goals {list(goals)} under {content['containers']} containers"
     if outcome.units is None:
         return None if certificate.claim == "infeasible" else f"the certificate claims {certificate.claim}"
@@ -117,9 +126,10 @@ def _costs_at_odds(
         if arrays.order.sign([*map(sub, cost, least)]) < 0:
             return f"the certificate proves the bound {content['bound']}, and the tree costs less"
         return None
-    proved = arrays.order.total(arrays.costs[a] for a in arrays.actions(content["tree"]))
+    tree = [unit for u in content["tree"] if (unit := problem.network.unit_of_number(u)) is not None]
+    proved = arrays.order.total(arrays.costs[a] for a in arrays.actions(tree))
     if arrays.order.sign([*map(sub, cost, proved)]) != 0:
-        return f"the certificate proves another tree optimal, {_tree(outcome, content['tree'])}"
+        return f"the certificate proves another tree optimal, {_tree(outcome, tree)}"
     return None
 
 

@@ -13,7 +13,7 @@ from foon_asp.bounds.counts import Balance, Condition, Flows, Landmark, Level, M
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.bounds.plan_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.certificate.arrays import written
-from foon_asp.certificate.certificate import Certificate, head, sealed
+from foon_asp.certificate.certificate import Certificate, head, sealed, subject_of
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.network import ObjectNode
 from foon_asp.problem import (
@@ -278,11 +278,12 @@ class _Question:
             stated = None if bound is None else [weight_text(each, order) for each in bound]
         except verify.LimitError:
             return None
+        subject = subject_of(problem)
         content: dict[str, Any] = {
             "format": FORMAT,
             "version": VERSION,
             "claim": claim,
-            **head(problem, objectives, self._covered.rules, self._covered),
+            **head(problem, objectives, self._covered.rules, self._covered, subject),
             "items": {
                 "stock": [list(pair) for pair in stock],
                 "stays": [list(pair) for pair in (*sorted(told), *sorted(known))],
@@ -294,7 +295,7 @@ class _Question:
             "cuts": [list(cut) for cut in self._cuts],
             "proof": list(proofs),
         }
-        return sealed(content, tuple(objectives), problem)
+        return sealed(content, tuple(objectives), subject)
 
 
 class _Stated:

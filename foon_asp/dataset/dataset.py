@@ -6,7 +6,6 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
 from foon_asp.errors import UserError
@@ -32,13 +31,11 @@ from foon_asp.problem import (
     first_places,
     unrated_text,
 )
+from foon_asp.proof.verify import Subject
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning, kitchen_nodes
 from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, notation
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
-
-if TYPE_CHECKING:  # of stores only
-    from foon_asp.dataset.nearby import Nearby
 
 
 def ask(
@@ -260,6 +257,15 @@ class Dataset:
         data, goals = dataset.part(_whole_goals(problem), tree=units)
         return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
 
+    def subject(self, everything: bool = True) -> Subject:
+        """Give what a certificate speaks about; of a store, it may not be read, and its digests be trusted.
+
+        Raises :class:`UserError` where ``everything`` is read of a store whose digests are not true.
+        """
+        data = self.data
+        rates = None if self.unrated else data.rates
+        return Subject(data.network, data.kitchen, rates, data.utensils, data.unit_prices)
+
     def named_goals(self, names: Names) -> tuple[int, ...]:
         """Find goals that Python names, by id in the whole network, each once.
 
@@ -316,9 +322,9 @@ class Dataset:
         """
         return ask(self.data, goals, containers, self, items)
 
-    def nearby(self, goals: Sequence[int], containers: str) -> "Problem | Nearby":
-        """Ask for goals that can need many units, of which some need not be read; here all are."""
-        return self.problem(goals, containers)
+    def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None = None) -> Problem:
+        """Ask for goals that can need many units, which of a store are read when they are looked at."""
+        return self.problem(goals, containers, items=items)
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()

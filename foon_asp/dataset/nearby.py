@@ -1,10 +1,12 @@
 """A question to a large store, of which only the units near the goals are read, until that is enough."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import fields, replace
 from functools import cached_property
 
-from foon_asp.problem import Problem
+from foon_asp.network import Network, ObjectNode, UnitPrices
+from foon_asp.problem import Objective, Problem
+from foon_asp.proof.verify import Subject
 from foon_asp.store.cone import Cone
 
 FIRST = 1000
@@ -15,11 +17,17 @@ class Nearby:
     """A question over the units near its goals; what the others are good for is not known yet.
 
     ``cone`` is what was read, ``pose`` makes the question over it, and ``read_all`` over all that the goals
-    can need.
+    can need. ``subject`` gives what a certificate of the answer speaks about.
     """
 
-    def __init__(self, cone: Cone, pose: Callable[[Cone], Problem], read_all: Callable[[], Problem]) -> None:
-        self._cone, self._pose, self._read_all = cone, pose, read_all
+    def __init__(
+        self,
+        cone: Cone,
+        pose: Callable[[Cone], Problem],
+        read_all: Callable[[], Problem],
+        subject: Callable[[], Subject],
+    ) -> None:
+        self._cone, self._pose, self._read_all, self.subject = cone, pose, read_all, subject
 
     @cached_property
     def problem(self) -> Problem:
@@ -57,6 +65,81 @@ class Nearby:
 
     def grow(self, objects: Iterable[int]) -> None:
         """Read a fifth more units, which lead to these open objects, by id in the whole network."""
-        self._cone.grow(objects, len(self._cone.units) // 5 + 1)
+        self._cone.grow(objects, len(self._cone.units) // 10 + 1)
         for known in ("problem", "relaxed"):
             self.__dict__.pop(known, None)
+
+
+class NearbyProblem(Problem):
+    """A question to a large store: what its goals can need is read when it is first looked at.
+
+    :meth:`near` has what is near the goals, for those that can do with it.
+    """
+
+    _first: Problem | None = (
+        None  # over some of the units; ``None`` where this was made of another with changes
+    )
+
+    @classmethod
+    def of(cls, near: Nearby, again: Callable[[], Problem]) -> "NearbyProblem":
+        """Make it of what was read near its goals; ``again`` makes the same one anew."""
+        problem, first = cls.__new__(cls), near.problem
+        known = {field.name: getattr(first, field.name) for field in fields(Problem)}
+        for name in ("network", "kitchen", "goals", "unit_prices"):  # below
+            del known[name]
+        problem.__dict__.update(known, _first=first, _unasked=[near], _again=again, _read=near.whole)
+        return problem
+
+    def near(self) -> Nearby | None:
+        """Give what is near the goals, for one question to read on from; ``None`` where all was read."""
+        if self._first is None or "_all" in self.__dict__:
+            return None
+        unasked: list[Nearby] = self.__dict__["_unasked"]
+        if unasked:
+            return unasked.pop()
+        again = self.__dict__["_again"]()
+        return again.near() if isinstance(again, NearbyProblem) else None
+
+    @property
+    def goal_nodes(self) -> tuple[ObjectNode, ...]:
+        """The goals as object nodes."""
+        return super().goal_nodes if self._first is None else self._first.goal_nodes
+
+    @property
+    def conditions(self) -> str:
+        """What every claim about this question holds under, in a few words."""
+        return super().conditions if self._first is None else self._first.conditions
+
+    def require_known_for(self, objectives: Collection[Objective]) -> None:
+        """Require the rates and prices that objectives need, as :meth:`Problem.require_known_for` does."""
+        if self._first is None:
+            super().require_known_for(objectives)
+        else:
+            self._first.require_known_for(objectives)
+
+    @cached_property
+    def _all(self) -> Problem:
+        found: Problem = self.__dict__["_read"]()
+        return found
+
+    # Each gives way to a value of its own in a problem that is made of this one with changes.
+
+    @cached_property
+    def network(self) -> Network:
+        """The network of all that the goals can need."""
+        return self._all.network
+
+    @cached_property
+    def kitchen(self) -> frozenset[int]:
+        """What of it is at hand."""
+        return self._all.kitchen
+
+    @cached_property
+    def goals(self) -> tuple[int, ...]:
+        """The goals."""
+        return self._all.goals
+
+    @cached_property
+    def unit_prices(self) -> UnitPrices | None:
+        """The prices of its units."""
+        return self._all.unit_prices

@@ -2,14 +2,14 @@
 
 import copy
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
 
 from foon_asp.dataset.dataset import Dataset, ask, left_out
 from foon_asp.dataset.names import changed_prices, changed_rates
-from foon_asp.dataset.nearby import FIRST, Nearby
+from foon_asp.dataset.nearby import FIRST, Nearby, NearbyProblem
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -29,8 +29,10 @@ from foon_asp.problem import (
     unrated_remarks,
     unrated_text,
 )
+from foon_asp.proof.verify import Subject, digests
 from foon_asp.store.cone import Cone
 from foon_asp.store.store import Store
+from foon_asp.store.touched_network import TouchedNetwork
 from foon_asp.text.data_folder import (
     STARTING,
     Data,
@@ -69,7 +71,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
     if files.rates:
         rates = read_rates(files.rates)
     utensils = read_labels(files.utensils) if files.utensils else store.utensils
-    prices = _StoredPrices(store.motion_prices, {}, listed=True)
+    prices = _own_prices(store)
     if files.unit_prices:
         read = read_unit_prices(files.unit_prices)
         units = {unit: price for unit, price in read.units.items() if store.unit_id(unit) is not None}
@@ -211,6 +213,39 @@ class StoredDataset(Dataset):
         self.read_seconds += time.perf_counter() - began
         return data
 
+    def subject(self, everything: bool = True) -> Subject:
+        """Give what a certificate speaks about: all of it, or what is read when it is looked at.
+
+        Then the digests of the network and of what was imported beside it are those that the store states.
+        All is read, too, where a starting kitchen or other prices count. Raises :class:`UserError` where that
+        shows that a digest that is stated is not true.
+        """
+        own_prices = self._prices == _own_prices(self._store)
+        rates = None if self.unrated else self.rates
+        everything = everything or self._starting or not own_prices
+        stated = self._true_digests() if everything else dict(self._store.digests)
+        if self._at_hand != self._store.in_kitchen:
+            del stated["kitchen"]
+        if not own_prices:
+            del stated["prices"]
+        if everything:
+            data = self.data
+            return Subject(data.network, data.kitchen, rates, self.utensils, data.unit_prices, stated)
+        network, kitchen = TouchedNetwork(self._store), _AtHand(self)
+        return Subject(network, kitchen, rates, self.utensils, None, stated, tuple(sorted(stated)))
+
+    def _true_digests(self) -> dict[str, str]:
+        """Work out the digests that the store states, of all that is in it."""
+        store, (network, kitchen) = self._store, self._whole()
+        found = digests(network, kitchen, None, (), self._prices_of(network, _own_prices(store)))
+        for name, stated in store.digests.items():
+            if stated != found[name]:
+                raise UserError(
+                    f"{store.name}: the digest of the {name} that the store states is not that of what is in "
+                    "it, so it was changed after the import; import its source files again"
+                )
+        return {name: found[name] for name in store.digests}
+
     def _whole(self) -> tuple[Network, frozenset[int]]:
         if not self._read_whole:
             self._read_whole.append(self._store.whole())
@@ -272,19 +307,27 @@ class StoredDataset(Dataset):
         cone = self._cone(goals, containers, items)
         return self._posed(cone, containers, items)
 
-    def nearby(self, goals: Sequence[int], containers: str, first: int = FIRST) -> Problem | Nearby:
+    def nearby(
+        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = FIRST
+    ) -> Problem:
         """Ask for goals that can need many units, of which at ``first`` so many are read.
 
-        Gives the problem where they need no more than these. Where no kitchen was given, all that they need
-        is read, since what is taken to be at hand is listed.
+        Where they need more than these, the rest is read when it is looked at. Where no kitchen was given,
+        all that they need is read, since what is taken to be at hand is listed.
         """
-        cone = self._cone(goals, containers, None, first if self.has_kitchen else None)
+        if items is not None or not self.has_kitchen:
+            return self.problem(goals, containers, items=items)
+        cone = self._cone(goals, containers, None, first)
         if not cone.open:
             return self._posed(cone, containers, None)
-        return Nearby(
-            cone,
-            lambda cone: self._posed(cone, containers, None),
-            lambda: self.problem(goals, containers),
+        return NearbyProblem.of(
+            Nearby(
+                cone,
+                lambda cone: self._posed(cone, containers, None),
+                lambda: self.problem(goals, containers),
+                lambda: self.subject(everything=False),
+            ),
+            lambda: self.nearby(goals, containers, None, first),
         )
 
     def _cone(
@@ -344,17 +387,38 @@ class StoredDataset(Dataset):
             self.utensils,
             (),
             left_out,
-            self._prices_of(network),
+            self._prices_of(network, self._prices),
             self._starting,
             self.goals_from,
         )
 
-    def _prices_of(self, network: Network) -> UnitPrices | None:
+    def _prices_of(self, network: Network, prices: _StoredPrices) -> UnitPrices | None:
         """Give the prices of a part of the network, or of all of it."""
-        motions, units, listed = self._prices
+        motions, units, listed = prices
         if motions is None and not units and not self._store.has_unit_prices:
             return None
         return UnitPrices(motions or {}, self._store.unit_prices(network, listed) | dict(units))
+
+
+class _AtHand(Collection[int]):
+    """The ids of the object nodes at hand: whether one is needs no list of all."""
+
+    def __init__(self, dataset: Dataset) -> None:
+        self._dataset = dataset
+
+    def __contains__(self, o: object) -> bool:
+        return isinstance(o, int) and self._dataset.at_hand(o)
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._dataset.kitchen)
+
+    def __len__(self) -> int:
+        return len(self._dataset.kitchen)
+
+
+def _own_prices(store: Store) -> _StoredPrices:
+    """Give the prices that were imported."""
+    return _StoredPrices(store.motion_prices, {}, listed=True)
 
 
 def _places(part: Network, goals: Sequence[int]) -> tuple[int, ...]:

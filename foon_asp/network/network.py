@@ -227,6 +227,11 @@ class Network:
         )
 
     @cached_property
+    def different_motions(self) -> frozenset[str]:
+        """The motions of the units, each once."""
+        return frozenset(self.motions)
+
+    @cached_property
     def producers(self) -> tuple[tuple[int, ...], ...]:
         """For each object node, the units that have it as an output, in order."""
         return _invert(self.outputs, len(self.objects))

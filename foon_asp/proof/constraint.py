@@ -26,7 +26,7 @@ class Question(NamedTuple):
     """
 
     network: Network
-    kitchen: frozenset[int]
+    kitchen: Collection[int]
     goals: tuple[int, ...]
     utensils: frozenset[str]
     rate: Callable[[int], Fraction | None]

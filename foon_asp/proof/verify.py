@@ -17,12 +17,13 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cache
 from itertools import accumulate
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import Network, UnitPrices, node_at_level
@@ -66,6 +67,25 @@ _VERSION_1 = (
     "in version 1, a unit could make a container that it had skipped under the implied rule, so a container "
     "could come from nothing; certify again"
 )
+
+
+class Subject(NamedTuple):
+    """What a certificate speaks about; ``kitchen`` are object node ids.
+
+    ``stated`` are digests that are not worked out of the others, by name; those of ``trusted`` nobody did.
+    """
+
+    network: Network
+    kitchen: Collection[int]
+    rates: Mapping[str, Fraction] | None
+    utensils: frozenset[str]
+    prices: UnitPrices | None = None
+    stated: Mapping[str, str] = MappingProxyType({})
+    trusted: tuple[str, ...] = ()
+
+    def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
+        """Give the digests that a certificate of it names, as :func:`digests` does."""
+        return digests(*self[:-1], rules=rules)
 
 
 class RefusedError(Exception):
@@ -171,21 +191,24 @@ def digests(
     rates: Mapping[str, Fraction] | None,
     utensils: Iterable[str],
     prices: UnitPrices | None = None,
+    stated: Mapping[str, str] = MappingProxyType({}),
     rules: Iterable[Rule] = (),
 ) -> dict[str, str]:
     """Give the SHA-256 digests of what a certificate speaks about; ids mean nothing without the network's.
 
-    Of the places where units were read, it is those that the rules look at.
+    Those that are ``stated`` are not computed. Of the places where units were read, it is those that the
+    rules look at.
     """
     places = [found for rule in rules if (found := looked_at(rule, network)) is not None]
-    return {
-        "network": _digest(_described(network)),
-        "kitchen": _digest(sorted(kitchen)),
-        "rates": _digest(rates and sorted([motion, str(rate)] for motion, rate in rates.items())),
-        "utensils": _digest(sorted(utensils)),
-        "prices": _digest(prices and _stated(prices, network.detailed or network)),
-        "sources": _digest(places or None),
+    values: dict[str, Callable[[], object]] = {
+        "network": lambda: _described(network),
+        "kitchen": lambda: sorted(kitchen),
+        "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
+        "utensils": lambda: sorted(utensils),
+        "prices": lambda: prices and _stated(prices, network.detailed or network),
+        "sources": lambda: places or None,
     }
+    return {name: stated.get(name) or _digest(value()) for name, value in values.items()}
 
 
 def seal(certificate: Mapping[str, Any]) -> str:
@@ -201,12 +224,13 @@ def trusted(certificate: Mapping[str, Any]) -> Rule | None:
 def verify(
     certificate: Any,
     network: Network,
-    kitchen: frozenset[int],
+    kitchen: Collection[int],
     rates: Mapping[str, Fraction] | None,
     utensils: frozenset[str],
     prices: UnitPrices | None = None,
+    stated: Mapping[str, str] = MappingProxyType({}),
 ) -> Verified:
-    """Check a certificate against the data it speaks about; ``kitchen`` are object node ids.
+    """Check a certificate against the data it speaks about, as a :class:`Subject` has them.
 
     Takes time linear in cuts times network, and where that is a few seconds more than the digest of the
     network takes, raises :class:`LimitError`. Raises :class:`RefusedError` with the first fault that is
@@ -228,13 +252,13 @@ def verify(
             if version >= _WITH_RULES
             else _forbidding(certificate["forbidden"])
         )
-        found = digests(network, kitchen, rates, utensils, prices, rules)
+        found = digests(network, kitchen, rates, utensils, prices, stated, rules)
         for name, since in (("prices", _WITH_PRICES), ("sources", _WITH_RULES)):
             if version < since:
                 del found[name]
-        stated = read_object(certificate["digests"], tuple(found))
+        named = read_object(certificate["digests"], tuple(found))
         for name, digest in found.items():
-            require(stated[name] == digest, f"{name}: not the one that the certificate is about")
+            require(named[name] == digest, f"{name}: not the one that the certificate is about")
         priced = prices if version >= _WITH_PRICES else None
         return Check(certificate, rules, network, kitchen, rates, utensils, priced).claim()
     except RecursionError:
@@ -254,7 +278,7 @@ class Check:
         certificate: dict[str, Any],
         rules: tuple[Rule, ...],
         network: Network,
-        kitchen: frozenset[int],
+        kitchen: Collection[int],
         rates: Mapping[str, Fraction] | None,
         utensils: frozenset[str],
         prices: UnitPrices | None,
@@ -277,16 +301,24 @@ class Check:
         )
         require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
         by_rates = {"success", "attempts"} & set(self.objectives)
-        self.rates = self._rates(rates) if by_rates else []
-        self.costly = frozenset(self.rates) - {0, 1}
+        self.rates = self._rates(rates) if by_rates else {}
+        self.costly = frozenset(self.rates.values()) - {0, 1}
         self.prices = self._prices(prices) if "price" in self.objectives else []
         self.goals = tuple(_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.rules, self.claimed = rules, 0
-        rate = [(rates or {}).get(motion) for motion in network.motions]
-        known = (rate.__getitem__, self._each_price(prices).__getitem__)
-        asked = Question(network, kitchen, self.goals, utensils, *known, self.needs, self.gives)
+        each_price = cache(lambda: self._each_price(prices))
+        asked = Question(
+            network,
+            kitchen,
+            self.goals,
+            utensils,
+            lambda unit: (rates or {}).get(network.motions[unit]),
+            lambda unit: each_price()[unit],
+            self.needs,
+            self.gives,
+        )
         self.ruled = Ruled(
             [self._meaning(rule, asked) for rule in rules],
             len(network.objects),
@@ -325,20 +357,27 @@ class Check:
         self.looked_at[name][unit] = costs[unit]
         return costs[unit]
 
-    def _rates(self, given: Mapping[str, Fraction] | None) -> list[Fraction]:
-        """Give the success rate of each unit."""
-        rates = None if given is None else [given.get(motion) for motion in self.network.motions]
-        found = self._known(rates, "success rates")
+    def _rates(self, given: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
+        """Give the success rate of each motion."""
+        motions = self.network.different_motions
+        rates = {motion: given[motion] for motion in motions if given is not None and motion in given}
+        values = None if given is None else [*rates.values()]
+        found = self._known(values, len(motions), "success rates")
         require(all(rate <= 1 for rate in found), "a rate is above 1")
         require(
             "attempts" not in self.objectives or 0 not in found,
             "a unit that never succeeds is repeated forever",
         )
-        return found
+        return rates
+
+    def rate(self, unit: int) -> Fraction:
+        """Give the success rate of a unit."""
+        return self.rates[self.network.motions[unit]]
 
     def _prices(self, given: UnitPrices | None) -> list[Fraction]:
         """Give the price of each unit."""
-        return self._known(None if given is None else self._each_price(given), "prices")
+        prices = None if given is None else self._each_price(given)
+        return self._known(prices, len(self.network), "prices")
 
     def _each_price(self, given: UnitPrices | None) -> Sequence[Fraction | None]:
         """Give the prices of units, their own or those of their motions; below level 3 it is the least."""
@@ -354,11 +393,11 @@ class Check:
             prices = [min(k) if len(k) == len(e) else None for k, e in zip(known, each, strict=True)]
         return prices
 
-    def _known(self, values: Sequence[Fraction | None] | None, what: str) -> list[Fraction]:
+    def _known(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
         """Give values of all units, by what they are and where all are there."""
         require(values is not None, f"a claim needs {what}, but none are given")
         found = [value for value in values or () if value is not None]
-        require(len(found) == len(self.network), f"a unit has none of the {what} that a claim needs")
+        require(len(found) == count, f"a unit has none of the {what} that a claim needs")
         require(all(value >= 0 for value in found), f"one of the {what} is below 0")
         return found
 
@@ -412,15 +451,17 @@ class Check:
 
     def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
         """Execute the tree as listed; give what it costs as an amount and as figures."""
-        at_hand: set[int | None] = set(self.kitchen)
+        made: set[int | None] = set()
         for unit in read_numbers(units, len(self.network), ascending=False):
+            lacking = (o for o in self.needs(unit) if o not in made and o not in self.kitchen)
             require(
-                self.needs(unit) <= at_hand, f"unit {unit} of the tree lacks an input when it is its turn"
+                not any(True for _ in lacking), f"unit {unit} of the tree lacks an input when it is its turn"
             )
-            at_hand.update(self.gives(unit))
-        require(at_hand.issuperset(self.goals), "the tree does not make every goal")
+            made.update(self.gives(unit))
+        unmade = [goal for goal in self.goals if goal not in made and goal not in self.kitchen]
+        require(not unmade, "the tree does not make every goal")
         self._keep(frozenset(units))
-        items = {o for unit in units for o in self.kitchen & self.needs(unit)}
+        items = {o for unit in units for o in self.needs(unit) if o is not None and o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
         total = self._sum(map(self._cost, members))
         return total, self._figures(units, total)
@@ -430,7 +471,7 @@ class Check:
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
-                rates = [self.rates[u] for u in units]
+                rates = [self.rate(u) for u in units]
                 require(0 not in rates, "a tree that never succeeds is no better than another")
                 if sum(rate.denominator.bit_length() for rate in rates) > _WRITTEN:
                     raise LimitError("the success rate of the tree is too long a number to be written")
@@ -447,7 +488,8 @@ class Check:
         """Hold a tree against what the rules say of all of it."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self._spend(len(units) * len(self.ruled.limits))
-        fault = self.ruled.fault(units, frozenset(range(len(self.network))) - units)
+        others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
+        fault = self.ruled.fault(units, others)
         require(fault is None, f"the tree {fault}")
 
     def _barred(self, place: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
@@ -661,7 +703,7 @@ class Check:
         for level, objective in enumerate(self.objectives):
             found = self._cost_by(level, member)
             if found is not None:
-                cost[level, self.rates[member] if objective == "success" else None] = found
+                cost[level, self.rate(member) if objective == "success" else None] = found
         return cost
 
     def _cost_by(self, level: int, member: int) -> Fraction | None:
@@ -676,7 +718,7 @@ class Check:
         if objective in {"units", "success"}:
             return Fraction(1)
         if objective == "attempts":
-            return 1 / self.rates[member]
+            return 1 / self.rate(member)
         if objective == "price":
             return self.prices[member]
         if objective in self.measures:

@@ -12,9 +12,10 @@ What becomes of the inputs of a unit, and whether a plan runs, is worked out her
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from functools import cache, cached_property
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from foon_asp.network import Network, UnitPrices
@@ -23,6 +24,7 @@ from foon_asp.proof.constraint import LIBRARY, Rule
 from foon_asp.proof.verify import (
     Amount,
     Check,
+    Subject,
     UsedUp,
     Verified,
     negative,
@@ -64,27 +66,25 @@ class Part(NamedTuple):
     most: Mapping[int, int]
 
 
-def verify_any(
-    certificate: Any,
-    network: Network,
-    kitchen: frozenset[int],
-    rates: Mapping[str, Fraction] | None,
-    utensils: frozenset[str],
-    prices: UnitPrices | None = None,
-) -> Verified:
+def is_of_plan(certificate: Any) -> bool:
+    """Whether a certificate is of a plan, for which everything is looked at."""
+    return isinstance(certificate, dict) and certificate.get("format") == FORMAT
+
+
+def verify_any(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a tree or of a plan; raises :class:`RefusedError`."""
-    of_plan = isinstance(certificate, dict) and certificate.get("format") == FORMAT
-    check = verify_plan if of_plan else lasting.verify
-    return check(certificate, network, kitchen, rates, utensils, prices)
+    check = verify_plan if is_of_plan(certificate) else lasting.verify
+    return check(certificate, *subject[:-1])
 
 
 def verify_plan(
     certificate: dict[str, Any],
     network: Network,
-    kitchen: frozenset[int],
+    kitchen: Collection[int],
     rates: Mapping[str, Fraction] | None,
     utensils: frozenset[str],
     prices: UnitPrices | None = None,
+    stated: Mapping[str, str] = MappingProxyType({}),
 ) -> Verified:
     """Check a certificate of a plan against the data it speaks about.
 
@@ -102,11 +102,11 @@ def verify_plan(
     require(level == 3, "below level 3 nothing says what is used up: contents decide")
     rules = read_rules(certificate["rules"], len(network))
     require(RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
-    found = lasting.digests(network, kitchen, rates, utensils, prices, rules)
-    stated = read_object(certificate["digests"], tuple(found))
+    found = lasting.digests(network, kitchen, rates, utensils, prices, stated, rules)
+    named = read_object(certificate["digests"], tuple(found))
     for name, digest in found.items():
-        require(stated[name] == digest, f"{name}: not the one that the certificate is about")
-    check = PlanCheck(certificate, rules, network, kitchen, rates, utensils, prices)
+        require(named[name] == digest, f"{name}: not the one that the certificate is about")
+    check = PlanCheck(certificate, rules, network, frozenset(kitchen), rates, utensils, prices)
     return check.claim()._replace(used_up=UsedUp(check.stock, check.told))
 
 
@@ -347,8 +347,8 @@ class PlanCheck(Check):
             return self.part(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
             return Fraction(0)
-        require(self.rates[member] > 0, "a unit that never succeeds is not compared")
-        return Fraction(math.floor(FINE * self.minus_log(self.rates[member])[0]), FINE)
+        require(self.rate(member) > 0, "a unit that never succeeds is not compared")
+        return Fraction(math.floor(FINE * self.minus_log(self.rate(member))[0]), FINE)
 
     def limit(self, level: int) -> Fraction:
         """Give what plans may cost by an objective as one number; by success a little more."""
@@ -402,7 +402,9 @@ class PlanCheck(Check):
         if objective == "success" or objective in self.measures:
             return None
         every = self.prices if objective == "price" else []
-        every = [1 / rate for rate in self.rates] if objective == "attempts" else every
+        every = (
+            [1 / self.rate(unit) for unit in range(len(self.network))] if objective == "attempts" else every
+        )
         return math.lcm(*(cost.denominator for cost in every))
 
 

@@ -1,16 +1,17 @@
 """The best tree for a problem, and what is proved of it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
+from foon_asp.asp.assembly import ReachOfRules, hold_for_parts, reach_of_rules
 from foon_asp.asp.optimum import solve as find
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.problem import Objective, Problem, levels
-from foon_asp.questions.arguments import asked_with, reading
+from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
+from foon_asp.reduce import ALL
 from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
 from foon_asp.text.json_value import Json, json_text
 
@@ -145,8 +146,12 @@ def answered_under(
 
     Of a store, the part that the goals can need is asked about first, where no rule looks beyond a tree. A
     tree with a unit from elsewhere has one more than its goals need: where that makes it no better than what
-    was found, no more is read.
+    was found, no more is read. Where what is near the goals is enough to begin with, it is asked about first.
     """
+    near = near_goals(problem, objectives, how)
+    if near is not None:
+        return answered_nearby(near, objectives, how)
+    problem = read(problem)
     part = problem.network.object_numbers and problem.items is None and how.constraints
     if part and how.replaced is None and reach_of_rules(how) is ReachOfRules.TREE:
         free = find(problem, objectives, how._replace(constraints=(), constants=()), Reporter())
@@ -158,6 +163,15 @@ def answered_under(
             if here.costs.key(order) <= tuple(least):
                 return _noted(here)
     return answered(asked_with(problem, how), objectives, how, reporter)
+
+
+def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings) -> "Nearby | None":
+    """Give what is near the goals of a large store, where the whole may not have to be read for an answer."""
+    near: Callable[[], Nearby | None] | None = getattr(problem, "near", None)
+    if near is None or how.reductions != ALL or how.clingo_options:
+        return None
+    only_units_add = all(each in Objective and not each.row.item for each in objectives)
+    return near() if only_units_add and hold_for_parts(how) else None
 
 
 def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settings) -> Answer:

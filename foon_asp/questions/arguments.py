@@ -98,6 +98,13 @@ def whole(problem: Problem) -> Problem:
         return problem.whole
 
 
+def read(problem: Problem) -> Problem:
+    """Read what a problem can need, if that was put off; a command stops it at its limits."""
+    with reading():
+        assert problem.goals
+    return problem
+
+
 def reading() -> AbstractContextManager[object]:
     """Stop what is read in a ``with`` block at the limits of the command that asks, if it has any."""
     deadline = caller().deadline

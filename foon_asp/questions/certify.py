@@ -20,6 +20,7 @@ from foon_asp.certificate import (
     covered_for_plans,
 )
 from foon_asp.certificate import certify as prove_best
+from foon_asp.dataset import Dataset
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
@@ -28,7 +29,8 @@ from foon_asp.problem import Objective, Problem, levels
 from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.questions.answer import Answer, answered
+from foon_asp.proof.verify import Subject
+from foon_asp.questions.answer import Answer, answered, answered_nearby, near_goals
 from foon_asp.questions.answer_and_more import AnswerAndMore
 from foon_asp.questions.arguments import (
     Constants,
@@ -41,6 +43,7 @@ from foon_asp.questions.arguments import (
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import Kind, Option, question
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES
+from foon_asp.questions.posing import one_problem_or_nearby
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import read_listed
 from foon_asp.report.answer import costs_text, headline
@@ -128,12 +131,32 @@ def certified(problem: Problem, objectives: Sequence[Objective], how: Settings) 
     """Solve a problem, and look for a certificate; at a limit or ctrl-C the answer comes without one."""
     deadline = how.begun
     how = how._replace(deadline=deadline)
-    answer = answered(whole(problem), objectives, how)
+    ruled = how.constraints or how.constants or how.encodings
+    plain = not ruled and problem.items is None and Objective.PRICE not in objectives
+    near = near_goals(problem, objectives, how) if plain else None
+    with reading():
+        subject = near.subject() if near is not None else _subject(problem) if plain else None
+    if near is None:
+        answer = answered(whole(problem) if subject is None else problem, objectives, how)
+        proved = answer.problem
+    else:
+        answer = answered_nearby(near, objectives, how)
+        proved = near.relaxed
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
-        outcome, certificate = certify_outcome(answer, how, lambda: deadline.passed)
-        answer = Answer._make(outcome)
+        outcome, certificate = certify_outcome(
+            answer._replace(problem=proved), how, lambda: deadline.passed, subject
+        )
+        answer = Answer._make(outcome._replace(problem=answer.problem))
     return Certified(answer, certificate)
+
+
+def _subject(problem: Problem) -> Subject | None:
+    """Give what a certificate speaks about, if it need not be read; ``None`` where the problem has it."""
+    data = problem.origin
+    if not problem.network.object_numbers or not isinstance(data, Dataset) or problem.own_rates:
+        return None
+    return data.with_kitchen_of(problem).subject(everything=False)
 
 
 def certify_and_write(
@@ -280,6 +303,7 @@ def _write(certificate: Certificate | None, file: Path) -> None:
     *RULES,
     *LIMITS,
     formats=("json",),
+    pose=one_problem_or_nearby,
     command=certify_and_write,
     help_="""
     \b
@@ -306,8 +330,9 @@ def certify(
 ) -> Certified:
     """Solve a problem, and find a certificate: a proof of the answer, which :func:`foon_asp.verify` checks.
 
-    A certificate is about the whole network, so all of a store is read. Where items are used up, it says what
-    every plan costs at least, and has a plan of that cost, or of more: then the claim is a ``bound``.
+    A certificate is about the whole network. Of a store, no more is read than the proof touches where no rule
+    is given: then the certificate names the digests that the store states. Where items are used up, it says
+    what every plan costs at least, and has a plan of that cost, or of more: then the claim is a ``bound``.
 
     Returns:
         The ``answer``, and the ``certificate``, which is ``None`` if no proof was found.

@@ -13,7 +13,6 @@ from foon_asp.problem import Problem
 from foon_asp.questions.result import Result
 
 if TYPE_CHECKING:
-    from foon_asp.dataset.nearby import Nearby
     from foon_asp.foon import Foon
 
 
@@ -71,13 +70,12 @@ def one_problem_or_nearby(
     items: str = "lasting",
     stock: File | None = None,
     stays: File | None = None,
-) -> "tuple[Problem | Nearby]":
-    """Pose one problem; of a large store only as far as it is near the goals, where that may be enough."""
+) -> tuple[Problem]:
+    """Pose one problem; what its goals can need of a large store is read when it is looked at."""
     dataset = command.dataset
-    if items == "lasting" and (goals_named or not dataset.goals_from):
-        with command.reading():
-            return (dataset.nearby(dataset.goals(goals_named), containers),)
-    return one_problem(command, goals_named, containers, items, stock, stays)
+    with command.reading():
+        how = items_of(dataset, items, stock, stays)
+        return (dataset.nearby(dataset.goals(goals_named), containers, how),)
 
 
 def the_data(command: Command) -> "tuple[Foon]":

@@ -4,19 +4,18 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Reporter
-from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
-from foon_asp.problem import Objective, Problem
+from foon_asp.problem import Problem
 from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.answer import Answer, answered_nearby, answered_under
+from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.questions.arguments import (
     Constants,
     Objectives,
     chosen_objectives,
     constraint_weights,
-    reading,
+    read,
     settings,
     whole,
 )
@@ -24,17 +23,16 @@ from foon_asp.questions.contract import TABLES, Kind, Option, not_built, questio
 from foon_asp.questions.options import CONTAINERS, GOALS, ITEMS, LIMITS, OBJECTIVES, RULES, SOFT
 from foon_asp.questions.posing import one_problem_or_nearby
 from foon_asp.questions.result import Result
-from foon_asp.reduce import ALL, Reduction, parse_reductions
+from foon_asp.reduce import Reduction, parse_reductions
 
 if TYPE_CHECKING:
-    from foon_asp.dataset.nearby import Nearby
     from foon_asp.engines import Engine
     from foon_asp.questions.certify import Certified
     from foon_asp.questions.solve_soft import SoftAnswer
 
 
 def solve_and_more(
-    problem: "Problem | Nearby",
+    problem: Problem,
     objectives: Objectives = "units",
     *,
     constraints: Files = (),
@@ -55,14 +53,6 @@ def solve_and_more(
     how = settings(constraints, constants, encodings, time_limit, memory_limit)._replace(
         reductions=parse_reductions(reductions), clingo_options=tuple(clingo_options)
     )
-    if not isinstance(problem, Problem):
-        chosen = chosen_objectives(problem.problem, objectives)
-        plain = how.reductions == ALL and not (clingo_options or soft or certificate_file or cross_check)
-        only_units_add = all(each in Objective and not each.row.item for each in chosen)
-        if plain and only_units_add and hold_for_parts(how):
-            return answered_nearby(problem, chosen, how)
-        with reading():
-            problem = problem.whole()
     chosen = chosen_objectives(problem, objectives)
     if problem.items is not None and soft:
         raise not_built("solve --soft")
@@ -77,7 +67,7 @@ def solve_and_more(
     if soft:
         from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
 
-        found = softly_answered(problem, chosen, how, constraint_weights(soft))
+        found = softly_answered(read(problem), chosen, how, constraint_weights(soft))
     elif certificate_file is not None:
         from foon_asp.questions.certify import certified  # noqa: PLC0415
 

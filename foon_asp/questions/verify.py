@@ -15,12 +15,12 @@ from foon_asp.network import Network
 from foon_asp.problem import Problem, kitchen_needed
 from foon_asp.problem.progress import OnProgress
 from foon_asp.proof import verify as proof
-from foon_asp.proof.verify_plan import verify_any
+from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.arguments import begin
 from foon_asp.questions.contract import Kind, Option, Part, question
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.certified import verified_json, verified_text
+from foon_asp.report.certified import stated_text, verified_json, verified_text
 from foon_asp.text.plain_file import read_beginning
 
 if TYPE_CHECKING:  # the solver and the linear programs, which this has to do without
@@ -36,6 +36,7 @@ class VerifiedCertificate(Result):
     ``network`` is the network that it is about, ``content`` the certificate as plain values. ``with_clingo``
     says that clingo checked what is otherwise taken on trust, as ``verified.trusted`` lists it.
     ``starting_kitchen`` are the ids of the object nodes that can be needed, where no kitchen was given.
+    ``stated`` names the digests that were not computed, because a store states them: they are trusted.
 
     Example:
         >>> foon = foon_asp.load()
@@ -49,15 +50,18 @@ class VerifiedCertificate(Result):
     content: Mapping[str, Any]
     with_clingo: bool = False
     starting_kitchen: tuple[int, ...] | None = None
+    stated: tuple[str, ...] = ()
 
     def text(self) -> str:
         """Say what is proved, as ``foon-asp verify`` does."""
-        starting = self.starting_kitchen is not None
-        return verified_text(self.verified, self.network, dict(self.content), self.with_clingo, starting)
+        starting, content = self.starting_kitchen is not None, dict(self.content)
+        said = verified_text(self.verified, self.network, content, self.with_clingo, starting)
+        return said + stated_text(self.stated)
 
     def json_dict(self) -> object:
         """Say what is proved, as ``foon-asp verify --format json`` does."""
-        return verified_json(self.verified, self.network, self.with_clingo, self.starting_kitchen)
+        found = verified_json(self.verified, self.network, self.with_clingo, self.starting_kitchen)
+        return {**found, "stated_digests": list(self.stated)}
 
 
 @dataclass(frozen=True, repr=False)
@@ -102,11 +106,11 @@ def _is_task(file: Path) -> bool:
 
 
 def verify_or_refuse(
-    data: Foon | Problem, certificate: Path, *, with_clingo: bool = False
+    data: Foon | Problem, certificate: Path, *, with_clingo: bool = False, full: bool = False
 ) -> VerifiedCertificate | Refused:
     """Check a certificate as ``foon-asp verify`` does."""
     try:
-        return verify(data, certificate, with_clingo=with_clingo)
+        return verify(data, certificate, with_clingo=with_clingo, full=full)
     except proof.RefusedError as refused:
         return Refused(str(refused))
 
@@ -118,6 +122,11 @@ def verify_or_refuse(
     Option(
         "with_clingo",
         "Check with clingo what is otherwise taken on trust: costs by measures, and rules of your own.",
+        Kind.FLAG,
+    ),
+    Option(
+        "full",
+        "Read all of a store, and compute the digests that are otherwise taken as the store states them.",
         Kind.FLAG,
     ),
     Option(
@@ -142,8 +151,9 @@ def verify_or_refuse(
 
     The data has to be the same: --data and the other options name it as they do for solve. What units cost by
     a measure of your own, and what rules of your own say, is taken on trust, unless --with-clingo checks it;
-    with --measure, the rules have to be those of the certificate. Exits with 0 when the certificate is right
-    and with 1 when it is refused.
+    with --measure, the rules have to be those of the certificate. Of a store, what the certificate speaks of
+    is read, and the digests are those that the store states, unless --full computes them. Exits with 0 when
+    the certificate is right and with 1 when it is refused.
     """,
 )
 def verify(
@@ -151,6 +161,7 @@ def verify(
     certificate: "Certificate | str | PathLike[str]",
     *,
     with_clingo: bool = False,
+    full: bool = False,
     time_limit: float | None = None,
     on_progress: OnProgress | None = None,
     cancel: Cancel | None = None,
@@ -164,6 +175,7 @@ def verify(
         data: The data, as loaded, or a problem made from them.
         certificate: The path of a certificate, or one that :func:`foon_asp.certify` found.
         with_clingo: Whether clingo checks what is otherwise taken on trust.
+        full: Whether all of a store is read, and its digests computed, in place of trusting those it states.
 
     Returns:
         What the certificate proves, as ``verified``.
@@ -188,9 +200,8 @@ def verify(
     else:
         raise UserError(f"found certificate={certificate!r}, expected a path or what certify found")
     dataset = (data if isinstance(data, Foon) else Foon.of(data)).dataset
-    read = dataset.data
-    rates = None if dataset.unrated else read.rates
-    verified = verify_any(content, read.network, read.kitchen, rates, read.utensils, read.unit_prices)
+    subject = dataset.subject(everything=full or _looks_at_all(content))
+    verified = verify_any(content, subject)
     for measure in verified.trusted:
         ours = dataset.measures.get(measure.name)
         if ours is not None and ours.text != measure.rules:
@@ -204,11 +215,20 @@ def verify(
 
             check_with_clingo(content, own, problem, Deadline(_SECONDS))
     starting = None
-    if read.starting:
+    if not subject.trusted and dataset.data.starting:
         starting = tuple(
             kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))
         )
-    return VerifiedCertificate(verified, read.network, content, with_clingo, starting)
+    return VerifiedCertificate(verified, subject.network, content, with_clingo, starting, subject.trusted)
+
+
+def _looks_at_all(content: Any) -> bool:
+    """Whether a certificate speaks of a plan, of rules, or of prices, which are looked at unit by unit."""
+    if not isinstance(content, dict) or is_of_plan(content):
+        return True
+    objectives = content.get("objective")
+    priced = isinstance(objectives, list) and "price" in objectives
+    return bool(content.get("rules") or content.get("forbidden")) or priced
 
 
 def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:

@@ -1,6 +1,6 @@
 """Certificates as text: what a new one proves, and what a verified one proves."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -159,6 +159,14 @@ def _items_json(used_up: UsedUp | None, network: Network) -> Json | None:
     ]
     stock = [{"node": str(network.objects[o]), "copies": count} for o, count in used_up.stock.items()]
     return {"stock": stock, "stays": stays}
+
+
+def stated_text(stated: Sequence[str]) -> str:
+    """Say which digests were not computed, because a store states them; empty where all were."""
+    if not stated:
+        return ""
+    names = f"{', '.join(stated[:-1])} and {stated[-1]}" if len(stated) > 1 else stated[0]
+    return f"taken on trust: the digests of {names} that the store states (--full computes them)\n"
 
 
 def verified_json(

@@ -7,7 +7,7 @@ from zlib import crc32
 from foon_asp.text.json_value import read_json
 
 APPLICATION_ID = 0x464F4F4E  # "FOON", in SQLite's header
-VERSION = 3  # of what is in the tables; SQLite's user_version
+VERSION = 4  # of what is in the tables; SQLite's user_version
 
 _CHECKSUM = 4  # bytes in front of every block
 
@@ -53,8 +53,17 @@ _encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
 
 def seal(table: Table, number: int, value: object) -> bytes:
     """Write plain values (lists, dictionaries, strings, integers) as a block of a table."""
-    content = _encode(value).encode("ascii")
+    return sealed(table, number, plain_text(value))
+
+
+def sealed(table: Table, number: int, content: bytes) -> bytes:
+    """Make a block of values that are written as JSON without blanks."""
     return _checksum(table, number, content) + content
+
+
+def plain_text(value: object) -> bytes:
+    """Write plain values as JSON without blanks."""
+    return _encode(value).encode("ascii")
 
 
 def unseal(table: Table, number: int, block: object) -> object:

@@ -100,6 +100,14 @@ def _price(value: Any) -> bool:
     return found is not None and int(found[2] or "1") > 0
 
 
+def _digests(value: Any) -> bool:
+    return (
+        type(value) is dict
+        and value.keys() == {"network", "kitchen", "prices"}
+        and all(type(each) is str and _SHA_256.fullmatch(each) for each in value.values())
+    )
+
+
 def _counts(value: Any) -> bool:
     return (
         type(value) is dict
@@ -110,6 +118,7 @@ def _counts(value: Any) -> bool:
 
 _DIGITS = 4000  # of a rate or price; Python turns no more than 4,300 into a number
 _FRACTION = re.compile("([0-9]+)(?:/([0-9]+))?")
+_SHA_256 = re.compile("[0-9a-f]{64}")
 _COUNTS: dict[str, Shape] = {
     **dict.fromkeys(("units", "objects", "labels", "motions", "origins", "left_out", "prices"), _number),
     **dict.fromkeys(("hash_blocks", "trigram_blocks"), _positive),
@@ -129,6 +138,7 @@ _ABOUT: tuple[Shape, ...] = (
     _list(_entry),
     _numbers,
     _maybe(_prices),
+    _digests,
 )
 _SHAPES: dict[Table, Shape] = {
     Table.UNIT: _block(Table.UNIT, _row(_number, _numbers, _numbers, _in_groups(3, least=1))),

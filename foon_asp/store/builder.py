@@ -1,5 +1,6 @@
 """Writing a store, unit by unit."""
 
+import json
 import sqlite3
 from array import array
 from collections import defaultdict
@@ -9,56 +10,81 @@ from itertools import islice
 from typing import Any
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
-from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, table_statement, unseal
-from foon_asp.store.label_index import label_values, trigram_blocks
-from foon_asp.store.plain_values import entry_values, node_hashes, node_values, pattern_hash
+from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, sealed, table_statement, unseal
+from foon_asp.store.label_index import LISTED, trigram_blocks, trigram_values
+from foon_asp.store.numbering import Numbering
+from foon_asp.store.plain_values import (
+    entry_values,
+    node_hashes,
+    node_of,
+    node_texts,
+    node_values,
+    pattern_hash,
+)
+from foon_asp.store.stated_digests import StatedDigests, price_digest
 from foon_asp.text.assumed_goals import as_entry, wanted_outputs
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.unit_price_list import UnitPriceList
 
 _LATER_COPIES = 100_000  # copies of units written before, kept back to be written together
+_REMEMBERED = 50_000  # nodes whose number is known at once: what comes again mostly comes soon
 
 
 class StoreBuilder:
     """Writes units into a database as they come; copies of a unit are merged and all sources kept.
 
     Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. ``kitchen``
-    are the entries of the kitchen file, or ``None`` where there is none. In memory are the distinct nodes,
-    some numbers for each unit, and the labels; the database is in one transaction, to be committed.
+    are the entries of the kitchen file, or ``None`` where there is none. In memory are some numbers for each
+    node and each unit, and the labels; the database is in one transaction, to be committed. ``digests`` get
+    all that is added.
     """
 
-    def __init__(self, database: sqlite3.Connection, kitchen: Sequence[ListedObject] | None) -> None:
+    def __init__(
+        self,
+        database: sqlite3.Connection,
+        kitchen: Sequence[ListedObject] | None,
+        digests: StatedDigests,
+    ) -> None:
         self._database = database
+        self._digests = digests
         database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
         database.execute(f"PRAGMA user_version = {VERSION}")
         for table in Table:
             database.execute(table_statement(table))
         self.copies = 0  # of units, added so far
-        self.units = 0  # distinct ones
         self.matched = [False] * len(kitchen or ())
         self._kitchen = kitchen
         self._entries: dict[int, list[int]] = {}  # of the kitchen, by hash
         for number, (pattern, _) in enumerate(kitchen or ()):
             self._entries.setdefault(pattern_hash(pattern), []).append(number)
 
-        self._nodes: dict[ObjectNode, int] = {}
-        self._same: dict[int, int] = {}  # ids of nodes by the address of the object in _nodes
-        self._units: dict[tuple[int, ...], int] = {}
+        self._nodes = Numbering()
+        self._latest: dict[ObjectNode, int] = {}  # the numbers of some nodes
+        self._same: dict[int, int] = {}  # the same by the address of the object in _latest
+        self._needed = bytearray()  # by node: whether a unit has it as an input
+        self._units = Numbering()
         self._motions: dict[str, int] = {}
         self._motion_sources: list[Source] = []  # of the first unit with each
+        self._motion_of = array("I")  # by unit
         self._without_outputs: list[int] = []  # units
         self._origins: dict[tuple[str, tuple[str, ...]], int] = {}
         self._last_origin: tuple[str, tuple[str, ...]] | None = None
         self._last_number = -1
-        self._labels: defaultdict[str, list[int]] = defaultdict(list)  # nodes
+        self._labels: dict[str, int] = {}
+        self._label_of = array("I")  # by node
         self._hashes = array("I")
         self._hashed = array("I")  # the node with the hash at the same place
         self._makers = array("I")  # with the node at the same place in _made
         self._made = array("I")
-        self._node_block: list[object] = []
+        self._node_block: list[str] = []
         self._unit_block: list[list[Any]] = []
         self._later: defaultdict[int, list[int]] = defaultdict(list)  # sources of later copies, by unit
         self._kept_back = 0
+
+    @property
+    def units(self) -> int:
+        """How many distinct units there are so far."""
+        return len(self._units)
 
     @property
     def objects(self) -> int:
@@ -79,6 +105,7 @@ class StoreBuilder:
         motion_id = self._motions.setdefault(motion, len(self._motions))
         if motion_id == len(self._motion_sources):
             self._motion_sources.append(sources[0])
+            self._digests.add_motion(motion)
         places: list[int] = []
         for file, line, column, videos in sources:
             if (file, videos) != self._last_origin:
@@ -86,15 +113,18 @@ class StoreBuilder:
                 self._last_number = self._origins.setdefault(self._last_origin, len(self._origins))
             places += (self._last_number, line, column)
         self.copies += 1
-        key = (motion_id, *sorted(ins), -1, *sorted(outs))
-        unit = self._units.setdefault(key, self.units)
+        new = len(self._units)
+        unit = self._units.number(_unit_content(motion_id, ins, outs))
         block = self._unit_block
-        at_hand = self.units - len(block)  # the first unit of the block
-        if unit == self.units:
-            self.units += 1
+        at_hand = new - len(block)  # the first unit of the block
+        if unit == new:
             block.append([motion_id, ins, outs, places])
+            self._digests.add_unit(motion_id, ins, outs)
+            self._motion_of.append(motion_id)
             if not outs:
                 self._without_outputs.append(unit)
+            for o in ins:
+                self._needed[o] = 1
             self._made.extend(outs)
             self._makers.extend([unit] * len(outs))
             if len(block) == SIZES[Table.UNIT]:
@@ -113,17 +143,21 @@ class StoreBuilder:
 
         ``units`` are the last units by id, each with its place.
         """
-        keys = {unit: key for key, unit in self._units.items() if unit in units}
-        outputs = {o for key in keys.values() for o in _sides(key)[1]}
-        needed = {
-            o for key in self._units if not outputs.isdisjoint(key) for o in _sides(key)[0] if o in outputs
-        }
-        nodes = list(self._nodes)
         found: dict[int, Source] = {}
         for unit, place in units.items():
-            for o in wanted_outputs(*_sides(keys[unit]), needed):
+            _, inputs, outputs, _ = self._written(Table.UNIT, unit)
+            needed = {o for o in outputs if self._needed[o]}
+            for o in wanted_outputs(inputs, sorted(outputs), needed):
                 found.setdefault(o, place)
-        return [as_entry(nodes[o], place) for o, place in found.items()]
+        return [as_entry(node_of(self._written(Table.NODE, o)), place) for o, place in found.items()]
+
+    def _written(self, table: Table, number: int) -> Any:
+        """Give what was added under a number, written already or not."""
+        at, place = divmod(number, SIZES[table])
+        count, block = len(self._units), self._unit_block
+        if table is Table.NODE:
+            count, block = len(self._nodes), [json.loads(node) for node in self._node_block]
+        return block[place] if at == count // SIZES[table] else self._read(table, at)[place]
 
     def finish(
         self,
@@ -141,21 +175,25 @@ class StoreBuilder:
         ``stated`` are prices that networks have for their units, ``listed`` those of a file, if there is one.
         """
         self._flush(Table.UNIT, self.units - 1, self._unit_block)
-        self._flush(Table.NODE, len(self._nodes) - 1, self._node_block)
+        self._flush_nodes(len(self._nodes) - 1)
         self._write_later()
         own, beside_own = (self._by_id(prices) for prices in (stated, listed.units if listed else {}))
         lacking = [self._lacking(own.keys()), self._lacking(own.keys() | beside_own.keys())]
-        self._units.clear()  # memory for what follows
-        producers = _by_key(self._made, self._makers, len(self._nodes))
+        units, objects = len(self._units), len(self._nodes)
+        self._units, self._nodes = Numbering(), Numbering()  # makes room for what follows
+        self._latest.clear()
+        self._same.clear()
+        producers = _by_key(self._made, self._makers, objects)
         self._write_values(Table.PRODUCERS, producers)
         hashes, hashed = self._hashes, self._hashed
         buckets = len(hashes) // SIZES[Table.NODE_HASH] + 1
-        by_hash = _by_key(array("I", [h % buckets for h in hashes]), range(len(hashes)), buckets)
+        by_hash = _by_key(array("I", (h % buckets for h in hashes)), range(len(hashes)), buckets)
         pairs = ([number for at in places for number in (hashes[at], hashed[at])] for places in by_hash)
         self._write_all(Table.NODE_HASH, pairs)
-        self._write_values(Table.LABEL, label_values(self._labels))
-        trigrams = trigram_blocks(self._labels)
-        self._write_all(Table.TRIGRAM, trigrams)
+        labels = sorted(self._labels)
+        self._write_values(Table.LABEL, self._label_values(labels))
+        trigrams = trigram_blocks(labels)
+        self._write_all(Table.TRIGRAM, trigram_values(trigrams))
         motions = (
             [motion, *source[:3], *lacking[0][number], *lacking[1][number]]
             for number, (motion, source) in enumerate(self.motion_sources())
@@ -163,12 +201,12 @@ class StoreBuilder:
         self._write_values(Table.MOTION, motions)
         self._write_values(Table.ORIGIN, self._origins)
         self._write_values(Table.KITCHEN, map(entry_values, self._kitchen or ()))
-        priced = self.units if own or beside_own else 0
+        priced = units if own or beside_own else 0
         prices = ((own.get(unit), beside_own.get(unit)) for unit in range(priced))
         self._write_values(Table.PRICE, (None if row == (None, None) else row for row in prices))
         counts: dict[str, object] = {
-            "units": self.units,
-            "objects": len(self._nodes),
+            "units": units,
+            "objects": objects,
             "labels": len(self._labels),
             "motions": len(self._motions),
             "origins": len(self._origins),
@@ -179,6 +217,9 @@ class StoreBuilder:
             "prices": priced,
             "goals_from": goals_from,
         }
+        by_motion = listed.motions if listed else {} if priced else None
+        settled = {**own, **beside_own}
+        each = ((unit, settled[unit]) for unit in sorted(settled))
         beside = [
             counts,
             None if rates is None else {motion: str(rate) for motion, rate in rates.items()},
@@ -186,6 +227,7 @@ class StoreBuilder:
             [entry_values(entry) for entry in goals],
             self._without_outputs,
             {motion: str(price) for motion, price in listed.motions.items()} if listed else None,
+            {**self._digests.finished(), "prices": price_digest(by_motion, each)},
         ]
         self._write_all(Table.ABOUT, beside)
 
@@ -196,11 +238,14 @@ class StoreBuilder:
     def unit_id(self, unit: FunctionalUnit) -> int | None:
         """Give the id of a unit that was added, or ``None`` where it was not."""
         motion = self._motions.get(unit.motion)
-        sides = [[self._nodes.get(node) for node in side] for side in (unit.inputs, unit.outputs)]
+        sides = [
+            [self._nodes.find(_node_content(node_texts(node))) for node in side]
+            for side in (unit.inputs, unit.outputs)
+        ]
         ins, outs = ([o for o in side if o is not None] for side in sides)
         if motion is None or [ins, outs] != sides:
             return None
-        return self._units.get((motion, *sorted(ins), -1, *sorted(outs)))
+        return self._units.find(_unit_content(motion, ins, outs))
 
     def _by_id(self, prices: Mapping[FunctionalUnit, Fraction]) -> dict[int, str]:
         """Give prices of units that were added, by id."""
@@ -210,13 +255,25 @@ class StoreBuilder:
     def _lacking(self, priced: Collection[int]) -> list[tuple[int, int]]:
         """Give for each motion how many units with it are not among these, and the first of them, or 0."""
         found = [(0, 0)] * len(self._motions)
-        for key, unit in self._units.items():
+        for unit, motion in enumerate(self._motion_of):
             if unit not in priced:
-                count, first = found[key[0]]
-                found[key[0]] = (count + 1, first if count else unit)
+                count, first = found[motion]
+                found[motion] = (count + 1, first if count else unit)
         return found
 
-    def _new_node(self, node: ObjectNode, number: int) -> None:
+    def _label_values(self, labels: Iterable[str]) -> Iterator[list[object]]:
+        """Give what the table ``label`` has for labels in alphabetical order."""
+        counts = array("I", bytes(4 * len(self._labels)))
+        first: list[list[int]] = [[] for _ in self._labels]
+        for node, label in enumerate(self._label_of):
+            counts[label] += 1
+            if counts[label] <= LISTED:
+                first[label].append(node)
+        return (
+            [label, counts[number], first[number]] for label in labels for number in (self._labels[label],)
+        )
+
+    def _new_node(self, node: ObjectNode, number: int, texts: tuple[str, ...], content: bytes) -> None:
         in_kitchen = False
         hashes = node_hashes(node)
         self._hashes.extend(hashes)
@@ -225,10 +282,12 @@ class StoreBuilder:
             for entry in self._entries.get(node_hash, ()):
                 if self._kitchen is not None and self._kitchen[entry].pattern.matches(node):
                     in_kitchen = self.matched[entry] = True
-        self._labels[node.label].append(number)
-        self._node_block.append(node_values(node, in_kitchen))
+        self._label_of.append(self._labels.setdefault(node.label, len(self._labels)))
+        self._needed.append(0)
+        self._digests.add_node(number, content, in_kitchen)
+        self._node_block.append(node_values(texts, in_kitchen))
         if len(self._node_block) == SIZES[Table.NODE]:
-            self._flush(Table.NODE, number, self._node_block)
+            self._flush_nodes(number)
 
     def _ids(self, nodes: Iterable[ObjectNode]) -> list[int]:
         # The reader gives one object for each node: knowing that object is quicker than comparing nodes.
@@ -238,12 +297,25 @@ class StoreBuilder:
         return ids if len(ids) == len(set(ids)) else list(dict.fromkeys(ids))
 
     def _id(self, node: ObjectNode) -> int:
-        new = len(self._nodes)
-        number = self._nodes.setdefault(node, new)
-        if number == new:
-            self._new_node(node, number)
-            self._same[id(node)] = number  # which is kept from now on, and with it the address
+        number = self._latest.get(node)
+        if number is None:
+            new, texts = len(self._nodes), node_texts(node)
+            content = _node_content(texts)
+            number = self._nodes.number(content)
+            if number == new:
+                self._new_node(node, number, texts, content)
+            if len(self._latest) >= _REMEMBERED:
+                self._latest.clear()
+                self._same.clear()
+            self._latest[node] = number
+            self._same[id(node)] = number  # which is kept as long, and with it the address
         return number
+
+    def _flush_nodes(self, last: int) -> None:
+        if self._node_block:
+            number, content = last // SIZES[Table.NODE], f"[{','.join(self._node_block)}]".encode("ascii")
+            self._insert(Table.NODE, number, sealed(Table.NODE, number, content))
+            self._node_block.clear()
 
     def _flush(self, table: Table, last: int, block: list[Any]) -> None:
         """Write the block at hand, whose last value belongs to that id."""
@@ -257,14 +329,17 @@ class StoreBuilder:
         for unit in sorted(self._later):
             by_block.setdefault(unit // SIZES[Table.UNIT], []).append(unit)
         for number, units in by_block.items():
-            row = self._database.execute(f"SELECT content FROM {Table.UNIT} WHERE number = ?", (number,))
-            block: Any = unseal(Table.UNIT, number, row.fetchone()[0])
+            block = self._read(Table.UNIT, number)
             for unit in units:
                 block[unit % SIZES[Table.UNIT]][3] += self._later[unit]
             content = seal(Table.UNIT, number, block)
             self._database.execute(f"UPDATE {Table.UNIT} SET content = ? WHERE number = ?", (content, number))
         self._later.clear()
         self._kept_back = 0
+
+    def _read(self, table: Table, number: int) -> Any:
+        row = self._database.execute(f"SELECT content FROM {table} WHERE number = ?", (number,))
+        return unseal(table, number, row.fetchone()[0])
 
     def _write_values(self, table: Table, values: Iterable[object]) -> None:
         waiting = iter(values)
@@ -275,14 +350,20 @@ class StoreBuilder:
             self._write(table, number, block)
 
     def _write(self, table: Table, number: int, block: object) -> None:
-        content = seal(table, number, block)
+        self._insert(table, number, seal(table, number, block))
+
+    def _insert(self, table: Table, number: int, content: bytes) -> None:
         self._database.execute(f"INSERT INTO {table} VALUES (?, ?)", (number, content))
 
 
-def _sides(key: tuple[int, ...]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Give the inputs and outputs of a unit by its key."""
-    between = key.index(-1)
-    return key[1:between], key[between + 1 :]
+def _node_content(texts: Iterable[str]) -> bytes:
+    """Give what makes a node what it is, as certificates have it digested."""
+    return f"[{','.join(texts)}]".encode("ascii")
+
+
+def _unit_content(motion: int, inputs: Iterable[int], outputs: Iterable[int]) -> bytes:
+    """Give what makes a unit what it is."""
+    return repr((motion, sorted(inputs), sorted(outputs))).encode()
 
 
 def _by_key(keys: Sequence[int], values: Sequence[int], size: int) -> Iterator[list[int]]:

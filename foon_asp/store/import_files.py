@@ -12,6 +12,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.store.builder import StoreBuilder
+from foon_asp.store.stated_digests import StatedDigests
 from foon_asp.store.store_file import is_database_of_ours
 from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
 from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
@@ -59,8 +60,8 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     earlier = len(warnings)
     last_units: dict[int, Source] = {}
     try:
-        with _written(store) as database:
-            builder = StoreBuilder(database, kitchen)
+        with _written(store) as database, contextlib.closing(StatedDigests(store.parent)) as digests:
+            builder = StoreBuilder(database, kitchen, digests)
             for file in files.network:
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; import the files that it was made from")
@@ -81,6 +82,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
             for unit, source in prices.sources.items() if prices else ():
                 if builder.unit_id(unit) is None:
                     warnings.append(unit_price_warning(unit, source))
+            counts = builder.copies, builder.units, builder.objects
             builder.finish(goals, goals_from, rates, utensils, reader.left_out, stated, prices)
     except sqlite3.Error as error:
         raise UserError(f"{store}: cannot be written: {error}") from None
@@ -90,7 +92,6 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
         if not matched:
             warnings.append(kitchen_item_warning(entry))
     remarks = () if rates is None else tuple(unrated_remarks(builder.motion_sources(), rates))
-    counts = builder.copies, builder.units, builder.objects
     return Imported(*counts, tuple(warnings), reader.left_out, remarks)
 
 

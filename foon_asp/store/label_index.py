@@ -1,8 +1,9 @@
 """The labels of a store: by name, by how they begin, and by what they are like, without reading them all."""
 
+from array import array
 from bisect import bisect_left
-from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
 from itertools import chain
 from zlib import crc32
 
@@ -27,23 +28,31 @@ def trigram_block(trigram: str, blocks: int) -> int:
     return crc32(trigram.encode("utf-8", "surrogatepass")) % blocks
 
 
-def label_values(nodes: Mapping[str, Sequence[int]]) -> Iterator[list[object]]:
-    """Give what the table ``label`` has for labels and the ids of their nodes."""
-    return ([label, len(nodes[label]), nodes[label][:LISTED]] for label in sorted(nodes))
+def trigram_blocks(labels: Collection[str]) -> list[dict[str, "array[int]"]]:
+    """Give the places of labels in alphabetical order by trigram, in the blocks of the table ``trigram``.
 
-
-def trigram_blocks(labels: Mapping[str, object]) -> list[dict[str, list[int] | int]]:
-    """Give the contents of the table ``trigram``; there is at least one block."""
-    places: defaultdict[str, list[int]] = defaultdict(list)
-    for place, label in enumerate(sorted(labels)):
+    There is at least one block.
+    """
+    places: dict[str, array[int]] = {}
+    for place, label in enumerate(labels):
         for trigram in trigrams(label):
-            places[trigram].append(place)
-    blocks: list[dict[str, list[int] | int]] = [{} for _ in range(len(places) // SIZES[Table.TRIGRAM] + 1)]
+            found = places.get(trigram)
+            if found is None:
+                found = places[trigram] = array("I")
+            found.append(place)
+    blocks: list[dict[str, array[int]]] = [{} for _ in range(len(places) // SIZES[Table.TRIGRAM] + 1)]
     for trigram in sorted(places):
-        found = places[trigram]
-        block = blocks[trigram_block(trigram, len(blocks))]
-        block[trigram] = found if len(found) <= _TELLING else len(found)
+        blocks[trigram_block(trigram, len(blocks))][trigram] = places[trigram]
     return blocks
+
+
+def trigram_values(blocks: Sequence[dict[str, "array[int]"]]) -> Iterator[dict[str, list[int] | int]]:
+    """Give the contents of the table ``trigram``."""
+    for block in blocks:
+        yield {
+            trigram: places.tolist() if len(places) <= _TELLING else len(places)
+            for trigram, places in block.items()
+        }
 
 
 class LabelIndex:

@@ -1,5 +1,7 @@
 """Object nodes, entries of kitchens and goals, and places as plain values, the way blocks hold them."""
 
+from collections.abc import Iterable
+from json.encoder import encode_basestring_ascii as _quoted
 from typing import Any
 from zlib import crc32
 
@@ -7,13 +9,23 @@ from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text.object_list import ListedObject
 
 
-def node_values(node: ObjectNode, in_kitchen: bool) -> list[object]:
-    """Give a node as lists, first whether it is in the store's kitchen; what is empty at the end is cut."""
+def node_texts(node: ObjectNode) -> tuple[str, str, str, str]:
+    """Give the four parts of a node as JSON; in one list they are what certificates have digested."""
     label, states, relations, contents = node
-    values = [int(in_kitchen), label, sorted(states), sorted(relations), contents]
-    while len(values) > 2 and not values[-1]:
-        values.pop()
-    return values
+    related = ",".join([f"[{_quoted(word)},{_quoted(place)}]" for word, place in sorted(relations)])
+    held = ",".join([f"[{_quoted(word)},[{_listed(items)}]]" for word, items in contents])
+    return _quoted(label), f"[{_listed(sorted(states))}]", f"[{related}]", f"[{held}]"
+
+
+def _listed(texts: Iterable[str]) -> str:
+    return ",".join(map(_quoted, texts))
+
+
+def node_values(texts: tuple[str, ...], in_kitchen: bool) -> str:
+    """Give a node as JSON, first whether it is in the store's kitchen; what is empty at the end is cut."""
+    while len(texts) > 1 and texts[-1] == "[]":
+        texts = texts[:-1]
+    return f"[{int(in_kitchen)},{','.join(texts)}]"
 
 
 def node_of(values: list[Any]) -> ObjectNode:
@@ -60,7 +72,9 @@ def node_hashes(node: ObjectNode) -> list[int]:
     """Give the hashes that a node is found by: one for each object that it is related to, at least one."""
     label, states, relations, _ = node
     attributes = _attributes_hash(label, states, node.ingredients)
-    return [_hash(related, attributes) for related in {related for _, related in relations}] or [attributes]
+    return [_hash(related, attributes) for related in sorted({related for _, related in relations})] or [
+        attributes
+    ]
 
 
 def pattern_hash(pattern: NodePattern) -> int:

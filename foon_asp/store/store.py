@@ -32,7 +32,7 @@ class Store:
     level = 3
 
     def __init__(self, file: Path) -> None:
-        self._file = StoreFile(file)
+        self._file, self.name = StoreFile(file), str(file)
         about = self._file.block(Table.ABOUT, 0)
         self.units: int = about["units"]
         self.objects: int = about["objects"]
@@ -65,6 +65,15 @@ class Store:
         """The prices of units by motion, or ``None`` when no file of prices was imported."""
         prices = self._file.block(Table.ABOUT, 5)
         return None if prices is None else {motion: Fraction(price) for motion, price in prices.items()}
+
+    @cached_property
+    def digests(self) -> dict[str, str]:
+        """The digests of ``network``, ``kitchen`` and ``prices`` that were made when it was imported.
+
+        Certificates name them; nothing here says that they are true.
+        """
+        found: dict[str, str] = self._file.block(Table.ABOUT, 6)
+        return found
 
     @property
     def has_unit_prices(self) -> bool:
@@ -149,7 +158,7 @@ class Store:
 
     def is_starting(self, object_id: int) -> bool:
         """Whether no unit makes the node out of others, see :func:`foon_asp.network.starting_nodes`."""
-        return all(object_id in self._at(Table.UNIT, unit)[1] for unit in self._producers(object_id))
+        return all(object_id in self._at(Table.UNIT, unit)[1] for unit in self.producers(object_id))
 
     def object_id(self, node: ObjectNode) -> int | None:
         """Give the id of a node, or ``None`` when the network does not have it."""
@@ -166,7 +175,7 @@ class Store:
         if None in sides[0] or None in sides[1]:
             return None
         outputs = sides[1]
-        candidates = self._file.block(Table.ABOUT, 4) if not outputs else self._producers(outputs[0])  # type: ignore[arg-type]
+        candidates = self._file.block(Table.ABOUT, 4) if not outputs else self.producers(outputs[0])  # type: ignore[arg-type]
         for candidate in candidates:
             motion, inputs, outputs, _ = self._at(Table.UNIT, candidate)
             if [set(inputs), set(outputs)] == [set(side) for side in sides] and (
@@ -193,7 +202,7 @@ class Store:
         """
         cone = Cone(
             goals,
-            self._producers,
+            self.producers,
             lambda unit: self._needs(unit, containers, utensils),
             in_kitchen or self.in_kitchen,
         )
@@ -269,9 +278,16 @@ class Store:
         needed = set(needed_inputs(FunctionalUnit("", nodes, ()), containers, utensils))
         return [o for o, node in zip(inputs, nodes, strict=True) if node in needed]
 
-    def _producers(self, object_id: int) -> list[int]:
+    def producers(self, object_id: int) -> list[int]:
+        """Give the units that have a node as an output, in order."""
         found: list[int] = self._at(Table.PRODUCERS, object_id)
         return found
+
+    def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
+        """Give the motion, the inputs, the outputs and the places of a unit."""
+        motion, ins, outs, places = self._at(Table.UNIT, unit)
+        sources = tuple(self._source(*places[i : i + 3]) for i in range(0, len(places), 3))
+        return self._at(Table.MOTION, motion)[0], tuple(ins), tuple(outs), sources
 
     def _hashed(self, wanted: int, is_it: Callable[[ObjectNode], bool]) -> list[int]:
         """Give the ids of the nodes that have this hash and that ``is_it`` says yes of."""

@@ -1,7 +1,9 @@
 """Text files as they come, UTF-8 with or without a byte order mark; and what is none."""
 
 import json
-from codecs import BOM_UTF8
+from codecs import BOM_UTF8, getincrementaldecoder
+from collections.abc import Iterator
+from io import TextIOWrapper
 from pathlib import Path
 from typing import BinaryIO
 
@@ -82,6 +84,29 @@ def is_neutral_file(file: Path) -> bool:
 def is_json(text: str) -> bool:
     """Whether a text is JSON; no line of FOON text begins with a bracket."""
     return text[:1_000].lstrip(" \t\r\n")[:1] in {"{", "["}
+
+
+def text_pieces(file: Path, size: int) -> Iterator[str]:
+    """Give the text of a file in pieces of some ``size``, every line end as a line feed.
+
+    Raises as :func:`read_plain_text` does, before it gives anything.
+    """
+    with opened(file) as stream:
+        begins = stream.read(len(STORE_MAGIC))
+        stream.seek(0)
+        try:
+            decoder = getincrementaldecoder("utf-8")()
+            while data := stream.read(size):
+                decoder.decode(data)
+            decoder.decode(b"", True)
+        except UnicodeDecodeError:
+            begins = STORE_MAGIC
+        if begins == STORE_MAGIC:
+            read_plain_text(file)  # says what is wrong
+        stream.seek(0)
+        with TextIOWrapper(stream, "utf-8-sig", newline=None) as text:
+            while piece := text.read(size):
+                yield piece
 
 
 def split_lines(text: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple, cast
 
@@ -18,13 +19,15 @@ from foon_asp.text.plain_file import (
     plain_text,
     read_plain_text,
     split_lines,
+    text_pieces,
 )
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.writer import write_line
 
 _AHEAD = 65_536  # letters looked ahead for new lines, so that they go to the parser together
-_REMEMBERED = 200_000  # object blocks: what comes again mostly comes soon
+_PIECE = 1_000_000  # letters of a file read at a time
+_REMEMBERED = 50_000  # lines, and object blocks: what comes again mostly comes soon
 _LONGEST = 1_000_000  # letters of a line: no FOON line means more
 
 
@@ -135,7 +138,7 @@ class FoonReader:
             file: The path of the file.
         """
         if not is_neutral_file(file):
-            yield from self.units(self.text(file), str(file))
+            yield from self._text_units(file)
             return
         from foon_asp.text.neutral_units import lines_of  # noqa: PLC0415 (most networks are none)
 
@@ -143,6 +146,21 @@ class FoonReader:
             yield from self._neutral_units(lines_of(file), str(file))
         except InputError as error:
             self.diagnostics += error.diagnostics
+
+    def _text_units(self, file: Path) -> Iterator[ReadUnit]:
+        """Give the units of a file, of which some pieces at a time are in memory where it is FOON text."""
+        pieces: Iterator[str] = iter(())
+        if file.is_file():  # a pipe can be read only once
+            pieces = text_pieces(file, _PIECE)
+        try:
+            first = next(pieces, "")
+        except InputError as error:
+            self.diagnostics += error.diagnostics
+            return
+        if not first or is_json(first):
+            yield from self.units(self.text(file), str(file))
+        else:
+            yield from _FileReading(self, chain([first], pieces), str(file)).units()
 
     def text(self, file: Path, content: bytes | None = None) -> str:
         """Give the text of a file; it is empty, and an error is noted, if the file is not text.
@@ -181,7 +199,7 @@ class FoonReader:
             return self._neutral_units(split_lines(text), file)
         if is_json(text):
             return map(_identity, self._json_units(text, file))
-        return _FileReading(self, text, file).units()
+        return _FileReading(self, [text], file).units()
 
     def listed_units(self, text: str, file: str) -> Iterator[ListedUnit]:
         """Give the units of a text in order, with their lines as written.
@@ -194,7 +212,7 @@ class FoonReader:
             return self._neutral_listed(text, file)
         if is_json(text):
             return self._json_units(text, file)
-        return _FileReading(self, text, file).listed_units()
+        return _FileReading(self, [text], file).listed_units()
 
     def object_blocks(self, text: str, file: str) -> list[ObjectBlock]:
         """Give the object nodes of a text that lists them without motions: a kitchen, or goals.
@@ -203,7 +221,7 @@ class FoonReader:
             text: The text.
             file: The name of the file, for messages and sources.
         """
-        return _FileReading(self, text, file).object_blocks()
+        return _FileReading(self, [text], file).object_blocks()
 
     def _json_units(self, text: str, file: str) -> Iterator[ListedUnit]:
         # most networks are none
@@ -246,9 +264,17 @@ class FoonReader:
     def parse_new(self, lines: Iterable[str]) -> None:
         """Parse all lines not met before, together, which is faster than one by one.
 
+        Of many lines and object blocks that were met, all are forgotten first.
+
         Parameters:
             lines: The lines.
         """
+        if len(self.nodes) >= _REMEMBERED:
+            self.nodes.clear()
+            self.same_node.clear()
+        if len(self._lines) >= _REMEMBERED:
+            for known_before in (self._lines, self.labels, self.attributes, self.goal_lines):
+                known_before.clear()
         known = self._lines
         new = [
             line
@@ -295,10 +321,12 @@ class _FileReading:
     the blocks up; every other one is read line by line.
     """
 
-    def __init__(self, reader: FoonReader, text: str, file: str) -> None:
+    def __init__(self, reader: FoonReader, pieces: Iterable[str], file: str) -> None:
         self.reader = reader
         self.file = file
-        self.text = text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+        self.pieces_to_come = iter(pieces)
+        self.text = ""  # what is being read of it
+        self.lines_before = 0  # of what was read
         self.videos: tuple[str, ...] = ()
         self.header_open = True  # further "# Source:" lines add to the videos until a unit comes between
         self.start = 0  # of the piece being read, in the text
@@ -331,20 +359,39 @@ class _FileReading:
 
     def _chunks(self) -> Iterator[tuple[str, int, bool]]:
         """Cut the text at the separators; give each piece, its line number, and whether it is the last."""
-        text = self.text
         number = 1
         tell, untold = told(), 0
-        while (end := text.find("\n//\n", self.start)) >= 0:
-            chunk = text[self.start : end]
-            yield chunk, number, False
-            number += chunk.count("\n") + 2
-            self.start = end + 4
-            if tell and self.start - untold >= _AHEAD:
-                tell(len(text[untold : self.start].encode()))
-                untold = self.start
-        yield text[self.start :], number, True
+        more = True
+        while more:
+            while (end := self.text.find("\n//\n", self.start)) >= 0:
+                chunk = self.text[self.start : end]
+                yield chunk, number, False
+                number += chunk.count("\n") + 2
+                self.start = end + 4
+                if tell and self.start - untold >= _AHEAD:
+                    tell(len(self.text[untold : self.start].encode()))
+                    untold = self.start
+            untold -= self.start
+            more = self._read_more()
+        yield self.text, number, True
         if tell:
-            tell(len(text[untold:].encode()))
+            tell(len(self.text[max(untold, 0) :].encode()))
+
+    def _read_more(self) -> bool:
+        """Leave out of the text what was read, and add what follows; whether anything does.
+
+        It is at least as much as is left, so that a text without separators takes time linear in its length.
+        """
+        rest = self.text[self.start :]
+        self.lines_before += self.text.count("\n", 0, self.start)
+        self.looked_ahead -= self.start
+        self.start = 0
+        pieces, added = [rest], 0
+        while added <= len(rest) and (piece := next(self.pieces_to_come, "")):
+            pieces.append(piece.replace("\r\n", "\n").replace("\r", "\n") if "\r" in piece else piece)
+            added += len(piece)
+        self.text = "".join(pieces)
+        return len(pieces) > 1
 
     def _look_ahead(self, length: int) -> None:
         """Parse the new lines of the piece at hand, of that length, and of those that follow."""
@@ -385,11 +432,9 @@ class _FileReading:
             node = node_of(reader.labels[first], [reader.attributes[line] for line in rest])
         except KeyError:
             return None
-        if len(reader.nodes) >= _REMEMBERED:
-            reader.nodes.clear()
         node = reader.nodes[block] = reader.same_node.setdefault(node, node)
         if first in reader.goal_lines:
-            line = self.text.count("\n", 0, self.text.index(f"O{block}", self.start)) + 1
+            line = self.text.count("\n", 0, self.text.index(f"O{block}", self.start)) + 1 + self.lines_before
             reader.marked.setdefault(node, Source(self.file, line))
         return node
 

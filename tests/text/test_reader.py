@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
+from foon_asp.text import reader as reader_module
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.line import Line
 from foon_asp.text.plain_file import read_plain_text
@@ -703,6 +704,36 @@ def test_a_reader_remembers_nothing_that_matters() -> None:
     remarks = list(reader.diagnostics)
     assert list(reader.units(dirty, "f.txt")) == first
     assert reader.diagnostics == remarks * 2
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_file_is_read_in_pieces_as_it_is_at_once(
+    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = Random(seed)
+    lines = [
+        *TEA.splitlines(),
+        *MIX.splitlines(),
+        "O\tgoal\t!",
+        "# Source:\tv",
+        "// ",
+        "",
+        "S\tloose",
+        "é\x0c",
+    ]
+    text = "".join(rng.choice(lines) + rng.choice(["\n", "\n", "\r\n", "\r"]) for _ in range(80))
+    text = text.replace("\n//\n", "\n" if seed == 0 else "\n//\n")  # one of them has no separator
+    file = tmp_path / "f.txt"
+    file.write_bytes(("\N{BYTE ORDER MARK}" if seed % 2 else "").encode() + text.encode())
+    whole = FoonReader(lenient=True)
+    expected = list(whole.units(read_plain_text(file), str(file)))
+    monkeypatch.setattr(reader_module, "_PIECE", rng.randrange(1, 30))
+    monkeypatch.setattr(reader_module, "_AHEAD", rng.randrange(1, 100))
+    monkeypatch.setattr(reader_module, "_REMEMBERED", rng.randrange(1, 9))
+    pieces = FoonReader(lenient=True)
+    assert list(pieces.file_units(file)) == expected
+    assert pieces.diagnostics == whole.diagnostics
+    assert (pieces.left_out, pieces.marked) == (whole.left_out, whole.marked)
 
 
 def test_a_reader_that_met_an_error_reads_the_next_file(tmp_path: Path) -> None:
