@@ -5,6 +5,7 @@ import json
 import pickle
 import random
 import re
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -561,3 +562,88 @@ def test_makeable_objects_of_the_real_network() -> None:
             for each in (ALL, NONE)
         ]
         assert both[0] == both[1]
+
+
+# --- Numbers of more than 32 bits, which clingo does not have.
+
+
+def cost_of(rules: str) -> Fraction | int:
+    """Give what a unit of three inputs costs."""
+    builder = NetworkBuilder()
+    builder.add("mix", [ObjectNode.of(label) for label in "abc"], [ObjectNode.of("end")], Source("one", 1))
+    problem = Problem(builder.build(), frozenset({0, 1, 2}), (3,), None, frozenset())
+    [cost] = measured(problem, rules).figures(MINE_OBJECTIVE, [0])
+    return cost
+
+
+class _BeyondError(Exception):
+    pass
+
+
+def calculated(rng: random.Random, depth: int, inputs: int) -> tuple[str, int]:
+    """Draw what a cost is calculated by; gives its text, and what it comes to, exactly."""
+    if depth == 0 or rng.random() < 0.2:
+        number = rng.choice((0, 1, 2, 3, 7, 46340, 46341, 65536, 2**30, 2**31 - 2))
+        return rng.choice((("N", inputs), (str(number), number), (f"-{number}", -number)))
+    operator = rng.choice(("+", "-", "*", "*", "**"))
+    (one, a), (other, b) = (calculated(rng, depth - 1, inputs) for _ in range(2))
+    if operator == "**" and not 0 <= b <= 40:
+        operator = "+"
+    value = {"+": a + b, "-": a - b, "*": a * b, "**": a**b if operator == "**" else 0}[operator]
+    if abs(value) >= 2**31:
+        raise _BeyondError(f"({one}{operator}{other})")
+    return f"({one}{operator}{other})", value
+
+
+@pytest.mark.parametrize("seeds", [range(12), pytest.param(range(12, 300), marks=pytest.mark.slow)])
+def test_numbers_of_more_than_32_bits_are_refused(seeds: range) -> None:
+    met: Counter[str] = Counter()
+    for seed in seeds:
+        try:
+            text, value = calculated(random.Random(seed), 3, 3)
+            said = "" if value >= 0 else "expected a number from 0"
+        except _BeyondError as beyond:
+            text, value, said = (
+                str(beyond),
+                0,
+                "found a number of more than 32 bits in the cost of the unit 'mix'",
+            )
+        met[said] += 1
+        rules = placed(seed, text)
+        if said:
+            with pytest.raises(InputError, match=said):
+                cost_of(rules)
+        else:
+            assert cost_of(rules) == value, text
+    assert len(met) == 3
+
+
+def placed(seed: int, text: str) -> str:
+    """Give a measure that calculates a cost in one of several places."""
+    return (
+        f"cost(mine,U,{text}) :- inputs(U,N).",
+        f"cost(mine,U,M) :- inputs(U,N), M = {text}.",
+        f"pays(U,{text}) :- inputs(U,N). cost(mine,U,M) :- pays(U,M).",
+        f"cost(mine,U,M) :- inputs(U,N), M = #sum {{ {text} }}.",
+        f"cost(mine,U,M) :- unit(U), M = #max {{ {text} : inputs(U,N) }}.",
+    )[seed % 5]
+
+
+@pytest.mark.parametrize(
+    ("rules", "cost"),
+    [
+        ("cost(mine,U,M) :- unit(U), M = #sum { 700000000,O : input(U,O) }.", 2_100_000_000),
+        ("cost(mine,U,M) :- unit(U), M = #sum { 800000000,O : input(U,O) }.", None),
+        ("cost(mine,U,M) :- unit(U), M = #sum+ { 2147483646,O : input(U,O) }.", None),
+        # what other conditions leave out is not calculated
+        ('w("mix",7). w("mix","much"). cost(mine,U,N*2) :- motion(U,M), w(M,N), N < 100.', 14),
+        ("cost(mine,U,1) :- inputs(U,N), not far(N*1000000000). far(2).", None),
+        ("cost(mine,U,1) :- inputs(U,N), 5 < 0-N*1000000000.", None),
+    ],
+)
+def test_where_numbers_of_more_than_32_bits_are(rules: str, cost: int | None) -> None:
+    if cost is None:
+        with pytest.raises(InputError, match="found a number of more than 32 bits"):
+            cost_of(rules)
+    else:
+        assert cost_of(rules) == cost

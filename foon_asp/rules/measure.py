@@ -212,6 +212,8 @@ class _Evaluation:
 
     def _refuse(self, unit: int) -> None:
         """Raise :class:`InputError` for a unit whose cost is none, or two, naming the rules that say so."""
+        from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
+
         network, number = self._problem.network, self._number(unit)
         who = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
         said: dict[tuple[Value, Value], Source] = {}
@@ -221,9 +223,15 @@ class _Evaluation:
             for _, name, subject, value in self._derived([unit], alone):
                 if name == (self._measure.name,):
                     said.setdefault((subject, value), rule.source)
+        large = {each: source for each, source in said.items() if _text(each[1]) == BEYOND}
         errors = []
-        for (subject, value), source in said.items():
-            if subject != number:
+        for (subject, value), source in (large or said).items():
+            if large:
+                what = (
+                    f"found a number of more than 32 bits in the cost of {who}, and clingo has none such; "
+                    'a large cost is given in a table, as text: "5000000000"'
+                )
+            elif subject != number:
                 what = f"found a cost of {_text(subject)} among the facts of {who}: a rule is about one unit"
             elif _cost(value) is None:
                 what = f'found the cost {_text(value)} of {who}, expected a number from 0: 5, or "2.50"'

@@ -21,6 +21,7 @@ from clingo.ast import (
     SymbolicAtom,
     Transformer,
     Variable,
+    parse_string,
 )
 from clingo.symbol import SymbolType
 
@@ -32,10 +33,12 @@ from foon_asp.grounding.messages import listener
 from foon_asp.grounding.parsing import parse
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
+from foon_asp.rules.number_limits import ROOTS, beyond
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 COST = ("cost", 3)
 WORLD = "__world"
+BEYOND = "_beyond"  # what a unit costs by rules that calculate with larger numbers than clingo has
 # What a rule cannot read, since it is not about one unit, and why.
 _TREE = (
     "differs from tree to tree, and what a unit costs does not: a price for what a tree does is a soft "
@@ -132,6 +135,7 @@ class _Reader:
         while world in self._stated.text:
             world += "_"
         written = [_World(dependent, world).written(rule, self._source(rule)) for rule in self._rules]
+        written += self._beyond(names, dependent, world)
         constants = [Statement(f"{each}", self._source(each), False) for each in self._constants]
         return MeasureRules(
             names,
@@ -140,6 +144,29 @@ class _Reader:
             _nameless(self._atoms),
             all(self._is_plain(atoms, dependent) for atoms in self._atoms),
         )
+
+    def _beyond(
+        self, names: Iterable[str], dependent: frozenset[Signature], world: str
+    ) -> Iterator[Statement]:
+        """Write rules for costs that are none, where numbers are calculated beyond those of clingo."""
+        found: list[AST] = []
+        sources: list[Source] = []
+        for name in names:
+            for rule, text in beyond(self._rules, f"cost({name},{world},{BEYOND})"):
+                before = len(found)
+                parse_string(text, found.append)
+                sources += [self._source(rule)] * (len(found) - before)
+        if not found:
+            return
+        yield Statement(ROOTS, sources[0], False)
+        rules = [
+            (rule, source)
+            for rule, source in zip(found, sources, strict=True)
+            if rule.ast_type is ASTType.Rule
+        ]
+        heads = {_signature(atom) for rule, _ in rules for atom in _Atoms(rule).heads}
+        writer = _World(dependent | heads, world)
+        yield from (writer.written(rule, source) for rule, source in rules)
 
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
         head = rule.head
