@@ -59,6 +59,34 @@ def test_what_is_meant_is_left_alone(tmp_path: Path, text: str) -> None:
     assert codes(tmp_path, text) == []
 
 
+ANOTHER = unit(
+    "plate;contains {bread}, bread;sliced", "add", "plate;contains {bread}, bread;sliced;on [plate]"
+)
+ANOTHER += unit("plate;contains {bread}, bread;sliced;on [plate]", "eat", "plate;dirty")
+IN_BOWL = "bowl;contains {leek,salt}, leek;chopped;in [bowl], salt;in [bowl]"
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (
+            unit("leek;chopped;on [board], pan;empty", "scrape", "pan;contains {leek}, board;dirty"),
+            "left-out",
+        ),
+        (unit(f"{IN_BOWL}, spoon", "mix", IN_BOWL.replace("chopped", "chopped;mixed")), ""),
+        (unit(f"{IN_BOWL}, spoon", "mix", IN_BOWL).replace("S\tin\t[bowl]\n", "", 1), "other-place"),
+        (unit(f"{IN_BOWL}, spoon", "mix", IN_BOWL).replace("S\tin\t[bowl]\n", ""), ""),  # never said
+        (unit(IN_BOWL, "mix", IN_BOWL) + ANOTHER, ""),
+        (
+            unit(IN_BOWL, "mix", IN_BOWL) + ANOTHER.replace("S\ton\t[plate]\n", "", 1),
+            "other-place other-place",
+        ),
+    ],
+)
+def test_what_is_in_something_that_is_not_there(tmp_path: Path, text: str, found: str) -> None:
+    assert [code for code in codes(tmp_path, text) if code in {"left-out", "other-place"}] == found.split()
+
+
 @pytest.mark.parametrize(
     ("text", "fixed"),
     [

@@ -68,7 +68,11 @@ _RULES = (
     Rule("no-effect", WARNING, "a unit whose outputs are its inputs"),
     Rule("duplicate-unit", WARNING, "a unit that the file already contains"),
     Rule("broken-chain", WARNING, "an object that is taken, and made a little different"),
-    Rule("left-out", WARNING, "a unit that makes a container and not what is in it, or the other way round"),
+    Rule(
+        "left-out",
+        WARNING,
+        "a unit that has something and not the container that it is in, or the other way round",
+    ),
     Rule("swapped-sides", WARNING, "a unit that would go together with others the other way round"),
     Rule("lost-contents", WARNING, "contents that lose something, which no output has"),
     Rule("gained-contents", WARNING, "contents that gain something, which no input has"),
@@ -78,7 +82,7 @@ _RULES = (
     Rule(
         "other-place",
         WARNING,
-        "an object in something that the unit has not, while something else contains it",
+        "an object in something that the unit has not, or in nothing, while something else contains it",
     ),
     Rule("dead-cycle", NOTE, "objects that are made only by units that need them"),
     # What stands beside units.
