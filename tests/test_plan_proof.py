@@ -249,6 +249,10 @@ def test_what_a_part_is_made_of(monkeypatch: pytest.MonkeyPatch) -> None:
     assert free == (Weighted(()), None, {})
     assert seen[1][:2] == ([None] * 3, {})
     assert PlanProver(made).prove_claim(claim, Measure([1, 0, 3], 2), [kept]) is None
+    nothing, two = (Fraction(0),) * 2, (Fraction(2), Fraction(0))
+    pair = Claim(Lexicographic([None, None]), [nothing] * 3, two, two, None, [])
+    PlanProver(made).prove_claim(pair, Measure([0, 0, 0], 2), ())
+    assert seen[3][1] == {6: 2.0, 7: 2.0}
 
 
 def test_cuts_are_looked_for_some_times(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -271,6 +275,7 @@ def test_a_part_without_counts_needs_no_weights() -> None:
     prover, model = begun(flows(">0"), claim_of([1], 5))
     model.program.lower[0], model.program.upper[0] = 2, 1
     assert prover._part(model, 0) == Weighted(())
+    assert model.program.said(0) == ({1: 1, 0: -1}, 0)  # once at most
     assert (prover._least, prover._leaves) == (one(5), 0)
     model.program.upper[0] = 2
     assert prover._part(model, 0) != Weighted(())
@@ -379,13 +384,16 @@ def test_weights_of_floats_are_rounded_or_those_of_the_basis() -> None:
     assert made(1 / 3, once, None) == [{4: third}, {4: fine}, {4: 1}]
     assert made(1 / 3, once, None, None) == [{4: third}, {4: fine}, {4: 1}]
     assert made(1 / 3, [0.5, 0.0, 1.0, 0.0], None) == [{4: third}, {4: fine}]  # too far from what is claimed
-    assert made(1 / 3, [3.0, 0.0, 1.0, 0.0], None, 3) == [{4: third}, {4: fine}, {4: 1}]
+    for x, least, exact in ((3.0, 3, 1), (3 - 2e-6, 3, 1), (3 - 4e-6, 3, 0), (1 - 1e-6, 1, 0)):
+        basis = [{4: 1}] * exact
+        assert made(1 / 3, [x, 0.0, 1.0, 0.0], None, least) == [{4: third}, {4: fine}, *basis]
     prover._claim = prover._claim._replace(order=Lexicographic([[Fraction(1, 2)]]))  # of rates
     rate = -math.log(0.5)
     found = prover._weights(model, Relaxation(once, [0.0, 0.0, 0.0, 0.0, rate * 0.75], [0], [4]))
     assert rounded(found)[:2] == [{4: Fraction(3, 4)}] * 2
     prover._claim = claim_of([1, 1], 1)
     assert prover._exact_weights(model, Relaxation(once, [], [0, 1], [4])) == []
+    assert prover._exact_weights(model, Relaxation(once, [], [0], [4, 2])) == []
     assert prover._exact_weights(model, Relaxation(once, [], [2], [4])) == []  # a basis that is none
     weights = prover._exact_weights(model, Relaxation(once, [], [0, 2], [4, 2]))
     assert rounded(weights) == [{4: 1}]
@@ -405,6 +413,10 @@ def test_where_there_is_no_solution_weights_are_as_great_as_wanted() -> None:
     assert made([4.0, 4.0]) == [{2: 1, 3: 1}]
     assert made([4.0, 2.0]) == [{2: 1, 3: Fraction(1, 2)}]
     assert made([4.0, 4.0], 7) == [{2: 9, 3: 9}]
+    assert made([4.0, 2.0], 7) == [{2: 16, 3: 8}]
     assert made([4.0, 4.0], -7) == [{2: 9, 3: 9}]
     assert made([0.0, 0.0]) == []
     assert made([0.0, 4.0]) == []  # which say nothing
+    prover, model = begun(flows(">0"), claim_of([1], None), limits=[({0: 10**7}, 0, False, False)])
+    model.program.upper[0] = 1
+    assert made([1.0, 1e-7]) == [{2: 1, 3: Fraction(109951, 2**40)}]  # too little for coarser parts
