@@ -120,3 +120,17 @@ def test_a_cut_is_widened_by_what_cannot_be_made() -> None:
     assert Cutter(graph, [0], frozenset({1, 3, 6})).widened([0, 1]) == Cut((0, 1, 4), (4,))
     assert cutter.widened([0, 3]) == Cut((0, 3, 4), (0, 6))  # 2 is not needed for it
     assert cutter.widened([5]) == Cut((), ())
+
+
+def test_actions_are_admitted_until_the_targets_are_reached() -> None:
+    cutter = Cutter(Hypergraph(3, [[], [], []], [[1], [2], [2]], [0]), [2])
+    waiting = iter([0, 1, 2, 1])
+    assert cutter.reached_by(waiting)  # type: ignore[arg-type]
+    assert [*waiting] == [2, 1]
+
+
+def test_what_is_known_to_be_reachable_is_not_asked_again() -> None:
+    graph = Hypergraph(3, [[1]], [[2]], [0])
+    assert Cutter(graph, [2]).hopeless is not None
+    known = Cutter(graph, [2], reachable=bytearray([1, 1, 1]))
+    assert (known.hopeless, known.actions) == (None, [0])

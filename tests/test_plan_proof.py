@@ -319,6 +319,10 @@ def test_the_best_weights_of_a_part_count(monkeypatch: pytest.MonkeyPatch) -> No
     prover, model = begun(flows(">0"), claim, expired=lambda: True)
     assert prover._part(model, 0) == Weighted([(Balance(0), one(Fraction(3, 4)))])
     assert (prover._least, prover._failed, prover._leaves) == (one(Fraction(3, 4)), False, 1)
+    # of two that prove the same, the first
+    monkeypatch.setattr(PlanProver, "_weights", lambda *_: [{4: one(1)}, {5: one(1)}])
+    prover, model = begun(flows(">0", ">1", targets=(0, 1)), claim_of([1, 1], 5), expired=lambda: True)
+    assert prover._part(model, 0) == Weighted([(Balance(0), one(1))])
     monkeypatch.setattr(PlanProver, "_weights", lambda *_: weights[:1])
     prover, model = begun(flows(">0"), claim)
     assert prover._part(model, 0) == Weighted([])
@@ -379,6 +383,7 @@ def test_weights_of_floats_are_rounded_or_those_of_the_basis() -> None:
     fine = Fraction(round(2**40 / 3), 2**40)
     assert made(1 / 3, once) == [{4: third}, {4: fine}]
     assert made(-0.5, once) == [{}, {}]
+    assert made(1 / 720720, once)[0] == {4: Fraction(1, 720720)}
     assert made(1e15, once) == [{}, {}]
     # where 1 has no parts, the weights that the basis has are solved for
     assert made(1 / 3, once, None) == [{4: third}, {4: fine}, {4: 1}]

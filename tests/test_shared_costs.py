@@ -187,6 +187,38 @@ def test_targets_are_looked_at_by_themselves_only_where_that_takes_little() -> N
     assert sharing._rows == [(36,)]
 
 
+@pytest.mark.parametrize(
+    ("needed", "actions", "effort", "alone", "together"),
+    [
+        ([1], 4, 4, [], [1]),  # it has no others beside it
+        ([1, 1], 4, 4, [1, 1], []),
+        ([2, 1], 4, 4, [2, 1], []),
+        ([3, 1], 4, 4, [1], [3]),  # too many are needed, which takes as long to find out
+        ([2, 2, 1], 5, 4, [2, 2], [1]),
+    ],
+)
+def test_how_many_targets_are_looked_at_by_themselves(
+    needed: list[int],
+    actions: int,
+    effort: int,
+    alone: list[int],
+    together: list[int],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each target needs some actions that make something of nothing, and one that makes the target of it."""
+    monkeypatch.setattr(shared_costs, "_ALONE", effort / actions)
+    needs: list[list[int]] = []
+    for count in needed:
+        first = len(needs) + 1
+        needs += [*[[]] * (count - 1), [*range(first, first + count - 1)]]
+    targets = [sum(needed[: place + 1]) for place in range(len(needed))]
+    needs += [[]] * (actions - len(needs))
+    graph = Hypergraph(actions + 1, needs, [[a + 1] for a in range(actions)], [0])
+    sharing = _Sharing(graph, targets, range(actions), lambda _: 1)
+    assert [len(cutter.actions) for cutter in sharing._alone] == alone
+    assert [len(cutter.actions) for cutter in sharing._together] == together
+
+
 def test_dear_actions_are_cut_first() -> None:
     graph = Hypergraph(3, [[], [1], []], [[1], [2], [2]], [0])
     sharing = _Sharing(graph, [2], range(3), [1, 4, 10**6].__getitem__)

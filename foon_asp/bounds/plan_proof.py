@@ -79,8 +79,7 @@ class PlanProver(CountBound):
         self._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
         self._objective = {action: cost for action, cost in enumerate(floats) if cost}
-        if any(claim.item):
-            self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
+        self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
         self._failed = False
         proof = self._part(model, 0)
         if self._failed:
@@ -175,7 +174,7 @@ class PlanProver(CountBound):
         claim = self._claim
         first = claim.order.levels[0]
         one = (Fraction(1), *claim.order.zero[1:])
-        scale = claim.order.approximate(one)[0] if first is not None else 1.0
+        scale = claim.order.approximate(one)[0]
         floats = relaxed.weights
         if relaxed.x is None:
             largest = max(floats, default=0.0)
@@ -242,8 +241,7 @@ class PlanProver(CountBound):
             parts, least = program.said(row)
             found.append(times(weight, Fraction(least)))
             for column, part in parts.items():
-                if part:
-                    loads.setdefault(column, []).append(times(weight, Fraction(part)))
+                loads.setdefault(column, []).append(times(weight, Fraction(part)))
         zero = order.zero
 
         def left(column: int) -> Vector:
