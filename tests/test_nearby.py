@@ -250,3 +250,44 @@ def test_a_certificate_of_a_store_is_one_of_the_text(rule: ContainerRule, part: 
         little += len(found.answer.problem.network) < len(problem.network)
     assert claims == {"optimal", "infeasible"}
     assert little > 20 // part
+
+
+@SERIES
+def test_the_optima_of_a_store_are_those_of_the_text(part: int, tmp_path: Path) -> None:
+    near = 0
+    for seed in range(12 // part):
+        problem = replace(random_problem(seed, ContainerRule.STRICT, 14, readable=True), unit_prices=None)
+        dataset = stored(problem, tmp_path)
+        goals = tuple(random.Random(seed).sample(range(len(problem.network.objects)), 4))
+        asked = dataset.nearby(goals, "strict", None, 1)
+        found = foon_asp.optima(asked, ["units", "kitchen"])
+        expected = foon_asp.optima(replace(problem, goals=goals), ["units", "kitchen"])
+        assert [(each.status, each.problem.goal_nodes) for each in found.outcomes] == [
+            (each.status, each.problem.goal_nodes) for each in expected.outcomes
+        ]
+        for one, other in zip(found.outcomes, expected.outcomes, strict=True):
+            assert (one.costs is None) == (other.costs is None)
+            if one.costs is not None and other.costs is not None:
+                assert one.costs.key(levels(one.objectives)) == other.costs.key(levels(one.objectives))
+        table, there = ([line.split()[:2] for line in each.text().splitlines()] for each in (found, expected))
+        assert table == there
+        assert [each["goals"] for each in (found.json(), expected.json())].count(found.json()["goals"]) == 2
+        near += isinstance(asked, NearbyProblem)
+    assert near > 6 // part
+
+
+def test_a_problem_of_a_store_reads_no_more_than_is_looked_at(tmp_path: Path) -> None:
+    dataset = two_ways(tmp_path)
+    goals = dataset.goals(["stew"])
+    problem = dataset.nearby(goals, "strict", None, 1)
+    assert isinstance(problem, NearbyProblem)
+    assert repr(problem) == "<Problem: stew (strict containers)>"
+    for _ in range(2):  # what the first read is no part of the second
+        found = foon_asp.solve(problem)
+        assert (found.status, len(found.problem.network) < len(SHORT + LONG)) == (Status.OPTIMAL, True)
+    assert "network" not in vars(problem)
+    varied = problem.vary(without="water")
+    assert foon_asp.solve(varied).costs == solve(replace(problem, kitchen=varied.kitchen)).costs
+    assert len(problem.network) == len(SHORT + LONG)
+    assert problem.near() is None
+    assert problem == dataset.problem(goals, "strict")

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
+from foon_asp.dataset.nearby import shown
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -242,7 +243,7 @@ class Dataset:
         """Pose a problem of these data with changes; see :meth:`Problem.vary`."""
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
-        posed = dataset.problem(ids, containers or problem.containers, items=problem.items)
+        posed = dataset.nearby(ids, containers or problem.containers, problem.items)
         return _with_own_rates(posed, problem)
 
     def posed_whole(self, problem: Problem) -> Problem:
@@ -287,7 +288,7 @@ class Dataset:
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
         """Give the same data with the kitchen that a problem posed of it has."""
-        more, less = self.kitchen_changes(problem)
+        more, less = self.kitchen_changes(shown(problem))
         return self.varied(more, less, None) if more or less else self
 
     def kitchen_changes(self, problem: Problem) -> tuple[frozenset[int], frozenset[int]]:
@@ -349,6 +350,7 @@ def left_out(count: int) -> str:
 
 def _whole_goals(problem: Problem) -> tuple[int, ...]:
     """Give the goals of a problem by id in the whole network."""
+    problem = shown(problem)
     return tuple(problem.network.object_number(goal) for goal in problem.goals)
 
 

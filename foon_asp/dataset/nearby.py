@@ -1,6 +1,6 @@
 """A question to a large store, of which only the units near the goals are read, until that is enough."""
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
 
@@ -76,46 +76,57 @@ class NearbyProblem(Problem):
     :meth:`near` has what is near the goals, for those that can do with it.
     """
 
-    _first: Problem | None = (
+    first: Problem | None = (
         None  # over some of the units; ``None`` where this was made of another with changes
     )
 
     @classmethod
-    def of(cls, near: Nearby, again: Callable[[], Problem]) -> "NearbyProblem":
-        """Make it of what was read near its goals; ``again`` makes the same one anew."""
+    def of(cls, near: Nearby, again: Callable[[Sequence[int]], Problem]) -> "NearbyProblem":
+        """Make it of what was read near its goals; ``again`` asks for goals by id in the whole network."""
         problem, first = cls.__new__(cls), near.problem
         known = {field.name: getattr(first, field.name) for field in fields(Problem)}
         for name in ("network", "kitchen", "goals", "unit_prices"):  # below
             del known[name]
-        problem.__dict__.update(known, _first=first, _unasked=[near], _again=again, _read=near.whole)
+        problem.__dict__.update(known, first=first, _unasked=[near], _again=again, _read=near.whole)
         return problem
 
     def near(self) -> Nearby | None:
         """Give what is near the goals, for one question to read on from; ``None`` where all was read."""
-        if self._first is None or "_all" in self.__dict__:
+        if self.first is None or "_all" in self.__dict__:
             return None
         unasked: list[Nearby] = self.__dict__["_unasked"]
         if unasked:
             return unasked.pop()
-        again = self.__dict__["_again"]()
+        again = self._asked_again(self.first.goals)
         return again.near() if isinstance(again, NearbyProblem) else None
+
+    def each_goal(self) -> list[Problem]:
+        """Give the question for each goal by itself, read as far as this one."""
+        if self.first is None or "_all" in self.__dict__:
+            return [replace(self, goals=(goal,)) for goal in self.goals]
+        return [self._asked_again((goal,)) for goal in self.first.goals]
+
+    def _asked_again(self, goals: Iterable[int]) -> Problem:
+        assert self.first is not None
+        found: Problem = self.__dict__["_again"]([*map(self.first.network.object_number, goals)])
+        return found
 
     @property
     def goal_nodes(self) -> tuple[ObjectNode, ...]:
         """The goals as object nodes."""
-        return super().goal_nodes if self._first is None else self._first.goal_nodes
+        return super().goal_nodes if self.first is None else self.first.goal_nodes
 
     @property
     def conditions(self) -> str:
         """What every claim about this question holds under, in a few words."""
-        return super().conditions if self._first is None else self._first.conditions
+        return super().conditions if self.first is None else self.first.conditions
 
     def require_known_for(self, objectives: Collection[Objective]) -> None:
         """Require the rates and prices that objectives need, as :meth:`Problem.require_known_for` does."""
-        if self._first is None:
+        if self.first is None:
             super().require_known_for(objectives)
         else:
-            self._first.require_known_for(objectives)
+            self.first.require_known_for(objectives)
 
     @cached_property
     def _all(self) -> Problem:
@@ -143,3 +154,10 @@ class NearbyProblem(Problem):
     def unit_prices(self) -> UnitPrices | None:
         """The prices of its units."""
         return self._all.unit_prices
+
+
+def shown(problem: Problem) -> Problem:
+    """Give a problem that has the goals of another, without reading more."""
+    if isinstance(problem, NearbyProblem):
+        return problem.first or problem
+    return problem

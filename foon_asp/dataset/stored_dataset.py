@@ -327,7 +327,7 @@ class StoredDataset(Dataset):
                 lambda: self.problem(goals, containers),
                 lambda: self.subject(everything=False),
             ),
-            lambda: self.nearby(goals, containers, None, first),
+            lambda goals: self.nearby(goals, containers, None, first),
         )
 
     def _cone(

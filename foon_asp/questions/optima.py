@@ -3,25 +3,28 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from foon_asp.asp import Outcome, Settings
 from foon_asp.asp import solve as find
+from foon_asp.dataset.nearby import NearbyProblem, shown
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel, Deadline
 from foon_asp.document.json_document import document
 from foon_asp.problem import Problem
 from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.answer import Answer
+from foon_asp.questions.answer import Answer, answered_nearby, near_goals
 from foon_asp.questions.arguments import (
     Constants,
     asked_with,
     chosen_objectives,
     limits,
+    read,
     settings,
     usual_objectives,
 )
 from foon_asp.questions.caller import caller
 from foon_asp.questions.contract import TABLES, question
 from foon_asp.questions.options import CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, OBJECTIVES, RULES
-from foon_asp.questions.posing import each_goal
+from foon_asp.questions.posing import each_goal_or_nearby
 from foon_asp.questions.result import Ending, Result
 from foon_asp.report.optima_table import optima_table
 from foon_asp.report.renderable import Renderable, plain_text
@@ -82,7 +85,7 @@ class Optima(Result):
     The limits are for each answer. Exits with 0 when every answer is proved, a goal without a tree
     included, and with 3 when one was stopped at the limit.
     """,
-    pose=each_goal,
+    pose=each_goal_or_nearby,
 )
 def optima(
     problem: Problem,
@@ -121,10 +124,21 @@ def optima(
     # limits are for each answer, ctrl-C is for all of them
     how, whole = settings(constraints, constants, encodings), Deadline(within=caller().deadline)
     each_limits = limits(time_limit, memory_limit)
-    problem = asked_with(problem, how)
-    outcomes = []
-    for goal in problem.goals:
+    outcomes: list[Outcome] = []
+    for goal in _each_goal(problem, how):
         for chosen in lists:
             within = how._replace(deadline=Deadline(*each_limits, within=whole))
-            outcomes.append(find(replace(problem, goals=(goal,)), chosen, within, caller().reporter))
-    return Optima(problem, tuple(map(Answer._make, outcomes)))
+            near = near_goals(goal, chosen, within)
+            if near is None:
+                outcomes.append(find(read(goal), chosen, within, caller().reporter))
+            else:
+                outcomes.append(answered_nearby(near, chosen, within))
+    return Optima(shown(problem), tuple(map(Answer._make, outcomes)))
+
+
+def _each_goal(problem: Problem, how: Settings) -> list[Problem]:
+    """Give a problem for each goal; of a large store without rules, it is read as far as an answer takes."""
+    if isinstance(problem, NearbyProblem) and not how.constraints and how.replaced is None:
+        return problem.each_goal()
+    problem = asked_with(problem, how)
+    return [replace(problem, goals=(goal,)) for goal in problem.goals]

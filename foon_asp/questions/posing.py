@@ -90,6 +90,28 @@ def no_data(command: Command, **named: object) -> tuple[object, ...]:
     return tuple(named.values())
 
 
+def each_goal_or_nearby(
+    command: Command,
+    goals_named: Sequence[str],
+    containers: str,
+    items: str = "lasting",
+    stock: File | None = None,
+    stays: File | None = None,
+) -> tuple[Problem]:
+    """Pose the same as :func:`each_goal`; of a large store, what they can need is read when looked at."""
+    dataset = command.dataset
+    with command.reading():
+        how = items_of(dataset, items, stock, stays)
+        return (dataset.nearby(_each(dataset, goals_named), containers, how),)
+
+
+def _each(dataset: Dataset, goals_named: Sequence[str]) -> tuple[int, ...]:
+    goals = dataset.each_goal(goals_named)
+    if not goals:
+        raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
+    return tuple(dict.fromkeys(goals))
+
+
 def each_goal(
     command: Command,
     goals_named: Sequence[str],
@@ -102,7 +124,4 @@ def each_goal(
     dataset = command.dataset
     with command.reading():
         how = items_of(dataset, items, stock, stays)
-        goals = dataset.each_goal(goals_named)
-        if not goals:
-            raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
-        return (dataset.problem(tuple(dict.fromkeys(goals)), containers, items=how),)
+        return (dataset.problem(_each(dataset, goals_named), containers, items=how),)

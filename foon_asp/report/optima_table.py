@@ -9,6 +9,7 @@ from rich.text import Text
 
 from foon_asp.asp import Outcome, Status
 from foon_asp.escapes import escaped
+from foon_asp.network import ObjectNode
 from foon_asp.problem import Objective
 from foon_asp.report.stackable import Stackable
 
@@ -51,9 +52,9 @@ def optima_table(outcomes: Sequence[Outcome]) -> Stackable:
 
 def _by_goal(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, list[list[Outcome]]]]:
     """Group outcomes by goal, and within a goal those of the same status and costs."""
-    goals: dict[tuple[int, ...], dict[object, list[Outcome]]] = {}
+    goals: dict[tuple[ObjectNode, ...], dict[object, list[Outcome]]] = {}
     for outcome in outcomes:
-        rows = goals.setdefault(outcome.problem.goals, {})
+        rows = goals.setdefault(outcome.problem.goal_nodes, {})
         rows.setdefault((outcome.status, outcome.costs), []).append(outcome)
     for rows in goals.values():
         problem = next(iter(rows.values()))[0].problem
