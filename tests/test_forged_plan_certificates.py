@@ -48,6 +48,19 @@ def data(units: list[tuple[str, str, str]], kitchen: str, **rates: str) -> Data:
     return Data(network, at_hand, found)
 
 
+def served() -> Data:
+    """Build a network in which soup in a bowl needs no bowl that contains it."""
+    builder = NetworkBuilder()
+    water, meal = ObjectNode.of("water"), ObjectNode.of("meal")
+    soup, bowl = (
+        ObjectNode.of("soup", [], [("in", "bowl")]),
+        ObjectNode.of("bowl", [], [], [("contains", ["soup"])]),
+    )
+    builder.add("cook", [water], [soup], Source("forged", 1))
+    builder.add("serve", [bowl, soup], [meal], Source("forged", 2))
+    return Data(builder.build(), frozenset({0}), None, frozenset({"bowl"}))
+
+
 # Bread is baked of dough, which is mixed of flour without end and of salt, of which there is one; more can be
 # bought. Bread could be melted of gold, too, but nobody has what gold is dug of.
 PLAIN = data(
@@ -73,6 +86,8 @@ TWICE = data(
     ],
     "tap",
 )
+# Soup is served of a bowl that nobody makes, since it is taken as given under implied containers.
+SOUP = served()
 # The bread never succeeds.
 NEVER = PLAIN._replace(rates={**(PLAIN.rates or {}), "bake": Fraction(0)})
 LEVEL = PLAIN._replace(network=network_at_level(PLAIN.network, 2))
@@ -277,6 +292,9 @@ def held(by: Any, forged: Forged) -> Any:
 def test_a_right_certificate_passes() -> None:
     assert held(verify_plan, plain()).claim == "optimal"
     assert held(verify_plan, ONE).claim == "bound"
+    rules, goal_of_rule = [{"rule": "require_motion", "required_motion": "buy"}], len(PLAIN.network.objects)
+    bought = bound("3", {**PROOF, "weights": [[0, "1"]]}, rules=rules, cuts=[[goal_of_rule]])
+    assert held(verify_plan, bought).claim == "bound"
 
 
 def test_every_check_has_a_forged_certificate() -> None:
@@ -327,6 +345,24 @@ PARTS = {
         "math.ceil(most / each) - 1 if exact",
         "math.ceil(most / each) - 2 if exact",
         bound("2", {"balance": [[DOUGH, "2"]]}, goals=goal("dough")),
+    ),
+    "a copy in stock is there": Part(
+        "self.stock.get(o, 0) > 0",
+        "self.stock.get(o, 0) > 1",
+        bound("3", {**PROOF, "weights": [[0, "1"]]}, cuts=[sorted([SALT, DOUGH, BREAD])]),
+    ),
+    "what a unit is let skip it does not ask for": Part(
+        "for unit in network.consumers[o] if o in self.flow(unit).asks",
+        "for unit in network.consumers[o]",
+        plain(
+            **NO_PLAN,
+            goals=[{"id": 3, "node": "meal"}],
+            containers="implied",
+            items=items(),
+            unreached=[2],
+            proof=[{"balance": [[3, "1"]]}],
+            at=SOUP,
+        ),
     ),
     "a unit may bring the most": Part(
         "found.append(self._sum([self._times(each, Fraction(most or 0)), once]))",

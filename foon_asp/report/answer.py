@@ -249,7 +249,10 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
     available = reach(problem).available
     network = problem.network
     if all(available[goal] for goal in problem.goals) and problem.items is not None:
-        yield "if items lasted there could be a task tree: each plan would use up more than there is"
+        yield (
+            "if items lasted, every goal could be made: each plan would use up more than there is, or break a "
+            "constraint"
+        )
         return
     if all(available[goal] for goal in problem.goals):
         yield "without the constraints there is one: together they rule out every tree"
