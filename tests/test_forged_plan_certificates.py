@@ -295,6 +295,9 @@ def test_a_right_certificate_passes() -> None:
     rules, goal_of_rule = [{"rule": "require_motion", "required_motion": "buy"}], len(PLAIN.network.objects)
     bought = bound("3", {**PROOF, "weights": [[0, "1"]]}, rules=rules, cuts=[[goal_of_rule]])
     assert held(verify_plan, bought).claim == "bound"
+    assert held(verify_plan, plain(rules=[{"rule": "at_most_units", "max_units": 2}])).claim == "optimal"
+    tainted = [{"rule": "forbid_ingredient", "allergen": ["bread"]}]
+    assert held(verify_plan, plain(**NO_PLAN, rules=tainted, unreached=[], proof=[{}])).claim == "infeasible"
 
 
 def test_every_check_has_a_forged_certificate() -> None:
@@ -345,6 +348,21 @@ PARTS = {
         "math.ceil(most / each) - 1 if exact",
         "math.ceil(most / each) - 2 if exact",
         bound("2", {"balance": [[DOUGH, "2"]]}, goals=goal("dough")),
+    ),
+    "what a plan uses up is gone": Part(
+        "copies.subtract(uses - self.endless)",
+        "pass",
+        plain(claim="bound", bound=["2"], tree=[0, 1, 1], costs=[3]),
+    ),
+    "a copy of every input has to be there": Part(
+        "all(o in self.endless or copies[o] > 0 for o in asks)",
+        "any(o in self.endless or copies[o] > 0 for o in asks)",
+        plain(items=items([[SALT, 0]])),
+    ),
+    "a goal in stock is taken of it": Part(
+        "least[goal] = max(least[goal], 1 + self.stock[goal] - copies[goal])",
+        "pass",
+        plain(objective=["kitchen"], goals=goal("salt"), tree=[], costs=[0], proof=[{}]),
     ),
     "a copy in stock is there": Part(
         "self.stock.get(o, 0) > 0",

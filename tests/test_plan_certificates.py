@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+import foon_asp
 from foon_asp.asp import Outcome, Settings, Status
 from foon_asp.asp.optimum import solve
 from foon_asp.certificate import Certificate, certify_outcome
@@ -18,6 +19,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp, levels
 from foon_asp.proof.verify import RefusedError, Verified, seal
 from foon_asp.proof.verify_plan import PlanCheck, verify_any
+from foon_asp.report.certified import certificate_lines
 from tests.conftest import Cli
 from tests.test_verify import mutants
 from tests.used_up_oracle import key, plans, random_problem
@@ -239,6 +241,30 @@ def reader(problem: Problem) -> PlanCheck:
     }
     data = (problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     return PlanCheck(content, (), *data)
+
+
+def test_a_plan_that_was_found_at_a_limit_can_be_proved_the_best() -> None:
+    problem = foon_asp.load().problem("greek salad", items="used-up")
+    found = solve(problem)
+    stopped = found._replace(status=Status.FEASIBLE, proof=None, stopped="time limit", bounds={})
+    outcome, certificate = certify_outcome(stopped, Settings())
+    assert certificate is not None
+    assert (certificate.claim, outcome.status, outcome.stopped) == ("optimal", Status.OPTIMAL, None)
+    assert outcome.bounds == found.bounds
+    assert certify_outcome(stopped._replace(units=None, status=Status.UNKNOWN), Settings())[1] is None
+
+
+def test_without_time_the_bound_of_the_first_relaxation_is_proved() -> None:
+    problem = random_problem(577)
+    stopped = solve(problem, (Objective.INPUTS,))._replace(status=Status.FEASIBLE, proof=None)
+    outcome, certificate = certify_outcome(stopped, Settings(), lambda: True)
+    assert certificate is not None
+    assert (certificate.claim, outcome.status) == ("bound", Status.FEASIBLE)
+    lines = certificate_lines(outcome, certificate, "proof.json")
+    assert lines[0].startswith(
+        "proof: none; the certificate proof.json proves a bound on all plans: inputs at"
+    )
+    require_true(check(certificate.content, problem), problem, certificate.content["bound"])
 
 
 # --- the command line

@@ -27,11 +27,12 @@ def certify_outcome(
 ) -> tuple[Outcome, Certificate | None]:
     """Find a certificate for an answer to a question under these settings, and mark the answer with it.
 
-    The answer is marked ``certificate`` where the whole of its claim is proved; where only the first of its
-    objectives are, it says for each. Where more than a bound is proved only by taking on trust what rules of
-    the user's own remove and ask for, the answer is left as it is. Raises :class:`BugError` when a tree that
-    the solver called optimal is not, and when answer and certificate cannot both be true. ``subject`` is the
-    whole that its network is a part of, as for :func:`~foon_asp.certificate.certify`.
+    The answer is marked ``certificate`` where the whole of its claim is proved, and a plan that was found at
+    a limit is optimal then; where only the first of its objectives are, it says for each. Where more than a
+    bound is proved only by taking on trust what rules of the user's own remove and ask for, the answer is
+    left as it is. Raises :class:`BugError` when a tree that the solver called optimal is not, and when answer
+    and certificate cannot both be true. ``subject`` is the whole that its network is a part of, as for
+    :func:`~foon_asp.certificate.certify`.
     """
     began = time.perf_counter()
     covered = coverage(settings)
@@ -59,6 +60,9 @@ def certify_outcome(
     if found is None or found.claim == "bound" or trusted(found.content):
         return outcome, found
     complete = found.claim == "infeasible" or found.certified == levels(outcome.objectives)
+    if complete and outcome.status is Status.FEASIBLE and outcome.costs is not None:
+        bounds = {objective: outcome.costs.measure(objective) for objective in found.certified}
+        outcome = outcome._replace(status=Status.OPTIMAL, bounds=bounds, stopped=None)
     proof = Proof.CERTIFICATE if complete else outcome.proof
     return outcome._replace(proof=proof, certified=found.certified), found
 
@@ -86,10 +90,10 @@ def _certified(
 
 
 def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], bool]) -> Certificate | None:
-    """Find a certificate among plans that keep to what is covered."""
+    """Find a certificate among plans that keep to what is covered; also of a plan at a limit."""
     if outcome.status is Status.INFEASIBLE:
         return certify_no_plan(outcome.problem, covered, expired)
-    if outcome.status is not Status.OPTIMAL or outcome.units is None:
+    if outcome.units is None:
         return None
     return certify_plan(outcome.problem, levels(outcome.objectives), outcome.units, covered, expired)
 

@@ -250,8 +250,8 @@ def _why_infeasible(problem: Problem, shown: int = 5) -> Iterator[str]:
     network = problem.network
     if all(available[goal] for goal in problem.goals) and problem.items is not None:
         yield (
-            "if items lasted, every goal could be made: each plan would use up more than there is, or break a "
-            "constraint"
+            "if items lasted, every goal could be made: each plan would use up more than there is, or break "
+            "a constraint"
         )
         return
     if all(available[goal] for goal in problem.goals):

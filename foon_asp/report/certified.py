@@ -22,24 +22,25 @@ _NAMED = 20  # units of a limit that are listed in text; JSON has all
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> list[str]:
     """Say what proves an answer after the search for a certificate; ``file`` is where that was written."""
-    if outcome.proof is None:
+    if certificate is None and outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]
+    by = outcome.proof or "none"
     if certificate is None:
-        return [f"proof: {outcome.proof} (no certificate was found, and nothing is written)"]
+        return [f"proof: {by} (no certificate was found, and nothing is written)"]
     own = trusted(certificate.content)
     if own is not None and certificate.claim != "bound":
         proved = "that there is no tree" if certificate.claim == "infeasible" else "the tree best"
         given = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
-        return [f"proof: {outcome.proof}; {given}", *(f"  {line}" for line in _on_trust(own, None))]
+        return [f"proof: {by}; {given}", *(f"  {line}" for line in _on_trust(own, None))]
     if certificate.claim == "bound":
         return [
-            f"proof: {outcome.proof}; the certificate {file} proves a bound on {_all(outcome)}"
+            f"proof: {by}; the certificate {file} proves a bound on {_all(outcome)}"
             + bound_text(certificate.content)
         ]
-    if certificate.claim == "optimal" and outcome.proof.value != "certificate":
+    if certificate.claim == "optimal" and by != "certificate":
         sure = ", ".join(certificate.certified)
         what = "tree" if outcome.problem.items is None else "plan"
-        return [f"proof: {outcome.proof}; the certificate {file} proves the {what} best by {sure} alone"]
+        return [f"proof: {by}; the certificate {file} proves the {what} best by {sure} alone"]
     lines = [f"proof: certificate ({file}, {_looked_at(certificate.content)})"]
     if certificate.content["not_covered"] and certificate.claim == "optimal":
         every = "trees" if outcome.problem.items is None else "plans"
