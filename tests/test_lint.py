@@ -135,6 +135,7 @@ def test_words_of_their_own(counts: dict[str, int]) -> None:
 def test_endings_of_states_are_grammar() -> None:
     for rare, frequent in (("cube", "cubed"), ("juiced", "juice"), ("flakes", "flaked"), ("mixer", "mixed")):
         assert list(near_names({rare: 1, frequent: 200}, verbs=True)) == []
+    assert list(near_names({"gratd": 1, "grated": 200}, verbs=True)) == [("gratd", "grated")]
 
 
 def test_names_are_compared_over_all_files_and_kinds_of_mention(tmp_path: Path) -> None:

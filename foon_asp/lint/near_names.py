@@ -125,7 +125,8 @@ def _near(word: str, other: str, verbs: bool) -> bool:
     """Whether words differ by a letter behind the first, and not by an ending that is grammar."""
     ending = _VERB_ENDING if verbs else _PLURAL_ENDING
     is_grammar = ending.sub("", word) == ending.sub("", other)
-    return not is_grammar and word[:1] == other[:1] and one_letter_apart(word, other)
+    is_cut = word[-1:] == "d" and other == f"{word[:-1]}ed"  # gratd
+    return (is_cut or not is_grammar) and word[:1] == other[:1] and one_letter_apart(word, other)
 
 
 def _is_slip(
