@@ -479,7 +479,7 @@ FORGED: dict[str, Forged] = {
 NO_CHECKS = {
     "require: otherwise",
     "read_certificate: not JSON: …",
-    "verify: branches nested too deeply",
+    "refusing_depth: branches nested too deeply",
 }
 NEXT = "_cost_by: an objective is unknown"
 

@@ -219,6 +219,11 @@ FORGED: dict[str, Forged] = {
     "_prove: a rule allows no plan": bound(
         "9", {}, rules=[{"rule": "forbid_ingredient", "allergen": ["bread"]}], unreached=[]
     ),
+    "_prove: a proof is given where a rule allows no plan": plain(
+        **{**NO_PLAN, "unreached": []},
+        rules=[{"rule": "forbid_ingredient", "allergen": ["bread"]}],
+        proof=[5],
+    ),
     # --- the proof
     "_divided: expected the most executions of a branch": plain(
         proof=[{"branch": {"unit": 1}, "most": True, "up_to": PROOF, "above": PROOF}]
@@ -316,6 +321,14 @@ def test_a_forged_certificate_is_refused_by_its_check_alone(name: str) -> None:
         return
     failed = failure(without(name), forged)
     assert (forged.stays == KIND) == (failed not in ("RefusedError", "LimitError"))
+
+
+def test_what_is_nested_too_deeply_is_refused() -> None:
+    content = certificate(PLAIN)
+    for _ in range(10_000):
+        content["proof"] = [content["proof"]]
+    with pytest.raises(verify.RefusedError, match="branches nested too deeply"):
+        verify_plan.verify_plan(content, *PLAIN)
 
 
 def failure(by: Any, forged: Forged) -> str:

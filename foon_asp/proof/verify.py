@@ -18,6 +18,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cache
@@ -221,6 +222,16 @@ def trusted(certificate: Mapping[str, Any]) -> Rule | None:
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
 
+@contextmanager
+def refusing_depth() -> Iterator[None]:
+    """Refuse what is nested too deeply to be written down again, or to be looked at."""
+    try:
+        yield
+    except RecursionError:
+        raise RefusedError("branches nested too deeply") from None
+
+
+@refusing_depth()
 def verify(
     certificate: Any,
     network: Network,
@@ -236,33 +247,30 @@ def verify(
     network takes, raises :class:`LimitError`. Raises :class:`RefusedError` with the first fault that is
     found.
     """
-    try:
-        require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
-        require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
-        version = certificate.get("version")
-        require(type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format")
-        keys = KEYS if version >= _WITH_RULES else KEYS - {"rules", "measures"} | {"forbidden"}
-        require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
-        require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
-        require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
-        level = certificate["level"]
-        require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
-        rules = (
-            read_rules(certificate["rules"], len(network))
-            if version >= _WITH_RULES
-            else _forbidding(certificate["forbidden"])
-        )
-        found = digests(network, kitchen, rates, utensils, prices, stated, rules)
-        for name, since in (("prices", _WITH_PRICES), ("sources", _WITH_RULES)):
-            if version < since:
-                del found[name]
-        named = read_object(certificate["digests"], tuple(found))
-        for name, digest in found.items():
-            require(named[name] == digest, f"{name}: not the one that the certificate is about")
-        priced = prices if version >= _WITH_PRICES else None
-        return Check(certificate, rules, network, kitchen, rates, utensils, priced).claim()
-    except RecursionError:
-        raise RefusedError("branches nested too deeply") from None
+    require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
+    require(certificate.get("format") == FORMAT, f"expected the format {FORMAT!r}")
+    version = certificate.get("version")
+    require(type(version) is int and 1 <= version <= VERSION, f"expected version {VERSION} of the format")
+    keys = KEYS if version >= _WITH_RULES else KEYS - {"rules", "measures"} | {"forbidden"}
+    require(certificate.keys() == keys, f"expected the keys {', '.join(sorted(keys))}")
+    require(version > 1 or certificate["containers"] != "implied", _VERSION_1)
+    require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
+    level = certificate["level"]
+    require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
+    rules = (
+        read_rules(certificate["rules"], len(network))
+        if version >= _WITH_RULES
+        else _forbidding(certificate["forbidden"])
+    )
+    found = digests(network, kitchen, rates, utensils, prices, stated, rules)
+    for name, since in (("prices", _WITH_PRICES), ("sources", _WITH_RULES)):
+        if version < since:
+            del found[name]
+    named = read_object(certificate["digests"], tuple(found))
+    for name, digest in found.items():
+        require(named[name] == digest, f"{name}: not the one that the certificate is about")
+    priced = prices if version >= _WITH_PRICES else None
+    return Check(certificate, rules, network, kitchen, rates, utensils, priced).claim()
 
 
 class Check:

@@ -32,6 +32,7 @@ from foon_asp.proof.verify import (
     read_numbers,
     read_object,
     read_rules,
+    refusing_depth,
     require,
 )
 
@@ -77,6 +78,7 @@ def verify_any(certificate: Any, subject: Subject) -> Verified:
     return check(certificate, *subject[:-1])
 
 
+@refusing_depth()
 def verify_plan(
     certificate: dict[str, Any],
     network: Network,
@@ -258,6 +260,7 @@ class PlanCheck(Check):
         require(len(proofs) == len(levels), "expected a proof for each objective")
         if self.ruled.never:
             require(least is None, "a rule allows no plan")
+            require(proofs == [{}], "a proof is given where a rule allows no plan")
             return
         self.least = least
         for level in levels:
