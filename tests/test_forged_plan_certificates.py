@@ -301,6 +301,14 @@ def test_a_right_certificate_passes() -> None:
     bought = bound("3", {**PROOF, "weights": [[0, "1"]]}, rules=rules, cuts=[[goal_of_rule]])
     assert held(verify_plan, bought).claim == "bound"
     assert held(verify_plan, plain(rules=[{"rule": "at_most_units", "max_units": 2}])).claim == "optimal"
+    limited = plain(
+        **NO_PLAN,
+        rules=[{"rule": "at_most_units", "max_units": 1}],
+        proof=[{**PROOF, "limits": [[0, "1"]]}],
+    )
+    assert held(verify_plan, limited).claim == "infeasible"
+    taken = plain(**FLOURED, tree=[3, 0, 1], costs=[1], proof=[floured("1")])
+    assert held(verify_plan, taken).claim == "optimal"
     tainted = [{"rule": "forbid_ingredient", "allergen": ["bread"]}]
     assert held(verify_plan, plain(**NO_PLAN, rules=tainted, unreached=[], proof=[{}])).claim == "infeasible"
 
@@ -351,6 +359,15 @@ class Part(NamedTuple):
     forged: Forged
 
 
+# Flour is taken: bread asks for dough, dough for flour.
+FLOURED: dict[str, Any] = {"objective": ["kitchen"], "cuts": [[BREAD], [DOUGH], [FLOUR]]}
+
+
+def floured(weight: str) -> dict[str, Any]:
+    """Give a proof that flour is taken, and that this costs so much."""
+    return {"weights": [[0, weight]], "before": [[1, 1, weight], [2, 0, weight]]}
+
+
 PARTS = {
     "copies in stock need not be made": Part(
         "(o in check.goals) - there",
@@ -361,6 +378,21 @@ PARTS = {
         "math.ceil(most / each) - 1 if exact",
         "math.ceil(most / each) - 2 if exact",
         bound("2", {"balance": [[DOUGH, "2"]]}, goals=goal("dough")),
+    ),
+    "what never runs out can be taken": Part(
+        "self.stock.get(o, 1)",
+        "self.stock.get(o, 0)",
+        bound("2", floured("2"), **FLOURED),
+    ),
+    "what is asked for is taken of the kitchen": Part(
+        "yield len(network) + o",
+        "yield from ()",
+        bound("2", floured("2"), **FLOURED),
+    ),
+    "a bound is rounded up to what executions cost": Part(
+        'if objective == "attempts" else every',
+        "if objective == 0 else every",
+        bound("3", {"balance": [[DOUGH, "4/3"], [BREAD, "17/6"]]}, objective=["attempts"]),
     ),
     "what a plan uses up is gone": Part(
         "copies.subtract(uses - self.endless)",
