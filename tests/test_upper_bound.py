@@ -8,7 +8,7 @@ import pytest
 from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
-from foon_asp.reduce.upper_bound import following, improved, replaceable, without_spare
+from foon_asp.reduce.upper_bound import following, improved, replaceable, varied, without_spare
 from tests.plain_graphs import executes, plain, random_graph
 
 
@@ -224,3 +224,33 @@ def test_the_rest_of_a_tree_is_completed_by_costs_that_add_up() -> None:
     price, rest = [6, 6, 5, 1, 3, 3].__getitem__, [0, 0, 9, 9, 9, 9].__getitem__
     asked = iter([False, False, True])  # without 0 there is no tree
     assert improved(graph, range(6), {0, 1}, price, rest, asked.__next__, thorough=True) == {0, 2}
+
+
+# three sets of three goals each for 2, of goals in rows, and for each goal an action of its own for 1
+SETS = plain(
+    [*[([0], [n]) for n in range(1, 10)], *[([0], [n, n + 1, n + 2]) for n in (1, 4, 7)]], range(1, 10), [0]
+)
+SET_COSTS = [1] * 9 + [2] * 3
+
+
+def test_chance_leads_where_no_estimate_does() -> None:
+    price, single = SET_COSTS.__getitem__, set(range(9))
+    for added in (True, False):
+        assert derive(SETS, range(12), price, added).tree(SETS, SETS.goals) == single
+    assert varied(SETS, range(12), single, price, never) == {9, 10, 11}
+    assert varied(SETS, range(12), single, price, lambda: True) is single
+    assert varied(SETS, range(9), single, price, never) is single
+
+
+def test_what_chance_leads_to_is_a_tree_and_no_dearer() -> None:
+    cheaper = 0
+    for graph, price, able in solvable(range(60)):
+        tree = without_spare(graph, able, lambda _: 1)  # not by what they cost
+        better = varied(graph, able, tree, price.__getitem__, never)
+        total, least = (sum(map(price.__getitem__, some)) for some in (tree, better))
+        assert executes(graph, better)
+        assert better <= set(able)
+        assert better is tree or least < total
+        assert better == without_spare(graph, better, price.__getitem__) or better is tree
+        cheaper += least < total
+    assert cheaper > 5

@@ -18,7 +18,7 @@ from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
-from foon_asp.reduce.upper_bound import following, improved, without_spare
+from foon_asp.reduce.upper_bound import following, improved, varied, without_spare
 from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 if TYPE_CHECKING:  # few questions need it
@@ -331,7 +331,7 @@ class _Reducer:
         known = [(cut.objects, cut.members) for cut in self.cuts.cuts] if self.cuts else []
         before, settled = math.inf, False
         while not settled and _SMALL < len(self.left) < _WORTH * before and not self.expired():
-            from foon_asp.bounds.shared_costs import share_costs  # noqa: PLC0415 (few questions need it)
+            from foon_asp.bounds.shared_costs import PARTS, share_costs  # noqa: PLC0415 (few questions need it)
 
             before = len(self.left)
             goals, total = self.graph.goals, self._total(costs)
@@ -340,6 +340,8 @@ class _Reducer:
                 break
             known = []
             tree = following(self.graph, self.left, self.tree, costs, shared)
+            if -(-shared.bound // PARTS) < sum(map(costs, tree)):
+                tree = varied(self.graph, self.left, tree, costs, self.expired)
             if tree is not self.tree:
                 self._take(tree)
             settled = self._shared(costs, shared)

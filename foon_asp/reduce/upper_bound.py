@@ -1,5 +1,6 @@
 """Trees that are good, found fast, with nothing in them that can be left out."""
 
+import random
 from collections.abc import Callable, Collection, Iterable
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,8 @@ from foon_asp.reduce.graph import Graph
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.bounds.shared_costs import SharedCosts
 
-_FINE = 1000  # steps of shares that the estimates tell apart
+_FINE = 1000  # steps of shares, and of costs that vary, that the estimates tell apart
+_TRIES = 40  # trees that chance leads to
 
 
 def without_spare(graph: Graph, tree: Iterable[int], cost: Callable[[int], int]) -> set[int]:
@@ -69,6 +71,37 @@ def following(
             slim_total = sum(map(cost, slim))
             if slim_total < total:
                 best, total = slim, slim_total
+    return best
+
+
+def varied(
+    graph: Graph,
+    actions: Collection[int],
+    tree: set[int],
+    cost: Callable[[int], int],
+    expired: Callable[[], bool],
+) -> set[int]:
+    """Look for a cheaper tree by chance; gives the same tree if none is found.
+
+    Some of the actions of a tree cost nothing, any number of them, and each other one costs half as much more
+    or less than it does. A tree that costs the same is the next to start from.
+    """
+    chance = random.Random(0).random
+    best = last = tree
+    total = sum(map(cost, tree))
+    ordered = sorted(actions)
+    for _ in range(_TRIES):
+        if expired():
+            break
+        share = chance()
+        price = {a: int(cost(a) * _FINE * (0.5 + chance())) for a in ordered}
+        price |= {a: 0 for a in sorted(last) if chance() < share}
+        found = derive(graph, ordered, price, added=chance() < 0.5).tree(graph, graph.goals)
+        slim = without_spare(graph, found or last, cost)
+        slim_total = sum(map(cost, slim))
+        if slim_total <= total:
+            best = slim if slim_total < total else best
+            last, total = slim, slim_total
     return best
 
 
