@@ -1,7 +1,7 @@
 """Proofs and bounds on small graphs: what is proved, by which cuts, and what is asked for it."""
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -477,6 +477,32 @@ def test_the_relaxation_gives_shares_and_its_basis() -> None:
     relaxation.add([3])
     assert relaxation.solve().value == 6.0
     assert Covering([]).solve() == Relaxed(0.0, [], [], [])
+
+
+def test_a_relaxation_is_stopped_on_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("foon_asp.bounds.relaxation._STEPS", 1)
+    asked: list[int] = []
+
+    def at(last: int) -> Callable[[], bool]:
+        def expired() -> bool:
+            asked.append(1)
+            return len(asked) >= last
+
+        return expired
+
+    def hexagon() -> Covering:
+        relaxation = Covering([1.0] * 6)
+        for a in range(6):
+            relaxation.add([a, (a + 1) % 6, (a + 2) % 6])
+        return relaxation
+
+    stopped = hexagon()
+    early = stopped.solve(at(2))
+    assert (len(asked), len(early.x), len(stopped.weights())) == (2, 6, 6)
+    whole = hexagon().solve(at(10**6))
+    assert len(asked) > 2
+    assert whole.value == pytest.approx(2.0)
+    assert hexagon().solve().value == pytest.approx(2.0)
 
 
 def test_a_row_that_nothing_covers_is_a_bug(capfd: pytest.CaptureFixture[str]) -> None:

@@ -1,6 +1,6 @@
 """The linear relaxation of hitting every landmark, in floats: where exact weights start from."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Final, NamedTuple
 
@@ -14,6 +14,7 @@ _OPTIONS: Final[dict[str, bool | str | float]] = {
     "primal_feasibility_tolerance": 1e-10,
     "dual_feasibility_tolerance": 1e-10,
 }
+_STEPS = 4000  # of the simplex algorithm: at most about a second, with thousands of columns and rows
 
 
 class Relaxed(NamedTuple):
@@ -61,12 +62,19 @@ class Covering:
         takes = self._array([-float(amount) for amount in amounts.values()])
         self._highs.addRow(-float(most), self._library.kHighsInf, len(amounts), columns, takes)
 
-    def solve(self) -> Relaxed:
-        """Find a basic optimum of the rows so far."""
+    def solve(self, expired: Callable[[], bool] | None = None) -> Relaxed:
+        """Find a basic optimum of the rows so far; or, where time is up by then, what there is by then.
+
+        ``expired`` is asked now and then.
+        """
         highs = self._highs
+        if expired is not None:
+            highs.setOptionValue("simplex_iteration_limit", _STEPS)
         highs.run()
         status = self._library.HighsModelStatus
-        if highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty}:
+        while highs.getModelStatus() == status.kIterationLimit and not (expired and expired()):
+            highs.run()
+        if highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty, status.kIterationLimit}:
             raise BugError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
         basis, solution = highs.getBasis(), highs.getSolution()
         basic = self._library.HighsBasisStatus.kBasic

@@ -99,7 +99,7 @@ class _Sharing:
             self._add(frozenset(objects), row)
         values: list[float] = []
         while True:
-            solved = self._covering.solve()
+            solved = self._covering.solve(expired)
             values.append(solved.value)
             lacks = enough / self._dearest - solved.value
             grown = values[-1] - values[-1 - _STALLED] if len(values) > _STALLED else math.inf
