@@ -168,8 +168,8 @@ class Watched(Covering):
         self.rows.append(list(row))
         super().add(row)
 
-    def solve(self) -> Relaxed:
-        self.solutions.append(super().solve())
+    def solve(self, expired: Callable[[], bool] | None = None) -> Relaxed:
+        self.solutions.append(super().solve(expired))
         return self.solutions[-1]
 
 
