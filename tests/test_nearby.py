@@ -285,6 +285,8 @@ def test_a_problem_of_a_store_reads_no_more_than_is_looked_at(tmp_path: Path) ->
     for _ in range(2):  # what the first read is no part of the second
         found = foon_asp.solve(problem)
         assert (found.status, len(found.problem.network) < len(SHORT + LONG)) == (Status.OPTIMAL, True)
+    for drawn in (foon_asp.draw(problem), foon_asp.draw(problem, units=[0])):
+        assert "boiled" in drawn.dot()
     assert "network" not in vars(problem)
     varied = problem.vary(without="water")
     assert foon_asp.solve(varied).costs == solve(replace(problem, kitchen=varied.kitchen)).costs

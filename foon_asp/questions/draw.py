@@ -6,6 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from foon_asp.dataset.nearby import shown
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
@@ -18,7 +19,7 @@ from foon_asp.questions.arguments import Constants, Objectives, chosen_objective
 from foon_asp.questions.caller import is_python
 from foon_asp.questions.contract import Kind, Option, Part, question, question_of
 from foon_asp.questions.options import CONTAINERS, GOALS, HOW, ITEMS, OBJECTIVES
-from foon_asp.questions.posing import Command, one_problem, the_data
+from foon_asp.questions.posing import Command, one_problem_or_nearby, the_data
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree, read_listed
 from foon_asp.report.dot import dot_text
@@ -149,7 +150,9 @@ def _posed(
     for option, flag in _FOR_THE_BEST.items():
         if command.given(option) and not solves:
             raise UserError(f"{flag} is for the best tree for a --goal; nothing is solved here")
-    return one_problem(command, goals_named, containers, **items) if goals_named else the_data(command)
+    if not goals_named:
+        return the_data(command)
+    return one_problem_or_nearby(command, goals_named, containers, **items)
 
 
 @question(
@@ -247,7 +250,8 @@ def _data(about: Problem | Foon, containers: str) -> tuple[Foon, Sequence[int], 
     """Give the data, the goals by id in the whole network, and the container rule."""
     if isinstance(about, Foon):
         return about, (), container_rule(containers)
-    goals = [about.network.object_number(goal) for goal in about.goals]
+    part = shown(about)
+    goals = [part.network.object_number(goal) for goal in part.goals]
     return Foon.of(about), goals, about.containers
 
 
@@ -277,16 +281,16 @@ def _given_tree(
 def _subgraph(data: Data, goal_ids: Iterable[int], unit_ids: tuple[int, ...]) -> Drawing:
     """Draw the units that are named, or else all."""
     network = data.network
-    shown = tuple(range(len(network)))
+    drawn = tuple(range(len(network)))
     if unit_ids:
-        shown = tuple(unit for unit in map(network.unit_of_number, unit_ids) if unit is not None)
+        drawn = tuple(unit for unit in map(network.unit_of_number, unit_ids) if unit is not None)
     if not unit_ids:
-        caption = [f"A network of {counted(len(shown), 'unit')}"]
-    elif len(shown) == 1:
-        file, line, *_ = network.sources[shown[0]][0]
+        caption = [f"A network of {counted(len(drawn), 'unit')}"]
+    elif len(drawn) == 1:
+        file, line, *_ = network.sources[drawn[0]][0]
         caption = [f"Functional unit {unit_ids[0]} ({Path(file).name}, line {line})"]
     else:
         caption = [f"Functional units {', '.join(map(str, unit_ids))}"]
-    units = [(network.unit_number(unit), network.unit(unit)) for unit in shown]
+    units = [(network.unit_number(unit), network.unit(unit)) for unit in drawn]
     objects = network.objects
     return draw_network(units, {objects[o] for o in data.kitchen}, {objects[o] for o in goal_ids}, caption)
