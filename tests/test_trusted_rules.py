@@ -58,6 +58,12 @@ def test_what_is_taken_on_trust_is_said_and_checked(cli: Cli, tmp_path: Path, te
     assert cli("verify", file, "--with-clingo", "--format", "json").json["trusted"]["checked"] is True
 
 
+def test_that_no_tree_keeps_to_rules_is_said_to_be_taken_on_trust(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "proof.json"
+    assert cli("certify", "--goal", "ice", "--rule", ":- unit(0).", "-o", file).code == 1
+    assert "; taken on trust: no tree keeps to them\n" in cli("verify", file).out
+
+
 def test_an_answer_that_rests_on_trust_is_not_called_certified(cli: Cli, tmp_path: Path) -> None:
     ran = cli(
         "solve", "--goal", "ice", "--rule", NO_CRUSHING, "--certificate", tmp_path / "p", "--format", "json"

@@ -217,8 +217,9 @@ def _on_trust(own: Rule, tree: tuple[int, ...] | None, how: str = "taken on trus
     names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in own["files"]]
     names += [*own["library"], *own["constants"]]
     removed = [used[0] for used, without in own["claims"] if len(used) == 1 and not without]
-    wanted = sum(not used for used, _ in own["claims"])
-    others = len(own["claims"]) - len(removed) - wanted
+    none = [[], []] in own["claims"]
+    wanted = sum(not used for used, _ in own["claims"]) - none
+    others = len(own["claims"]) - len(removed) - wanted - none
     limits = []
     for amounts, most in own["limits"]:
         units = [unit for each in amounts.values() for unit in each]
@@ -226,7 +227,8 @@ def _on_trust(own: Rule, tree: tuple[int, ...] | None, how: str = "taken on trus
             removed += units
         else:
             limits.append(_limited(sorted(units), most, [*amounts] == ["1"]))
-    said = [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
+    said = ["no tree keeps to them"] if none else []
+    said += [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
     said += [f"every tree has a unit of {wanted} {'set' if wanted == 1 else 'sets'}"] if wanted else []
     said += [f"{others} {'set breaks' if others == 1 else 'sets break'} a rule"] if others else []
     said += limits
