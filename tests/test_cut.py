@@ -134,3 +134,9 @@ def test_what_is_known_to_be_reachable_is_not_asked_again() -> None:
     assert Cutter(graph, [2]).hopeless is not None
     known = Cutter(graph, [2], reachable=bytearray([1, 1, 1]))
     assert (known.hopeless, known.actions) == (None, [0])
+
+
+def test_targets_that_are_kept_within_reach_are_not_cut_again() -> None:
+    cutter = Cutter(Hypergraph(3, [[], []], [[1], [2]], [0]), [1, 2])
+    assert cutter.cut([0], [1]) == Cut((2,), (1,))
+    assert cutter.cut([0], [0, 1]) == Cut((2,), (1,))

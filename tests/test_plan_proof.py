@@ -392,7 +392,14 @@ def test_weights_of_floats_are_rounded_or_those_of_the_basis() -> None:
     for x, least, exact in ((3.0, 3, 1), (3 - 2e-6, 3, 1), (3 - 4e-6, 3, 0), (1 - 1e-6, 1, 0)):
         basis = [{4: 1}] * exact
         assert made(1 / 3, [x, 0.0, 1.0, 0.0], None, least) == [{4: third}, {4: fine}, *basis]
-    prover._claim = prover._claim._replace(order=Lexicographic([[Fraction(1, 2)]]))  # of rates
+    nothing = Fraction(0)
+    pair, cost = Lexicographic([None, None]), (Fraction(1), nothing)
+    prover._claim = Claim(pair, [cost] * 2, (nothing, nothing), cost, 1, [])
+    prover._least = cost
+    found = prover._weights(model, Relaxation(once, [0.0] * 4 + [0.5], [0], [4]))
+    assert found == [{4: (Fraction(1, 2), nothing)}] * 2
+    prover._claim = claim_of([1, 1], 1)._replace(order=Lexicographic([[Fraction(1, 2)]]))  # of rates
+    prover._least = prover._claim.least
     rate = -math.log(0.5)
     found = prover._weights(model, Relaxation(once, [0.0, 0.0, 0.0, 0.0, rate * 0.75], [0], [4]))
     assert rounded(found)[:2] == [{4: Fraction(3, 4)}] * 2
