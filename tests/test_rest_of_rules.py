@@ -5,6 +5,8 @@ from collections import Counter
 from collections.abc import Collection
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -292,6 +294,45 @@ def test_cuts_of_sets_that_are_asked_for_are_not_shown() -> None:
     """They have no node that anybody could read."""
     problem = small("boil: start > end", "junk: start > x", "tidy: x > o")
     assert asked(problem, ':- not use(U) : motion(U,"tidy").').cuts == ((1,),)
+
+
+def test_what_rounding_hides_is_looked_for_among_loose_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    by, settings = (Objective.SUCCESS,), Settings((given_constraint(APART),))
+    problem = replace(LOOSE, rates=dict.fromkeys(LOOSE.network.motions, Fraction(1, 2)))
+    heard = _Heard(problem, by, Reporter())
+    solver = _Solver(prepare(problem, by, settings, assemble(settings, print), heard), by, heard, {}, "own. ")
+    before, files = solver.program, (Path("other.lp"),)
+    rounded: list[Objective | None] = [Objective.SUCCESS]
+    best = frozenset({2, 4}), True
+
+    def settle(_: _Solver, units: frozenset[int]) -> tuple[frozenset[int], bool]:
+        assert (solver.program.files, solver.rules, solver._loose) == (files, "own. more.", True)
+        assert units == {1}
+        return best
+
+    monkeypatch.setattr(_Solver, "_settle", settle)
+    measured: list[frozenset[int]] = []
+    monkeypatch.setattr(_Solver, "_measures_agree", lambda _, units, *__: measured.append(units))
+    monkeypatch.setattr(_Solver, "_scaled", lambda _: SimpleNamespace(rounded=rounded[0]))
+
+    def settled(known: set[int]) -> set[int] | None:
+        ended = solver._settled_with_loose_ends(Run(frozenset({1})), files, "more.", known)
+        assert (solver.program, solver.rules, solver._loose) == (before, "own. ", False)
+        return None if ended is None or ended.units is None else {*ended.units}
+
+    assert settled({1, 2, 4}) == {2, 4}
+    assert settled({1, 2}) is None  # the best has loose ends
+    best = frozenset({2, 4}), False
+    assert settled({1, 2, 4}) is None
+    rounded[0] = None
+    assert settled({1, 2, 4}) == {1}
+    assert measured == [{1}] * 4
+    monkeypatch.undo()
+    solver._look_at(range(17))
+    for loose in (True, False):  # nobody hears of trees with loose ends
+        solver._loose = loose
+        assert solver._run(solver.levels).units is not None
+        assert (heard.best is None) == loose
 
 
 def test_that_there_is_no_tree_is_looked_at_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -260,6 +260,8 @@ def test_a_tree_that_a_price_finds_when_time_is_up_is_not_lost(
     outcome = solver._within_limits(wide, first.tree)
     assert outcome is not None
     assert (outcome.status, outcome.units) == (Status.FEASIBLE, (0, 1, 7, 8, 9))
+    if units is not None:  # what cannot be better than the tree is looked at only where the tree has it
+        assert solver.first.units == tuple(sorted(units | {0, 1, 7, 8, 9}))
 
 
 # --- What prices are asked for, and what is made of what is told of them. Every unit costs 1.
