@@ -78,7 +78,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
     files: dict[Constraint, Loaded] = {}
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
-        # parsing takes some milliseconds, so it is left out where every file is ours
+        # parsing takes some milliseconds, so it is left out for what every file of ours agrees with
         from foon_asp.encoding import encoding  # noqa: PLC0415
         from foon_asp.rules import stating  # noqa: PLC0415
 
@@ -87,7 +87,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
 
             prepare()  # while files are parsed
 
-        parsed = [encoding.read_encoding(file) for file in base]
+        parsed = [encoding.read_encoding(file) for file in base if endless]
         asked = [encoding.read_encoding(file) for file in questions]
         files = stating.loaded(added)
         extra = [encoding.read_encoding(files[each]) for each in added]
@@ -96,7 +96,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         for message in encoding.unset_constants(extra, settings.constants):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
-        theirs = [*extra, *(each for file, each in zip(base, parsed, strict=True) if not is_own(file))]
+        theirs = [*extra, *(each for file, each in zip(base, parsed, strict=False) if not is_own(file))]
         looked_at = frozenset(signature for each in theirs for signature in each.used)
         named = frozenset(name for each in (*parsed, *extra) for name in each.constants)
         text = "\n".join(each.text for each in (*parsed, *asked, *extra))
