@@ -6,9 +6,9 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from foon_asp.dataset.names import changed_prices, changed_rates, item_id, listed, node_id, node_ids
-from foon_asp.dataset.nearby import shown
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -32,11 +32,13 @@ from foon_asp.problem import (
     first_places,
     unrated_text,
 )
-from foon_asp.proof.verify import Subject
 from foon_asp.text.data_folder import STARTING, Data, kitchen_item_warning, kitchen_nodes
 from foon_asp.text.goal_name import NodeNames, find_goal, listed_nodes, notation
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
+
+if TYPE_CHECKING:  # plain answers do not need it
+    from foon_asp.proof.verify import Subject
 
 
 def ask(
@@ -258,13 +260,15 @@ class Dataset:
         data, goals = dataset.part(_whole_goals(problem), tree=units)
         return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
 
-    def subject(self, everything: bool = True) -> Subject:
+    def subject(self, everything: bool = True) -> "Subject":
         """Give what a certificate speaks about; of a store, it may not be read, and its digests be trusted.
 
         Raises :class:`UserError` where ``everything`` is read of a store whose digests are not true.
         """
         data = self.data
         rates = None if self.unrated else data.rates
+        from foon_asp.proof.verify import Subject  # noqa: PLC0415 (few answers need it)
+
         return Subject(data.network, data.kitchen, rates, data.utensils, data.unit_prices)
 
     def named_goals(self, names: Names) -> tuple[int, ...]:
@@ -288,6 +292,8 @@ class Dataset:
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
         """Give the same data with the kitchen that a problem posed of it has."""
+        from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
+
         more, less = self.kitchen_changes(shown(problem))
         return self.varied(more, less, None) if more or less else self
 
@@ -350,6 +356,8 @@ def left_out(count: int) -> str:
 
 def _whole_goals(problem: Problem) -> tuple[int, ...]:
     """Give the goals of a problem by id in the whole network."""
+    from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
+
     problem = shown(problem)
     return tuple(problem.network.object_number(goal) for goal in problem.goals)
 

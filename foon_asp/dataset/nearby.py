@@ -3,11 +3,14 @@
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from foon_asp.network import Network, ObjectNode, UnitPrices
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof.verify import Subject
 from foon_asp.store.cone import Cone
+
+if TYPE_CHECKING:  # plain answers do not need it
+    from foon_asp.proof.verify import Subject
 
 FIRST = 1000
 """About as many units are read at first."""
@@ -25,7 +28,7 @@ class Nearby:
         cone: Cone,
         pose: Callable[[Cone], Problem],
         read_all: Callable[[], Problem],
-        subject: Callable[[], Subject],
+        subject: "Callable[[], Subject]",
     ) -> None:
         self._cone, self._pose, self._read_all, self.subject = cone, pose, read_all, subject
 

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.dataset.dataset import Dataset, ask, left_out
 from foon_asp.dataset.names import changed_prices, changed_rates
@@ -29,7 +29,6 @@ from foon_asp.problem import (
     unrated_remarks,
     unrated_text,
 )
-from foon_asp.proof.verify import Subject, digests
 from foon_asp.store.cone import Cone
 from foon_asp.store.store import Store
 from foon_asp.store.touched_network import TouchedNetwork
@@ -46,6 +45,9 @@ from foon_asp.text.label_list import read_labels
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.rate_table import read_rates
 from foon_asp.text.unit_price_list import read_unit_prices
+
+if TYPE_CHECKING:  # plain answers do not need it
+    from foon_asp.proof.verify import Subject
 
 
 def read_stored(files: DataFiles, level: int) -> Dataset:
@@ -213,7 +215,7 @@ class StoredDataset(Dataset):
         self.read_seconds += time.perf_counter() - began
         return data
 
-    def subject(self, everything: bool = True) -> Subject:
+    def subject(self, everything: bool = True) -> "Subject":
         """Give what a certificate speaks about: all of it, or what is read when it is looked at.
 
         Then the digests of the network and of what was imported beside it are those that the store states.
@@ -223,6 +225,8 @@ class StoredDataset(Dataset):
         own_prices = self._prices == _own_prices(self._store)
         rates = None if self.unrated else self.rates
         everything = everything or self._starting or not own_prices
+        from foon_asp.proof.verify import Subject  # noqa: PLC0415
+
         stated = self._true_digests() if everything else dict(self._store.digests)
         if self._at_hand != self._store.in_kitchen:
             del stated["kitchen"]
@@ -236,6 +240,8 @@ class StoredDataset(Dataset):
 
     def _true_digests(self) -> dict[str, str]:
         """Work out the digests that the store states, of all that is in it."""
+        from foon_asp.proof.verify import digests  # noqa: PLC0415 (few answers need it)
+
         store, (network, kitchen) = self._store, self._whole()
         found = digests(network, kitchen, None, (), self._prices_of(network, _own_prices(store)))
         for name, stated in store.digests.items():
