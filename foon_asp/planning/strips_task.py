@@ -1,7 +1,7 @@
 """A planning task without deletes: facts, and actions that need some and give others."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -60,7 +60,7 @@ class StripsTask:
                     action.place,
                 )
                 prices[action.name] = action.cost
-        network = builder.build().without([marked])
+        network = replace(builder.build().without([marked]), unit_numbers=())  # it is the whole of the task
         ids = {o: network.object_id(nodes[o]) for o in (*self.start, *self.goals)}
         return Problem(
             network,

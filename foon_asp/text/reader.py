@@ -371,11 +371,13 @@ class _FileReading:
                 if tell and self.start - untold >= _AHEAD:
                     tell(len(self.text[untold : self.start].encode()))
                     untold = self.start
-            untold -= self.start
+            if tell and self.start > untold:
+                tell(len(self.text[untold : self.start].encode()))
+            untold = 0
             more = self._read_more()
         yield self.text, number, True
-        if tell:
-            tell(len(self.text[max(untold, 0) :].encode()))
+        if tell and self.text:
+            tell(len(self.text.encode()))
 
     def _read_more(self) -> bool:
         """Leave out of the text what was read, and add what follows; whether anything does.
