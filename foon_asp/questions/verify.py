@@ -2,7 +2,7 @@
 
 from codecs import BOM_UTF8
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,7 +46,7 @@ class VerifiedCertificate(Result):
     """
 
     verified: proof.Verified
-    network: Network
+    network: Network = field(compare=False)  # the content has its digest
     content: Mapping[str, Any]
     with_clingo: bool = False
     starting_kitchen: tuple[int, ...] | None = None
