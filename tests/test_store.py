@@ -239,10 +239,11 @@ def test_an_import_that_remembers_little(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(numbering, "_LEAST", 1)
     import_files(find_data(KITCHEN), stores[1])
     assert_holds(stores[1], read_data(find_data(KITCHEN)))
-    one, other = (sqlite3.connect(store) for store in stores)
-    for table in Table:
-        rows = f"SELECT * FROM {table} ORDER BY number"
-        assert one.execute(rows).fetchall() == other.execute(rows).fetchall(), table
+    one, other = (contextlib.closing(sqlite3.connect(store)) for store in stores)
+    with one as ours, other as theirs:
+        for table in Table:
+            rows = f"SELECT * FROM {table} ORDER BY number"
+            assert ours.execute(rows).fetchall() == theirs.execute(rows).fetchall(), table
 
 
 @pytest.mark.parametrize("listed", [False, True])
