@@ -111,6 +111,7 @@ def test_results_of_other_data_are_refused(cli: Cli, questions: Path, tmp_path: 
     assert "was started for another question" in ran.err
 
 
+@pytest.mark.slow
 def test_rules_hold_for_all_questions(cli: Cli, questions: Path, tmp_path: Path) -> None:
     file = tmp_path / "a.jsonl"
     mine = tmp_path / "mine.lp"

@@ -166,6 +166,7 @@ JSON_VALUES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @steady
 @given(st.lists(JSON_VALUES), st.booleans())
 def test_json_is_laid_out_as_python_does_by_four(value: list[object], ascii_only: bool) -> None:

@@ -104,6 +104,7 @@ def at_level(problem: Problem, level: int) -> Problem:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", ContainerRule)
 @settings(deadline=None, derandomize=True, max_examples=60)
 @given(

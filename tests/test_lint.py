@@ -416,6 +416,7 @@ def test_a_missing_separator(tmp_path: Path, cli: Cli, text: str) -> None:
     assert f"c{end}//{end}" in file.read_bytes().decode()
 
 
+@pytest.mark.slow
 @steady
 @given(text=texts())
 def test_mending_changes_nothing_of_what_is_read(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:

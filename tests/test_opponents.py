@@ -173,6 +173,7 @@ def test_a_trial_that_takes_too_long_is_ended_with_all_it_started(tmp_path: Path
     assert not alive(noted)
 
 
+@pytest.mark.slow
 def test_a_trial_says_what_it_found_and_needed() -> None:
     def work(start: Callable[[], None]) -> dict[str, Any]:
         time.sleep(1.5)  # which is no part of what is timed

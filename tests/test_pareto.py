@@ -228,6 +228,7 @@ def test_rates_next_to_1_and_next_to_0_are_not_shown_as_either() -> None:
     assert success_text(Fraction(782, 1000)) == "0.782"
 
 
+@pytest.mark.slow
 def test_a_chart_has_all_points_and_lines_only_where_the_front_is_whole(tmp_path: Path) -> None:
     problem = macaroni()
     two = pareto(problem, (Objective.UNITS, Objective.SUCCESS))

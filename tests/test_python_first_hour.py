@@ -227,6 +227,7 @@ def test_a_token_ends_every_search(ask: str) -> None:
     assert seconds < LATE
 
 
+@pytest.mark.slow
 def test_a_token_ends_reading(foon: Foon) -> None:
     token = Cancel()
     token.cancel()

@@ -46,6 +46,7 @@ def matches(shown: str, printed: str) -> bool:
     return re.fullmatch(pattern, printed) is not None
 
 
+@pytest.mark.sampled(2)  # each second page by default, all among the slow tests
 @pytest.mark.parametrize("page", PAGES)
 def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
