@@ -120,6 +120,7 @@ def test_constraints_hold_for_alternatives(rule: ContainerRule) -> None:
         assert set(sets_of(found)) == set(expected)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
 def test_trees_that_differ_most(rule: ContainerRule) -> None:

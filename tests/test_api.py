@@ -614,6 +614,7 @@ def test_what_is_assumed_is_warned_of_where_the_caller_stands(tmp_path: Path) ->
     assert [Path(warning.filename).name for warning in caught] == ["test_api.py"]
 
 
+@pytest.mark.slow
 def test_nothing_is_printed(foon: Foon, capsys: pytest.CaptureFixture[str]) -> None:
     for goal in ("ice", "apple pie", "hot cocoa"):
         problem = foon.problem(goal)

@@ -148,6 +148,7 @@ def test_a_question_that_fails_is_a_row(cli: Cli, tmp_path: Path) -> None:
     assert cli("batch", tmp_path / "q.jsonl", "--results", tmp_path / "a.jsonl").code == 1
 
 
+@pytest.mark.slow
 def test_what_stands_for_many_goals(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "q.jsonl").write_text('{"goal": "@goals"}\n{"goal": "@makeable", "containers": "implied"}\n')
     ran = cli(
@@ -247,6 +248,7 @@ def test_one_question_never_ends_the_run(jobs: int) -> None:
     assert "a bug of foon-asp: ZeroDivisionError" in str(rows["break"]["error"])
 
 
+@pytest.mark.slow
 def test_a_killed_run_loses_and_repeats_nothing(tmp_path: Path) -> None:
     questions = tmp_path / "q.jsonl"
     questions.write_text('{"goal": "@goals", "objective": ["units", "success", "inputs", "kitchen"]}\n')

@@ -60,6 +60,7 @@ def files(folder: Path, seed: int, problem: Problem) -> tuple[list[Path], list[l
 @pytest.mark.parametrize(
     "seeds", [range(8040, 8075), pytest.param(range(8000, 8100), marks=pytest.mark.slow)]
 )
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
 def test_clashes_against_brute_force(rule: ContainerRule, seeds: range, tmp_path: Path) -> None:

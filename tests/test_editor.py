@@ -198,6 +198,7 @@ def codes(found: list[dict[str, Any]]) -> list[tuple[int, str]]:
     return [(each["range"]["start"]["line"], each["code"]) for each in found]
 
 
+@pytest.mark.slow
 def test_a_session_in_an_editor(client: LanguageClient, tmp_path: Path) -> None:
     (tmp_path / "kitchen.txt").write_text("O\tonion\nS\twhole\nO\tknife\n")
     (tmp_path / "foon-asp.toml").write_text('[tool.foon-asp.lint]\nignore = ["no-effect"]\n')

@@ -238,6 +238,7 @@ def test_what_it_does_it_does_elsewhere(packages: Packages) -> None:
     assert "no tree: foon-hostile 1.0 says that none executes, which is not checked" in said.stdout
 
 
+@pytest.mark.slow
 def test_a_search_without_an_end_is_ended(cli: Cli, packages: Packages) -> None:
     packages.install("foon-hostile", HOSTILE, {"endless": "endless", "none": "none"})
     began = time.monotonic()

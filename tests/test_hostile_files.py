@@ -64,6 +64,7 @@ def test_some_hostile_files(tmp_path: Path) -> None:
     assert endings.keys() == {"refused", "infeasible", "optimal"}
 
 
+@pytest.mark.slow
 def test_some_hostile_files_in_a_session(tmp_path: Path) -> None:
     endings = ask(some_hostile_files(len(our_names()) // 3, seed=2), tmp_path, sessions=True)
     assert endings.keys() == {"refused", "infeasible", "optimal"}

@@ -351,6 +351,7 @@ def said_by(file: Path) -> bytes:
 ENDLESS = "p(1..2000).  q(X,Y,Z) :- p(X), p(Y), p(Z).  :- q(1,1,1), not use(0), not use(1).\n"
 
 
+@pytest.mark.slow
 def test_endless_grounding_is_ended(tmp_path: Path) -> None:
     mine = tmp_path / "mine.lp"
     mine.write_text(ENDLESS)

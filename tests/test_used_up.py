@@ -80,6 +80,7 @@ def test_a_skipped_input_is_neither_asked_for_nor_used_up_nor_made() -> None:
     assert flow == ((0, 1), (0,), (2,))
 
 
+@pytest.mark.slow
 def test_the_figures_of_the_real_network(universal: Path) -> None:
     with pytest.warns(foon_asp.FoonWarning):
         foon = foon_asp.load(universal)

@@ -101,6 +101,7 @@ def closure(problem: Problem, at_hand: set[ObjectNode]) -> set[ObjectNode]:
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", list(ContainerRule))
 def test_roots_are_necessary_and_enough(rule: ContainerRule) -> None:
     explained = cycles = 0

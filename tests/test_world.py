@@ -332,6 +332,7 @@ def read_every_way(file: Path, text: str) -> None:
         read_certificate(text)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=150)
 @given(text=_texts)
 def test_whatever_json_says_it_is_read_or_refused(
