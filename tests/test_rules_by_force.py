@@ -12,11 +12,11 @@ from foon_asp.encoding.facts import write_facts
 from foon_asp.encoding.scales import Scales
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
-from foon_asp.problem import ContainerRule, Problem, reach
+from foon_asp.problem import ContainerRule, Contradiction, Problem, reach
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.lifted_program import stands_alone
 from foon_asp.rules.rule_kind import Kind
-from foon_asp.rules.rules import Contradiction, Rules
+from foon_asp.rules.rules import Rules
 from tests.random_problems import random_problem, random_steps
 from tests.random_rules import RandomRules
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
 CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
+_SMALL = 10_000  # units, to look through which takes less time than to import clingo
+
 GREATEST_WEIGHT = 1_000_000  # of a constraint that may be broken or dropped
 
 # Options that would change what an answer means, or whether it is a proof; the solver sets them itself.
@@ -134,6 +136,32 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         understood=understood,
         named=named,
     )
+
+
+def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
+    """Give the program of a small question whose rules are all ready-made constraints, without clingo.
+
+    ``None`` for other questions.
+    """
+    encodings = settings.replaced or settings.relaxed or settings.bounded or settings.session
+    if not settings.constraints or encodings or not settings.reductions:
+        return None
+    if len(problem.network) > _SMALL or problem.network.object_numbers or problem.items is not None:
+        return None
+    from foon_asp.rules import ready_made as known  # noqa: PLC0415 (only of use with constraints)
+
+    rules = known.ready_made(settings.constraints, settings.constants, problem)
+    if rules is None:
+        return None
+    plain = assemble(settings._replace(constraints=(), constants=()), warn)
+    constants = [word for setting in rules.constants.items() for word in ("-c", "=".join(setting))]
+    whole = plain._replace(
+        files=(*plain.files, *rules.files),
+        arguments=(*constants, *plain.arguments),
+        own=False,
+        looked_at=rules.looked_at,
+    )
+    return plain._replace(own=False, ready_made=rules, whole=whole)
 
 
 class ReachOfRules(Enum):

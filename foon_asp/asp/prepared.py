@@ -19,6 +19,7 @@ from foon_asp.reduce import NONE, Bounds, Listener, Reduced, Reduction, reduce
 if TYPE_CHECKING:  # often there is nothing left to ask clingo
     from foon_asp.encoding.scales import Scales
     from foon_asp.grounding.run import Run
+    from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
 
 
@@ -91,9 +92,11 @@ class Prepared:
 
         ``None`` where that is not known at a limit. Raises :class:`UserError` for what is wrong with a rule.
         """
+        program = self.asked or self.program
+        if program.ready_made is not None:
+            return program.ready_made.keeps(self.problem, units)
         from foon_asp.encoding.facts import write_given  # noqa: PLC0415
 
-        program = self.asked or self.program
         tree = replace(self, units=tuple(sorted(units)), program=program)
         numbers = list(map(self.problem.network.unit_number, tree.units))
         ended = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
@@ -101,7 +104,7 @@ class Prepared:
 
     def require_kept(self, units: Collection[int]) -> None:
         """Require that a tree keeps to rules that were applied beforehand, as far as they can be asked."""
-        rules = self.asked.understood if self.asked else None
+        rules = self.asked.added if self.asked else None
         if rules is not None and rules.local and not self.rest:
             kept = self.keeps(units)
             self.holds.require(
@@ -175,8 +178,8 @@ def prepare(
         if problem.measures:
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
-        if program.understood and settings.reductions and not for_sale:
-            first = _applied(first, program.understood)
+        if program.added and settings.reductions and not for_sale:
+            first = _applied(first, program.added)
         if first.contradicted:
             return first
         program, kept = first.program, first.kept or problem
@@ -208,7 +211,7 @@ def prepare(
         return replace(first, stopped=True)
 
 
-def _applied(first: Prepared, rules: "Rules") -> Prepared:
+def _applied(first: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user's rules as far as they say which units there are, or which sets are needed."""
     if rules.rest and not rules.local:
         return first

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from foon_asp.encoding.own_encodings import question_encoding
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
+    from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
 
 from foon_asp.grounding.stated import Loaded
@@ -24,7 +25,8 @@ class Program(NamedTuple):
     its grounding comes to an end. ``encodings`` is the folder whose encodings are used in place of ours.
     ``ours`` are the files but for those that the user added. ``understood`` are the rules that are added,
     looked into: ``None`` where there are none, where encodings are replaced, and where some of the rules may
-    be broken or dropped. ``named`` are the names of constants that files define.
+    be broken or dropped. ``named`` are the names of constants that files define. Where all rules are
+    ``ready_made`` constraints, clingo is asked the ``whole`` program.
     """
 
     files: tuple[Loaded, ...]
@@ -43,6 +45,13 @@ class Program(NamedTuple):
     ours: tuple[Path, ...] = ()
     understood: "Rules | None" = None
     named: frozenset[str] = frozenset()
+    ready_made: "ReadyMade | None" = None
+    whole: "Program | None" = None
+
+    @property
+    def added(self) -> "Rules | ReadyMade | None":
+        """What is known of the rules that are added."""
+        return self.ready_made or self.understood
 
     @property
     def settled(self) -> "Program":
@@ -57,4 +66,6 @@ class Program(NamedTuple):
             open=False,
             endless=False,
             understood=None,
+            ready_made=None,
+            whole=None,
         )

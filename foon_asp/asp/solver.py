@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.assembly import assemble
+from foon_asp.asp.assembly import assemble, ready_made
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.settings import Settings
@@ -88,7 +88,7 @@ def solve(
     options, and where ``success`` is asked for and no rates are known.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
-    program = assemble(settings, reporter.warning)
+    program = ready_made(problem, settings, reporter.warning) or assemble(settings, reporter.warning)
     began = time.perf_counter()
     heard = _Heard(problem, objectives, reporter)
     first = prepare(problem, objectives, settings, program, heard)
@@ -207,8 +207,8 @@ class _Solver:
 
         asked = self.first.asked
         assert asked is not None
-        assert asked.understood is not None
-        for counts, most in asked.understood.counted(self.problem):
+        assert asked.added is not None
+        for counts, most in asked.added.counted(self.problem):
             if sum(map(counts, tree)) <= most:
                 continue
             try:
@@ -264,6 +264,7 @@ class _Solver:
         """
         from foon_asp.encoding.facts import write_known, write_objectives, write_required  # noqa: PLC0415
 
+        self._ask_clingo()
         program, number = self.program, self.problem.network.unit_number
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
         sets = wide.landmarks()
@@ -312,6 +313,12 @@ class _Solver:
             self.program, self.rules, self._loose = program, rules, False
         ended.units = best
         return ended if proved and best <= set(known) else None
+
+    def _ask_clingo(self) -> None:
+        """Have the program as a whole from now on."""
+        if self.program.whole is not None:
+            self.program = self.program.whole
+            self.first = replace(self.first, program=self.program)
 
     def _look_at(self, units: Collection[int]) -> None:
         """Search among these units from now on."""
@@ -394,6 +401,7 @@ class _Solver:
             if not self._loose:
                 self.heard.tree(self._ids(units))
 
+        self._ask_clingo()
         try:
             if (
                 self.first.settings.session is not None

@@ -11,16 +11,15 @@ from foon_asp.asp import Settings
 from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.problem import Problem
-from foon_asp.proof.constraint import LIBRARY, OWN, Question, Rule, meaning
+from foon_asp.proof.constraint import LIBRARY, OWN, Rule, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.proof.verify import canonical
 from foon_asp.rules.constraint import Constraint, LibraryUse, RuleText, find_constraint
+from foon_asp.rules.ready_made import LISTED, question_of
 
 if TYPE_CHECKING:  # clingo
     from foon_asp.certificate.own_limits import OwnLimits
 
-# Values that are listed in facts, of a file of the user's as well: the constant that gives one, if one does.
-_LISTED = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _FACT = re.compile(rf"(\w+)\(({_TEXT.pattern}(?:;{_TEXT.pattern})*)\)\.")
 _UNSET = frozenset(("", '""', "#sup", "#inf"))
@@ -45,7 +44,7 @@ class Coverage(NamedTuple):
 
     def ruled(self, problem: Problem) -> Ruled:
         """Give what the rules add to the network of a problem."""
-        asked, nodes = _question(problem), len(problem.network.objects)
+        asked, nodes = question_of(problem), len(problem.network.objects)
         return Ruled([meaning(rule, asked) for rule in self.rules], nodes, len(problem.network) + nodes)
 
     def forbids(self, problem: Problem) -> frozenset[int]:
@@ -58,21 +57,6 @@ class Coverage(NamedTuple):
 
 
 NOTHING = Coverage()  # no constraints at all
-
-
-def _question(problem: Problem) -> Question:
-    """Give what constraints look at of a problem."""
-    seen = problem.as_seen or problem
-    return Question(
-        problem.network,
-        problem.kitchen,
-        problem.goals,
-        problem.utensils,
-        lambda unit: None if seen.rates is None else seen.rate(unit),
-        problem.prices.__getitem__,
-        lambda unit: frozenset(problem.needs[unit]),
-        lambda unit: frozenset(problem.gives[unit]),
-    )
 
 
 def coverage(settings: Settings) -> Coverage:
@@ -93,10 +77,10 @@ def coverage(settings: Settings) -> Coverage:
         else:
             others.append(each)
     read = {name for stem, _ in uses for name in LIBRARY[stem].values}
-    facts: dict[str, set[str]] = {name: set() for name in _LISTED if name in read}
+    facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read}
     for stem, given in uses:  # what one use lists, the others read
         for name in facts.keys() & LIBRARY[stem].values.keys():
-            facts[name] |= {_text(given.get(_LISTED[name], ""))} - {""}
+            facts[name] |= {_text(given.get(LISTED[name], ""))} - {""}
     if "heats" in facts:  # which begins with motions of ours
         facts["heats"] |= _facts(find_constraint(Path("never_heated")), among_others=True)["heats"]
     named: list[str] = []
@@ -118,7 +102,7 @@ def coverage(settings: Settings) -> Coverage:
             rule = {"rule": stem, **values}
             rules[canonical(rule)] = rule
     taken = {
-        _LISTED.get(name, name) for stem, given in uses if given is constants for name in LIBRARY[stem].values
+        LISTED.get(name, name) for stem, given in uses if given is constants for name in LIBRARY[stem].values
     }
     if settings.replaced is not None:
         named.append(f"encodings {settings.replaced.name}")

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import overload
+from typing import NamedTuple, overload
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -24,6 +24,10 @@ class Restriction:
     def makers(self, makers: Sequence[tuple[int, ...]]) -> Sequence[tuple[int, ...]]:
         """Give the units left that make each object node, and then those left of each required set."""
         return Left((*makers, *(tuple(sorted(units)) for units in self.required)), self.removed)
+
+
+class Contradiction(NamedTuple):
+    """That no tree keeps to the rules, found before any search."""
 
 
 class Left(Sequence[tuple[int, ...]]):

@@ -17,7 +17,7 @@ from foon_asp.errors import UserError
 from foon_asp.grounding.run import Run
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
-from foon_asp.problem import Problem, Restriction, reach
+from foon_asp.problem import Contradiction, Problem, Restriction, reach
 from foon_asp.rules.clause import Clause, Signature, literals, written
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.flat_answers import FlatAnswers
@@ -28,10 +28,6 @@ from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
 _DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}
 _SHRINKING = _DELETING | {Kind.SHRINKING}
-
-
-class Contradiction(NamedTuple):
-    """That no tree keeps to the rules, found before any search."""
 
 
 class Told(NamedTuple):

@@ -1,0 +1,167 @@
+"""Ready-made constraints understood without clingo.
+
+Importing clingo, parsing a constraint and asking about a tree takes as long as all the rest of a small
+question. What these constraints say is known: it is what certificates are checked by.
+"""
+
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final
+
+from foon_asp.deadline import Deadline
+from foon_asp.encoding.encoding_file import LARGEST
+from foon_asp.encoding.facts import hundredths
+from foon_asp.encoding.own_encodings import is_own
+from foon_asp.errors import UserError
+from foon_asp.problem import Contradiction, Problem, Restriction
+from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, meaning
+from foon_asp.proof.ruled import Ruled
+from foon_asp.resources import encodings_folder
+from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
+
+# Values that are listed in facts, of a file of the user's as well: the constant that gives one, if one does.
+LISTED: Final = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
+_PRICE = ("price", 2)
+
+# What those that may have to be asked of clingo look at, but for prices.
+READ: Final = frozenset({("motion", 2), ("input", 2), ("output", 2), ("label", 2), ("utensil", 1)})
+_HEATS = re.compile(r'heats\("([^"\\]*)"\)\.')
+_NUMBER = re.compile(r"-?(0|[1-9]\d{0,9})", re.ASCII)
+_TEXT = re.compile(r'("?)([^"\\]+)\1')
+_WITH_REST = {"before", "not_both_motions", *(name for name in LIBRARY if name.startswith("at_most"))}
+
+
+class ReadyMade:
+    """Ready-made constraints of one question, by what a certificate says of them.
+
+    They see no further than a tree, and none asks for units that lead to no goal but by sets of which it
+    requires one. ``rest`` says that some do more than to remove and to require units: then a tree that keeps
+    to them still does when units are left out. ``constants`` are those of all
+    of them, as terms, and ``files`` are theirs.
+    """
+
+    local: Final = True
+    spare: Final = False
+
+    def __init__(self, rules: Sequence[Rule], constants: Mapping[str, str], files: Sequence[Path]) -> None:
+        self.rules, self.constants, self.files = tuple(rules), constants, tuple(files)
+        self.rest = any(rule["rule"] in _WITH_REST for rule in rules)
+        self._last: tuple[Problem, tuple[Meaning, ...], Ruled] | None = None
+
+    @property
+    def looked_at(self) -> frozenset[tuple[str, int]]:
+        """The facts that those look at which may have to be asked of clingo, beside what ours always do."""
+        return READ | {_PRICE} if "max_price" in self.constants else READ
+
+    def applied(self, problem: Problem, deadline: Deadline | None = None) -> Restriction | Contradiction:
+        """Say what is left of a problem under what these remove and require."""
+        meanings, _ = self._said(problem)
+        # what is needed by a unit of the last set is made by one of the others, as the tree executes
+        required = tuple(
+            frozenset().union(*(sets[-1] for sets in alternatives))
+            for each in meanings
+            for alternatives in each.wanted
+        )
+        if any(each.never for each in meanings) or not all(required):
+            return Contradiction()
+        removed: frozenset[int] = frozenset().union(*(each.removed for each in meanings))
+        return Restriction(removed.__contains__, required)
+
+    def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], bool], int]]:
+        """Give which units are counted, one each, and how many of them a tree has at most."""
+        for each in self._said(problem)[0]:
+            if each.most is not None and all(len(units) == 1 == amount for units, amount in each.things):
+                units = frozenset().union(*(units for units, _ in each.things))
+                yield units.__contains__, int(each.most)
+
+    def keeps(self, problem: Problem, units: Collection[int]) -> bool:
+        """Whether a tree keeps to all of them."""
+        _, ruled = self._said(problem)
+        tree = frozenset(units)
+        return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
+
+    def _said(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
+        if self._last is None or self._last[0] is not problem:
+            asked, nodes = question_of(problem), len(problem.network.objects)
+            meanings = tuple(meaning(rule, asked) for rule in self.rules)
+            self._last = problem, meanings, Ruled(meanings, nodes, len(problem.network) + nodes)
+        return self._last[1:]
+
+
+def ready_made(
+    constraints: Sequence[Constraint], settings: Sequence[str], problem: Problem
+) -> ReadyMade | None:
+    """Understand constraints that are all ready-made, unchanged, and asked for once, with all constants set.
+
+    ``settings`` set constants as ``NAME=VALUE`` for those that have none of their own. ``None`` for any other
+    constraints, and for values and prices that need a closer look.
+    """
+    shared = dict(setting.partition("=")[::2] for setting in settings)
+    files: list[Path] = []
+    uses: list[tuple[str, dict[str, str]]] = []
+    with suppress(UserError):
+        for each in dict.fromkeys(map(find_constraint, constraints)):
+            file = each.file if isinstance(each, LibraryUse) else each
+            if not isinstance(file, Path) or file.stem not in LIBRARY or not is_own(file):
+                return None
+            files.append(file)
+            uses.append((file.stem, each.constants if isinstance(each, LibraryUse) else shared))
+        if "at_most_price" in dict(uses):
+            hundredths(problem, range(len(problem.network)), [_PRICE])
+        rules = _values(uses, shared)
+        return None if rules is None or len(set(files)) < len(files) else ReadyMade(*rules, files)
+    return None
+
+
+def _values(
+    uses: Sequence[tuple[str, Mapping[str, str]]], shared: Mapping[str, str]
+) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
+    """Give constraints with their values, and all constants as terms; ``None`` where one is not plain."""
+    facts: dict[str, set[str]] = {name: set() for name in LISTED}
+    constants: dict[str, str] = {}
+    taken: set[str] = set()
+    rules: list[dict[str, Any]] = []
+    for name, given in uses:
+        rule: dict[str, Any] = {"rule": name}
+        read = {LISTED.get(value, value): (value, kind) for value, kind in LIBRARY[name].values.items()}
+        read.pop("", None)
+        if given is not shared and given.keys() != read.keys():
+            return None
+        for constant, (value, kind) in read.items():
+            written = given.get(constant, "")
+            found = _NUMBER.fullmatch(written) if kind is int else _TEXT.fullmatch(written)
+            if found is None or not written.isprintable() or (kind is int and abs(int(written)) > LARGEST):
+                return None
+            taken.update({constant} if given is shared else ())
+            constants[constant] = written if kind is int else f'"{found[2]}"'
+            if kind is list:
+                facts[value].add(found[2])
+            else:
+                rule[value] = int(written) if kind is int else found[2]
+        rules.append(rule)
+    if any("heats" in LIBRARY[name].values for name, _ in uses):
+        lines = (encodings_folder() / "constraints" / "never_heated.lp").read_text("utf-8").splitlines()
+        said = "\n".join(line for line in lines if not line.startswith("%"))
+        facts["heats"].update(_HEATS.findall(said))
+    for rule in rules:  # what one use lists, the others read
+        rule.update(
+            (value, sorted(facts[value])) for value, k in LIBRARY[rule["rule"]].values.items() if k is list
+        )
+    return (rules, constants) if shared.keys() <= taken else None
+
+
+def question_of(problem: Problem) -> Question:
+    """Give what constraints look at of a problem."""
+    seen = problem.as_seen or problem
+    return Question(
+        problem.network,
+        problem.kitchen,
+        problem.goals,
+        problem.utensils,
+        lambda unit: None if seen.rates is None else seen.rate(unit),
+        problem.prices.__getitem__,
+        lambda unit: frozenset(problem.needs[unit]),
+        lambda unit: frozenset(problem.gives[unit]),
+    )
