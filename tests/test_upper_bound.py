@@ -1,14 +1,15 @@
 """Trees found fast: nothing in them can be left out, and a better one is taken where one is found."""
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import pytest
 
 from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
-from foon_asp.reduce.upper_bound import following, improved, replaceable, varied, without_spare
+from foon_asp.reduce.support import Support
+from foon_asp.reduce.upper_bound import following, improved, varied, without_spare
 from tests.plain_graphs import executes, plain, random_graph
 
 
@@ -30,42 +31,117 @@ def solvable(seeds: range) -> Iterator[tuple[Graph, dict[int, int], list[int]]]:
     assert met > len(seeds) // 3
 
 
+def sharing(seeds: range) -> Iterator[tuple[Graph, dict[int, int], list[int]]]:
+    """Give the same of graphs whose actions give much, so that cheap ways to make things have spare ones."""
+    for seed in seeds:
+        rng = random.Random(f"sharing {seed}")
+        actions = [
+            (rng.sample(range(12), rng.choice((0, 1, 2))), rng.sample(range(12), 3)) for _ in range(20)
+        ]
+        graph = plain(actions, rng.sample(range(1, 12), 6), [0])
+        price = {a: rng.randint(0, 6) for a in range(20)}
+        made = derive(graph, range(20), price, added=False)
+        if made.tree(graph, graph.goals):
+            yield graph, price, list(made.before)
+
+
 def test_nothing_more_can_be_left_out_of_a_tree() -> None:
-    for graph, price, able in solvable(range(60)):
+    for graph, price, able in (*solvable(range(60)), *sharing(range(60))):
         tree = without_spare(graph, able, price.__getitem__)
         assert executes(graph, tree)
         made = (derive(graph, tree - {a}, price, added=True) for a in tree)
         assert all(each.tree(graph, graph.goals) is None for each in made)
 
 
+# the goals 1, 2 and 3: 1 of 0 or 1, 2 of 1 or 2, and 3 of 2 alone; 1 needs what 3 gives
+CHAIN = plain([([], [1]), ([4], [1, 2]), ([], [2, 3]), ([0], [4])], [1, 2, 3], [0])
+
+
 @pytest.mark.parametrize(
     ("prices", "expected"),
     [
-        ([2, 3, 1, 1], {0, 3}),  # the dear one of two goes, and what only it needs
-        ([3, 2, 1, 1], {1, 2, 3}),
-        ([2, 2, 1, 1], {1, 2, 3}),  # the first of those that cost the same
+        ([1, 2, 9, 1], {0, 2}),  # the dear one of two goes, and what only it needs
+        ([3, 2, 9, 1], {1, 2, 3}),
+        ([2, 2, 9, 0], {1, 2, 3}),  # the first of those that cost the same
+        ([2, 2, 3, 1], {0, 2}),  # which 1 gives as cheaply as 2 is not asked for of both
     ],
 )
 def test_dear_ones_go_first(prices: list[int], expected: set[int]) -> None:
-    graph = plain([([0], [1]), ([2], [1]), ([0], [2]), ([1], [3])], [3], [0])
-    assert replaceable(graph, range(4), prices.__getitem__) == sorted([0, 1], key=lambda a: (-prices[a], a))
-    assert without_spare(graph, range(4), prices.__getitem__) == expected
+    support = Support(CHAIN, range(4), prices.__getitem__)
+    assert support.left == ({0, 1, 2, 3} if prices[2] > 3 else {0, 2})
+    assert [a for a in sorted(support.left) if support.replaceable(a)] == ([0, 1] if prices[2] > 3 else [])
+    assert without_spare(CHAIN, range(4), prices.__getitem__) == expected
 
 
-def test_what_is_of_no_use_is_replaceable_and_what_alone_gives_something_in_use_is_not() -> None:
+def test_what_is_of_no_use_goes_at_once_and_what_alone_gives_something_in_use_is_not_replaceable() -> None:
     # 1 gives what nobody needs, 2 the start, 3 alone gives 4, of which it gives 5 besides as 4 does
     graph = plain([([0], [1]), ([0], [2]), ([0], [0]), ([1], [4, 5]), ([0], [5]), ([4, 5], [6])], [6], [0])
-    assert replaceable(graph, range(6), lambda _: 1) == [1, 2, 4]
-    assert replaceable(graph, [0, 3, 4, 5], lambda _: 1) == [4]
-    assert replaceable(graph, [0, 3, 5], lambda _: 1) == []
-    assert without_spare(graph, range(6), lambda _: 1) == {0, 3, 5}
-    assert replaceable(graph, [], lambda _: 1) == []
+    support = Support(graph, range(6), lambda _: 1)
+    assert support.left == {0, 3, 4, 5}
+    assert [a for a in range(6) if a in support.left and support.replaceable(a)] == [4]
+    assert support.leave_out(3) is None
+    assert support.leave_out(4) == set()  # 3 gives 5 as before
+    assert support.left == without_spare(graph, range(6), lambda _: 1) == {0, 3, 5}
+
+
+def test_what_makes_itself_in_a_circle_supports_nothing() -> None:
+    # 1 and 2 come of each other and of 0; without that, they are still given, and of nothing
+    graph = plain([([0], [1]), ([1], [2]), ([2], [1]), ([2], [3])], [3], [0])
+    support = Support(graph, range(4), lambda _: 1)
+    assert support.left == {0, 1, 3}  # 2 does nothing for the goal
+    circle = plain([([0], [1, 4]), ([1], [2, 5]), ([2], [1, 6]), ([2], [3])], [3, 4, 5, 6], [0])
+    support = Support(circle, range(4), lambda _: 1)
+    assert support.left == {0, 1, 2, 3}
+    assert [support.leave_out(a) for a in range(4)] == [None] * 4
+
+
+def test_left_out_step_by_step_a_tree_stays_one_with_the_cheapest_ways() -> None:
+    kept = gone = circular = 0
+    for number, (graph, price, able) in enumerate((*solvable(range(80)), *sharing(range(80)))):
+        support = Support(graph, able, price.__getitem__)
+        order = sorted(support.left)
+        random.Random(number).shuffle(order)
+        for action in order:
+            before = set(support.left)
+            if action not in before:
+                continue
+            spare = [a for a in before if makes(graph, before - {a})]
+            assert not spare or any(map(support.replaceable, spare))
+            used = in_use(graph, before)
+            others = {o for a in before - {action} for o in graph.gives[a]}
+            replaceable = used.intersection(graph.gives[action]) <= others
+            assert support.replaceable(action) == replaceable
+            freed = support.leave_out(action)
+            if action not in spare:
+                assert freed is None
+                assert support.left == before
+                kept += 1
+                circular += replaceable
+            else:
+                assert freed is not None
+                assert support.left <= before - {action}
+                # these alone may have become replaceable
+                unused = used - in_use(graph, support.left)
+                assert freed == {a for a in support.left if unused.intersection(graph.gives[a])}
+                gone += 1
+            assert executes(graph, support.left)
+            ways = derive(graph, support.left, price, added=True)
+            assert all(support.figure[o] == ways.cost[o] for o in in_use(graph, support.left))
+        assert all(support.leave_out(a) is None for a in order if a in support.left)
+    assert min(kept, gone, circular) > 10
+
+
+def makes(graph: Graph, actions: Iterable[int]) -> bool:
+    return derive(graph, [*actions], lambda _: 1, added=True).tree(graph, graph.goals) is not None
+
+
+def in_use(graph: Graph, actions: Iterable[int]) -> set[int]:
+    return {*graph.goals}.union(*(graph.needs[a] for a in actions)) - graph.start
 
 
 def test_what_is_needed_after_all_stays() -> None:
     # either of 0 and 1 gives 1, but 1 needs 2, which comes of 1
     graph = plain([([0], [1]), ([2], [1, 3]), ([1], [2, 3])], [3], [0])
-    assert replaceable(graph, range(3), [9, 5, 1].__getitem__) == [0, 1]
     assert without_spare(graph, range(3), [9, 5, 1].__getitem__) == {0, 2}
 
 
@@ -244,7 +320,7 @@ def test_chance_leads_where_no_estimate_does() -> None:
 
 def test_what_chance_leads_to_is_a_tree_and_no_dearer() -> None:
     cheaper = 0
-    for graph, price, able in solvable(range(60)):
+    for graph, price, able in (*solvable(range(60)), *sharing(range(20))):
         tree = without_spare(graph, able, lambda _: 1)  # not by what they cost
         better = varied(graph, able, tree, price.__getitem__, never)
         total, least = (sum(map(price.__getitem__, some)) for some in (tree, better))

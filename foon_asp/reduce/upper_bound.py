@@ -1,11 +1,13 @@
 """Trees that are good, found fast, with nothing in them that can be left out."""
 
 import random
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection
+from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
+from foon_asp.reduce.support import Support
 
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.bounds.shared_costs import SharedCosts
@@ -14,37 +16,24 @@ _FINE = 1000  # steps of shares, and of costs that vary, that the estimates tell
 _TRIES = 40  # trees that chance leads to
 
 
-def without_spare(graph: Graph, tree: Iterable[int], cost: Callable[[int], int]) -> set[int]:
+def without_spare(graph: Graph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Leave out actions one by one, dear ones first, as long as the others still make the goals.
 
-    All of the actions can run.
+    All of the actions can run. What the cheapest ways to make the goals do not have goes first.
     """
-    left = set(tree)
+    support = Support(graph, tree, cost)
+    waiting = [(-cost(action), action) for action in support.left]
+    heapify(waiting)
     needed: set[int] = set()  # and needed in every smaller tree as well
-    while spare := [a for a in replaceable(graph, left, cost) if a not in needed]:
-        smaller = derive(graph, left - {spare[0]}, cost, added=True).tree(graph, graph.goals)
-        if smaller is None:
-            needed.add(spare[0])
-        else:
-            left = smaller
-    return left
-
-
-def replaceable(graph: Graph, tree: Collection[int], cost: Callable[[int], int]) -> list[int]:
-    """Give the actions, dear ones first, all of whose outputs in use another action of the tree gives, too.
-
-    As long as an action can be left out there is one among these: the last, in an order that executes, of
-    those that would not run without it or be of use.
-    """
-    makers: dict[int, int] = {}
-    for action in tree:
-        for o in graph.gives[action]:
-            makers[o] = makers.get(o, 0) + 1
-    used = set(graph.goals).union(*(graph.needs[action] for action in tree)) - graph.start
-    return sorted(
-        (a for a in tree if all(makers[o] > 1 for o in graph.gives[a] if o in used)),
-        key=lambda a: (-cost(a), a),
-    )
+    while waiting:
+        _, action = heappop(waiting)
+        if action in support.left and action not in needed and support.replaceable(action):
+            freed = support.leave_out(action)
+            if freed is None:
+                needed.add(action)
+            for other in freed or ():  # it may not have been replaceable before
+                heappush(waiting, (-cost(other), other))
+    return support.left
 
 
 def following(
