@@ -293,3 +293,8 @@ def test_different_trees_are_grouped_by_where_they_part(cli: Cli) -> None:
             for place in way["trees"]:
                 ids = {unit["id"] for unit in found["trees"][place]["units"]}
                 assert ids >= {unit["id"] for unit in way["made_by"]}
+
+
+def test_one_tree_is_counted_as_one(cli: Cli) -> None:
+    said = cli("alternatives", "--goal", "macaroni", "--different", "3").out
+    assert "\nthere is 1 tree and no more (strict containers)\n" in said

@@ -391,3 +391,23 @@ def test_a_bug_of_ours_exits_with_70(cli: Cli, data: Path, monkeypatch: pytest.M
     assert "foon-asp has a bug: ZeroDivisionError: oops" in ran.err
     assert "Traceback" not in ran.err
     assert "Traceback" in cli("solve", "--data", data, "--debug").err
+
+
+def test_without_a_verb_the_help_is_shown(cli: Cli) -> None:
+    ran = cli()
+    assert ran.code == 2
+    assert ran.err == cli("--help").out
+    assert "\nSolve:\n  solve " in ran.err
+
+
+def test_a_missing_word_is_named_with_its_choices(cli: Cli) -> None:
+    ran = cli("search", "--goal", "ice")
+    assert (
+        ran.code,
+        ran.err.splitlines()[-1].endswith("Choose from: bfs, dfs, ids, greedy-success, greedy-inputs"),
+    ) == (2, True)
+
+
+def test_a_certificate_that_is_not_there(cli: Cli, tmp_path: Path) -> None:
+    ran = cli("verify", tmp_path / "none.json")
+    assert ran.err == f"error: {tmp_path / 'none.json'}: cannot be read: No such file or directory\n"

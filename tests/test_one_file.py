@@ -128,6 +128,19 @@ def test_what_cannot_be_made_from_it_is_said(cli: Cli, tmp_path: Path) -> None:
     assert cli("solve", tmp_path / "sourdough.txt", "--goal", "starter; fresh").code == 0
 
 
+def test_of_a_long_cycle_the_beginning_is_named(cli: Cli, tmp_path: Path) -> None:
+    states = ["fed", "risen", "stirred", "cold", "warm", "sour"]
+    units = [
+        f"O\tstarter\nS\t{a}\nM\twait\nO\tstarter\nS\t{b}\n//\n"
+        for a, b in zip(states, [*states[1:], states[0]], strict=True)
+    ]
+    (tmp_path / "loop.txt").write_text("//\n" + "".join(units), encoding="utf-8")
+    ran = cli("solve", tmp_path / "loop.txt", "--goal", "starter; fed")
+    [cause] = [line for line in ran.out.splitlines() if line.startswith("the cause")]
+    assert cause.count("and that only from") == 2
+    assert cause.endswith("and so on: 6 object nodes wait for each other")
+
+
 def test_an_empty_kitchen_is_empty(cli: Cli, recipe: Path) -> None:
     kitchen = recipe.with_name("none.json")
     kitchen.write_text("[]", encoding="utf-8")

@@ -59,7 +59,7 @@ def test_a_long_search_tells_what_is_left(monkeypatch: pytest.MonkeyPatch) -> No
     assert tree is not None
     monkeypatch.setattr(time, "monotonic", lambda: 100.0)
     shown = progress.Progress(Deadline(60))
-    assert shown.line(102.0).startswith("no tree yet  |  no bound yet  |  2 s, at most 60 s left")
+    assert shown.line(102.0).startswith("nothing found yet  |  2 s, at most 60 s left")
     shown.tree(tree)
     shown.bound(Objective.UNITS, 3)
     assert (

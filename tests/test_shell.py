@@ -219,6 +219,10 @@ def test_other_questions_take_what_stands(shell: Cli, cli: Cli) -> None:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
+        (
+            "items used-up",
+            "it is an option, for one line only: solve --items used-up",
+        ),
         ("slove", "found 'slove', expected a word of the session or a question; did you mean solve?"),
         ("obj units", "did you mean objective?"),
         ("goal panckae", "no object node has the label 'panckae'"),

@@ -125,10 +125,17 @@ def _ended(error: BaseException, debug: bool) -> ExitCode:
 
 
 def _usage(error: click.ClickException) -> str:
-    """Give click's complaint about a command, with the words quoted."""
+    """Give click's complaint about a command, with the words quoted; without a verb, the help."""
+    if isinstance(error, click.exceptions.NoArgsIsHelpError):
+        return error.format_message()
     lines = []
     if isinstance(error, click.UsageError) and error.ctx is not None:
         lines = [error.ctx.get_usage()]
         if error.ctx.command.get_help_option(error.ctx) is not None:
             lines.append(f"Try '{error.ctx.command_path} {error.ctx.help_option_names[0]}' for help.\n")
-    return "\n".join([*lines, f"Error: {escaped(error.format_message())}"])
+    message = error.format_message()
+    if isinstance(
+        error, click.MissingParameter
+    ):  # its choices are listed in lines, and no word of the user is in it
+        message = " ".join(message.split())
+    return "\n".join([*lines, f"Error: {escaped(message)}"])

@@ -13,6 +13,8 @@ from foon_asp.escapes import encodable, escaped_lines, forget_line_ends
 if TYPE_CHECKING:
     from rich.console import Console
 
+_SIGNS = {"→": "->", "≈": "~", "×": "x", "─": "-", "†": "+"}
+
 
 class SafeStream:
     """A stream of text that escapes what a terminal or a log would hide or obey.
@@ -127,11 +129,19 @@ def console(err: bool = False) -> "Console":
 def fitted(text: Callable[[], str]) -> str:
     """Give a text as wide as the terminal that it is printed on; anywhere else, its width is free."""
     if not sys.stdout.isatty():
-        return text()
+        return with_plain_signs(text())
     from foon_asp.report.stacked import folded, room
 
     with room(shutil.get_terminal_size().columns):
-        return folded(text())
+        return with_plain_signs(folded(text()))
+
+
+def with_plain_signs(text: str) -> str:
+    """Give a text for people with ASCII for those of our signs that its output does not have."""
+    encoding = getattr(getattr(sys.stdout, "stream", sys.stdout), "encoding", None) or "utf-8"
+    return text.translate(
+        {ord(sign): ascii_ for sign, ascii_ in _SIGNS.items() if encodable(sign, encoding) != sign}
+    )
 
 
 def drop_output() -> None:

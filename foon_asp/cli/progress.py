@@ -102,6 +102,8 @@ class Progress(Reporter):
         if self._step is not None:
             word, done, total = self._step
             return f"{word}: {done} of {total}  |  {seconds}"
+        if self._costs is None and self._bound is None:
+            return f"nothing found yet  |  {seconds}  |  ctrl-C stops with the best"
         tree = "no tree yet" if self._costs is None else f"best tree: {costs_text(self._costs)}"
         bound = "no bound yet" if self._bound is None else f"proved: {bound_text(*self._bound)}"
         return f"{tree}  |  {bound}  |  {seconds}  |  ctrl-C stops with the best"

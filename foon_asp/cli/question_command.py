@@ -15,7 +15,7 @@ from foon_asp.cli.asking import ask, find_question, parameters
 from foon_asp.cli.click_option import Command, click_option
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import console, fitted, write_data
+from foon_asp.cli.output import console, fitted, with_plain_signs, write_data
 from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.whole_process import keep
 from foon_asp.deadline import Deadline
@@ -150,7 +150,7 @@ def _show(found: Result, format_: str, how: Mapping[str, Any]) -> None:
     elif renderable is not None:
         from foon_asp.report.renderable import plain_text
 
-        click.echo(plain_text(renderable), nl=False)
+        click.echo(with_plain_signs(plain_text(renderable)), nl=False)
     elif format_ == "text":
         click.echo(fitted(functools.partial(found.text, **how)), nl=False)
     elif format_ == "json":

@@ -125,6 +125,8 @@ class ShellSession:
             known = [*WORDS, *QUESTIONS]
             near = [each for each in known if each.startswith(word)] or get_close_matches(word, known, n=1)
             hint = f"did you mean {near[0]}?" if near else "help lists the words"
+            if any(f"--{word}" in option.opts for option in verb_command("solve").params):
+                hint = f"it is an option, for one line only: solve --{line.strip()}"
             raise UserError(f"found {word!r}, expected a word of the session or a question; {hint}")
 
     def _ask(self, verb: str, words: list[str]) -> None:

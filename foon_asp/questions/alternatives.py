@@ -386,7 +386,8 @@ def _lines(found: Alternatives, wanted: int) -> Iterator[str]:
         yield _no_tree(found)
         return
     if len(found.trees) < wanted and found.complete:
-        yield f"there are {counted(len(found.trees), 'tree')} and no more ({rule})"
+        be = "is" if len(found.trees) == 1 else "are"
+        yield f"there {be} {counted(len(found.trees), 'tree')} and no more ({rule})"
     elif not found.complete:
         yield f"{counted(len(found.trees), 'tree')} of those found before a limit ({rule})"
         if found.unproved:

@@ -194,7 +194,8 @@ def verify(
         try:
             content = proof.load_certificate(Path(certificate))
         except (OSError, UnicodeDecodeError) as error:
-            raise UserError(f"{certificate}: cannot be read: {error}") from None
+            reason = error.strerror if isinstance(error, OSError) else None
+            raise UserError(f"{certificate}: cannot be read: {reason or error}") from None
     elif isinstance(getattr(certificate, "content", None), Mapping):
         content = proof.read_certificate(certificate.text())
     else:

@@ -138,7 +138,7 @@ class Explanation(Result):
     in the kitchen, or a cycle of nodes that can only be made from each other. A missing node is compared
     with what is at hand and with kitchen entries that match nothing: its name may be one edit away. If the
     constraints are the reason, those that clash are listed. The last line is the cheapest fix: the fewest
-    things to add to the kitchen.
+    things to add to the kitchen, of those that foon-asp shopping-list has for sale.
 
     Exits with 0 when there is a tree, 1 when there is none, 3 when stopped at a limit.
     """,

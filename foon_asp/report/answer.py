@@ -21,6 +21,7 @@ from foon_asp.text.writer import write_units
 
 _DIGITS = 4  # of a success, if these tell several apart
 _MOST_DIGITS = 40
+_CIRCLE = 3  # object nodes of a cycle that are named after the first
 _NAMED = 6  # motions that are named of those that come, and of those that go
 
 
@@ -290,8 +291,11 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
                 yield f"the cause: {objects[root.object]} is not in the kitchen, and no unit makes it"
             continue
         first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
-        circle = "".join(f", and that only from {other}" for other in (*others, first)[1:])
-        yield f"the cause: {first} can only be made from {(*others, first)[0]}{circle}"
+        back = (*others, first)
+        circle = "".join(f", and that only from {other}" for other in back[1:_CIRCLE])
+        if len(back) > _CIRCLE:
+            circle += f", and so on: {len(back)} object nodes wait for each other"
+        yield f"the cause: {first} can only be made from {back[0]}{circle}"
     if len(roots) > shown:
         yield f"  ... and {len(roots) - shown} more"
     cycles = [root.cycle for root in roots if root.cycle is not None]

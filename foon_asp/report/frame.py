@@ -65,8 +65,12 @@ def csv_text(document: Json) -> str:
 
 
 def markdown_text(document: Json) -> str:
-    """Give the same as a table in Markdown."""
-    headings, *others = _table(rows(document))
+    """Give the same as a table in Markdown, for people: without empty columns, and rounded to six digits."""
+    found = [{name: _rounded(value) for name, value in row.items()} for row in rows(document)]
+    columns = [each for each in zip(*_table(found), strict=True) if each[0] != "schema" and any(each[1:])]
+    if not columns:
+        return ""
+    headings, *others = zip(*columns, strict=True)
     lines = [headings, ["---"] * len(headings), *others]
     return "".join(f"{markdown_row([escaped(cell) for cell in line])}\n" for line in lines)
 
@@ -95,6 +99,12 @@ def _cell(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return "" if value is None else str(value)
+
+
+def _rounded(value: Any) -> Any:
+    if not isinstance(value, float):
+        return value
+    return int(value) if value.is_integer() else f"{value:.6g}"
 
 
 def _rows(document: Json) -> Iterator[Json]:
