@@ -123,6 +123,31 @@ def test_a_click_says_who_makes_and_needs_a_node_and_where_it_was_read(page: Bro
     assert "FOON.txt:" in said
 
 
+def test_where_items_are_used_up_the_kitchen_is_what_a_replay_leaves(
+    chromium: Browser, tmp_path: Path
+) -> None:
+    problem = foon_asp.load().problem("macaroni", items="used-up")
+    foon_asp.view(problem).write(tmp_path / "plan.html")
+    chromium.open(tmp_path / "plan.html")
+    said = texts(chromium, "aside details summary")
+    assert "Kitchen after step 9: 14 objects" in said  # seven that were made, and seven of the kitchen
+    listed = texts(chromium, "aside details li")
+    assert not [each for each in listed if "×" in each or "contains macaroni, salt" in each]
+
+
+def test_the_goal_and_the_step_are_seen_whole(chromium: Browser, shown: Callable[..., Path]) -> None:
+    file = shown("greek salad")
+    opened(chromium, file, "Side by side")
+    seen = """[...document.querySelectorAll('main:not([hidden]) .pane')].map(pane => {
+      const [all, goal] = ['svg', '.goal'].map(each => pane.querySelector(each).getBoundingClientRect());
+      return goal.left >= all.left && goal.right <= all.right && goal.bottom <= all.bottom; })"""
+    assert chromium.run(seen) == [True, True]
+    chromium.size(390, 844)
+    chromium.open(file)
+    assert chromium.run("document.querySelector('.bar output').getBoundingClientRect().height") < 24
+    assert chromium.run("document.querySelector('.bar').getBoundingClientRect().height") < 90
+
+
 def test_by_products_go_and_come(page: Browser) -> None:
     rows = "document.querySelectorAll('.picture .row.left').length"
     there = page.run(rows)
@@ -346,6 +371,12 @@ def test_the_sum_of_the_cuts_grows_to_the_cost(
 def test_why_there_is_no_tree_is_drawn_and_said(chromium: Browser, shown: Callable[..., Path]) -> None:
     opened(chromium, shown("apple pie"), "Why there is no tree")
     assert sorted(texts(chromium, HERE + ".lost title")) == ["pie crust; chilled", "pie crust; rolled"]
+    lacking = ["apple pie; golden", "pie crust; in [pie dish]", "pie dish; contains"]
+    assert [
+        name[: len(each)]
+        for name, each in zip(sorted(texts(chromium, HERE + ".lacking title"))[:3], lacking, strict=True)
+    ] == lacking
+    assert texts(chromium, HERE + ".legend span") == ["the root of it", "cannot be had", "can be had"]
     assert chromium.run("document.querySelectorAll('.arrow.back').length") == 1
     said = "\n".join(texts(chromium, HERE + "aside"))
     assert "can only be made from itself, in a cycle" in said

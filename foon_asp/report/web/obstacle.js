@@ -74,7 +74,7 @@ TABS.push(["Why there is no tree", () => Boolean(data.why_not), (panel) => {
     const stage = el("div", { class: "stage" });
     panel.append(stage);
     const picture = new Picture(stage, new DeadEnds(why), { label: "What is needed and cannot be had", picked: () => {} });
-    picture.mark(new Map([...picture.boxes].filter(([, { node }]) => node.lost).map(([id]) => [id, ["lost"]])));
+    picture.mark(new Map([...picture.boxes].filter(([, { node }]) => !node.step).map(([id, { node }]) => [id, [node.lost ? "lost" : "lacking"]])));
   }
   panel.append(words);
   if (why.clash) {
@@ -96,10 +96,10 @@ TABS.push(["Why there is no tree", () => Boolean(data.why_not), (panel) => {
   }
   if (shopping?.lists.length) {
     words.append(el("h2", {}, "What to add to the kitchen"));
-    for (const list of shopping.lists)
+    for (const [place, list] of shopping.lists.entries())
       words.append(el("ul", {}, list.items.map((item) => el("li", { class: "plus" }, ...brief(item)))),
-        el("p", { class: "said" }, list.proved ? "No list is shorter or cheaper, but those that hold all of one above." : "A shorter list may exist."));
+        el("p", { class: "said" }, list.proved ? `${place ? "But for those that hold all of one above, no" : "No"} list of things for sale is shorter or cheaper.` : "A shorter list may exist."));
     if (shopping.answer?.units) words.append(el("p", {}, `With the first list, there is a tree of ${counted(shopping.answer.costs.units, "unit")}: see Side by side.`));
   }
-  if (!why.tree_exists) words.append(el("div", { class: "legend" }, el("span", {}, el("i", { class: "dead" }), "the root of it"), el("span", {}, el("i", { class: "kitchen" }), "can be had")));
+  if (!why.tree_exists) words.append(el("div", { class: "legend" }, el("span", {}, el("i", { class: "dead" }), "the root of it"), el("span", {}, el("i", { class: "lacking" }), "cannot be had"), el("span", {}, el("i", { class: "kitchen" }), "can be had")));
 }]);

@@ -86,7 +86,11 @@ class TreePanel {
 
   // What a step makes that was not there before.
   newOf(step) {
-    return step.outputs.filter((output) => output.made && (this.items === "used-up" || this.plan.made.get(keyOf(output)) === step.step && !this.fromKitchen().has(keyOf(output))));
+    if (this.items === "used-up") {
+      const had = new Set(step.inputs.map(keyOf));
+      return step.outputs.filter((output) => output.made && !had.has(keyOf(output)));
+    }
+    return step.outputs.filter((output) => output.made && this.plan.made.get(keyOf(output)) === step.step && !this.fromKitchen().has(keyOf(output)));
   }
 
   fromKitchen() {

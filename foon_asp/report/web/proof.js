@@ -115,7 +115,7 @@ class ProofPanel {
     if (this.case.ends === "broken") parts.push(el("p", {}, "Such a tree breaks a rule that was asked for."));
     if (cut) {
       parts.push(el("h2", {}, cut.weight === null ? "The cut that nobody crosses" : `Cut ${this.at}, weight ${this.worth(cut.weight)}`));
-      parts.push(el("h3", {}, "one of these has to get in"), cut.members.length
+      parts.push(el("h3", {}, cut.weight === null ? "who can get in" : "one of these has to get in"), cut.members.length
         ? el("ul", {}, cut.members.map((id) => el("li", { class: this.steps.has(id) ? "plus" : "" }, this.unit(id)))) : el("p", {}, "nobody"));
       parts.push(el("h3", {}, `the cut: ${counted(cut.nodes.length, "object")}`), el("ul", {}, cut.nodes.map((id) => el("li", {}, this.label(id)))));
     }

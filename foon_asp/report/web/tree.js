@@ -240,7 +240,7 @@ class Picture extends Movable {
   mark(classes) {
     this.marks = classes;
     for (const [id, { element }] of this.boxes) {
-      element.classList.remove("differs", "stuck", "inside", "crossing", "lost");
+      element.classList.remove("differs", "stuck", "inside", "crossing", "lost", "lacking");
       element.classList.add(...(classes.get(id) ?? []));
     }
   }
@@ -277,11 +277,12 @@ class Picture extends Movable {
     const small = k < 0.42 && !all;
     if (small) k = Math.max(0.55, Math.min(across, 0.75));
     const wide = this.size.width * k > width;
-    const end = [...this.boxes.values()].reduce((last, box) => (box.y > last.y ? box : last));
+    const boxes = [...this.boxes.values()];
+    const end = boxes.find(({ element }) => element.classList.contains("goal")) ?? boxes.reduce((last, box) => (box.y > last.y ? box : last));
     this.view = {
       k,
       x: wide ? Math.min(12, Math.max(width - this.size.width * k - 12, width / 2 - end.x * k)) : (width - this.size.width * k) / 2,
-      y: small ? height - this.size.height * k - 12 : (height - this.size.height * k) / 2,
+      y: small ? height - (end.y + end.node.h / 2) * k - 12 : (height - this.size.height * k) / 2,
     };
     this.moved();
   }
