@@ -10,8 +10,8 @@ import foon_asp
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.session import Session
-from foon_asp.encoding.encoding_file import LARGEST
 from foon_asp.errors import UserError
+from foon_asp.grounding.exact import LARGEST
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.rules.constraint import given_constraint

@@ -1,7 +1,7 @@
 """Assembling a program: the built-in encodings or a replacement, and what the user adds."""
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,13 +10,14 @@ from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
 from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Loaded
+from foon_asp.grounding.stated import Loaded, Stated
 from foon_asp.problem import Problem
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.text.json_value import json_line
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
+    from foon_asp.encoding.encoding import Encoding
     from foon_asp.rules.rules import Rules
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
@@ -60,9 +61,8 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
     base = tuple(folder / name if (folder / name).is_file() else ours / name for name in ENCODING_FILES)
     added = tuple(dict.fromkeys(map(find_constraint, settings.constraints)))
     relaxed, bounded = settings.relaxed, settings.bounded
-    kept = added
+    kept, rules = added, ""
     questions: tuple[Path, ...] = ()
-    rules = ""
     if relaxed is not None:
         kept = tuple(each for each in added if each not in relaxed.constraints)
         added = tuple(dict.fromkeys((*added, *relaxed.constraints)))
@@ -78,6 +78,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
     replaced = not all(map(is_own, base))
     endless = replaced or not all(map(_is_own, added))
     files: dict[Constraint, Loaded] = {}
+    theirs: list[Encoding] = []
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
         # parsing takes some milliseconds, so it is left out for what every file of ours agrees with
@@ -119,7 +120,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
 
         check(arguments)
     return Program(
-        (*base, *(files[each] for each in kept), *questions),
+        (*base, *(files[each] for each in kept), *questions, *_checks(theirs)),
         exact_success(),
         arguments,
         replaced=replaced,
@@ -162,6 +163,17 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
         looked_at=rules.looked_at,
     )
     return plain._replace(own=False, ready_made=rules, whole=whole)
+
+
+def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
+    """Give what finds numbers beyond clingo's in encodings of the user."""
+    if not encodings:
+        return []
+    from foon_asp.grounding.number_checks import PLACE  # noqa: PLC0415
+    from foon_asp.rules.number_limits import number_checks  # noqa: PLC0415
+
+    found = number_checks(statement for each in encodings for statement in each.statements)
+    return [Stated(PLACE, found)] if found else []
 
 
 class ReachOfRules(Enum):

@@ -14,6 +14,7 @@ from foon_asp.asp.used_up import executions_as_good, most_executions
 from foon_asp.encoding.facts import write_facts, write_least_penalty, write_objectives, write_times
 from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
+from foon_asp.grounding.number_checks import PLACE
 from foon_asp.grounding.stated import Stated
 from foon_asp.problem import Objective, Problem, levels, reach, relevant
 from foon_asp.rules.constraint import Constraint
@@ -104,5 +105,6 @@ def bare_plans(
 
 def _written(program: Program, facts: str) -> BareProgram:
     files = tuple(file for file in program.files if isinstance(file, Path))
-    stated = (rules.text.strip() for rules in program.files if isinstance(rules, Stated))
+    rules = (each for each in program.files if isinstance(each, Stated) and each.place != PLACE)
+    stated = (each.text.strip() for each in rules)
     return BareProgram(files, program.constants, facts, program.rules + "".join(map("{}\n".format, stated)))

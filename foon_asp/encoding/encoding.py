@@ -10,9 +10,10 @@ from pathlib import Path
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Location, Transformer
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.encoding_file import LARGEST, check_text, excerpt, included_files
+from foon_asp.encoding.encoding_file import check_text, excerpt, included_files
 from foon_asp.encoding.facts import FACT_PREDICATES, quote
 from foon_asp.errors import UserError
+from foon_asp.grounding.exact import LARGEST
 from foon_asp.grounding.messages import listener
 from foon_asp.grounding.parsing import nodes, parse
 from foon_asp.grounding.stated import Loaded, Stated
@@ -536,8 +537,8 @@ def _left_out(what: str, part: str) -> str:
         "tuple ignored": f"the weight in {part} is not a number",
     }.get(what, f"{what} {part}".strip())
     return (
-        f"{reason}; clingo would leave this out silently: calculate with whole numbers only, do not "
-        "divide by 0, and call no functions with @"
+        f"{reason}; clingo would leave this out silently: calculate with whole numbers only, and do "
+        "not divide by 0"
     )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.grounding.exact import LARGEST
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
@@ -21,6 +22,7 @@ _TOKEN = re.compile(
     | (?P<string>"(?:[^\\"\n]|\\["\\n])*")
     | (?P<number>0x[0-9A-Fa-f]+|0o[1-7]+|0b[01]+|0|[1-9][0-9]*)
     | (?P<word>[_']*[A-Za-z]['A-Za-z0-9_]*)
+    | (?P<call>@[\t\r\n ]*[_']*[a-z]['A-Za-z0-9_]*[\t\r\n ]*\()
     | (?P<keyword>\#[A-Za-z0-9_]*)
     | (?P<blank>[\t\r\n ]+)
     | (?P<sign>.)
@@ -29,7 +31,6 @@ _TOKEN = re.compile(
 )
 _IN_BLOCK = re.compile(r"\*%|%\*|%[^\n]*")
 _ESCAPED = re.compile(r"\\(.)")
-LARGEST = 2**31 - 2  # clingo adds 1 to a bound: with 2^31 - 1 a condition would be dropped
 _SUFFIX = ".lp"
 
 
@@ -122,6 +123,9 @@ def _look_over_text(text: str, place: str, file: Path | None, errors: list[Diagn
             shown = f"{token.text!r} ({letter})" if token.text.isprintable() else letter
             advice = "; clingo's quotation mark is \"" if token.text in "“”„«»‘’" else ""
             error("letter", f"found {shown}, which no rule can have outside of quotes{advice}", token.start)
+        elif token.kind == "call":
+            name = "".join(token.text[:-1].split())
+            error("function", f"found {name}(...), expected no function: rules run no code", token.start)
         elif token.text == "#script":
             error("script", "found #script, expected rules: scripts in encodings are not run", token.start)
             break

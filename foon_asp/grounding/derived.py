@@ -6,6 +6,7 @@ from clingo import Control
 from clingo.symbol import Symbol, SymbolType
 
 from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
+from foon_asp.grounding.number_checks import Exact
 
 
 class Term(NamedTuple):
@@ -27,7 +28,7 @@ def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
     with refusing(messages):
         control = Control(logger=listener(messages), message_limit=NO_LIMIT)
         control.add("base", [], text)
-        control.ground([("base", [])])
+        control.ground([("base", [])], Exact())
     return [
         tuple(map(_value, atom.symbol.arguments)) for atom in control.symbolic_atoms.by_signature(name, arity)
     ]

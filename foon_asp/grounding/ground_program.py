@@ -6,12 +6,13 @@ What comes in and goes out are plain values, so that it may be in another proces
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 
-from clingo import Control, Model, SolveHandle, parse_term
-from clingo.symbol import Number, SymbolType
+from clingo import Control, MessageCode, Model, SolveHandle, parse_term
+from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.grounding.messages import NO_LIMIT, listener, refusing
+from foon_asp.grounding.number_checks import PLACE, Exact, numbers_beyond
 from foon_asp.grounding.run import Heard
 from foon_asp.grounding.stated import Stated
 
@@ -32,22 +33,33 @@ class GroundProgram:
         with refusing(self._messages):
             hear = listener(self._messages)
             self._control = Control(list(arguments), logger=hear, message_limit=NO_LIMIT)
-            for file in files:
-                if isinstance(file, Stated):
-                    from foon_asp.grounding.parsing import load  # noqa: PLC0415 (slow to import)
-
-                    load(self._control, file, hear)
-                else:
-                    self._control.load(file)
+            checks = [file for file in files if isinstance(file, Stated) and file.place == PLACE]
+            self._load([file for file in files if file not in checks], hear)
             self._control.add("base", [], text)
+            self._load(checks, hear)  # last: what finds a sum that clasp refuses is grounded before the sum
             parts = [("_product", [Number(number)]) for number in range(products)]
-            self._control.ground([("base", []), *parts])
+            self._ground([("base", []), *parts])
 
     def add(self, part: str, text: str, product: int) -> None:
         """Ground more text, and what there is to say about a product of rates."""
         with refusing(self._messages):
             self._control.add(part, [], text)
-            self._control.ground([(part, []), ("_product", [Number(product)])])
+            self._ground([(part, []), ("_product", [Number(product)])])
+
+    def _load(self, files: Sequence[str | Stated], hear: Callable[[MessageCode, str], None]) -> None:
+        for file in files:
+            if isinstance(file, Stated):
+                from foon_asp.grounding.parsing import load  # noqa: PLC0415 (slow to import)
+
+                load(self._control, file, hear)
+            else:
+                self._control.load(file)
+
+    def _ground(self, parts: Sequence[tuple[str, Sequence[Symbol]]]) -> None:
+        try:
+            self._control.ground(parts, Exact())
+        finally:
+            self._messages += numbers_beyond(self._control)
 
     def assign(self, atoms: Mapping[str, bool]) -> None:
         """Say of external atoms whether they hold from now on."""

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 from clingo import MessageCode
 
+from foon_asp.grounding.number_checks import PLACE
 from foon_asp.grounding.run import ProgramError
 
 # Atoms that nothing defines are looked for elsewhere; a file may be included twice; and a variable of the
@@ -19,6 +20,8 @@ def listener(messages: list[str]) -> Callable[[MessageCode, str], None]:
     """Give a logger for clingo that notes the messages about something that is lost."""
 
     def hear(code: MessageCode, text: str) -> None:
+        if text.startswith(f"{PLACE}:") and code is MessageCode.OperationUndefined:
+            return  # the rule that is looked into says so itself
         if code not in _HARMLESS and (code is MessageCode.RuntimeError or len(messages) < _MOST):
             messages.append(text)
 

@@ -169,6 +169,11 @@ class _Worker(PythonProcess):
         if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
             deadline.out_of_memory()
             raise LimitError(deadline)
+        if code == -signal.SIGFPE:
+            raise UserError(
+                "clingo broke down at a division in the rules that were added: -2147483648 / -1 is none of "
+                "its numbers; calculate with smaller ones"
+            )
         if not self._answered:
             raise UserError(
                 f"{sys.executable} does not start as another process (it ended with {code}), "

@@ -172,6 +172,11 @@ def written(statement: AST, rules: Loaded | None = None) -> str:
     return " ".join(b" ".join(lines).decode("utf-8", "replace").split())
 
 
+def _is_plain(term: AST) -> bool:
+    """Whether a term calculates nothing, so that it is what clingo reads."""
+    return all(node.ast_type != ASTType.BinaryOperation for node in nodes(term))
+
+
 def value(term: AST, constants: Constants) -> Symbol | None:
     """Give the value of a term without variables and arithmetic, ``None`` where it is not so simple."""
     if term.ast_type == ASTType.SymbolicTerm:
@@ -197,7 +202,7 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
     texts: dict[str, str | None] = {}
     for definition in definitions:
         name = definition.name
-        plain = definition.is_default and name not in texts
+        plain = definition.is_default and name not in texts and _is_plain(definition.value)
         texts[name] = str(definition.value) if plain else None
     for setting in settings:
         name, _, text = setting.partition("=")

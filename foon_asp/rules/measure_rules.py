@@ -15,6 +15,7 @@ from clingo.ast import (
     AST,
     AggregateFunction,
     ASTType,
+    BinaryOperator,
     Function,
     Literal,
     Sign,
@@ -33,7 +34,7 @@ from foon_asp.grounding.messages import listener
 from foon_asp.grounding.parsing import parse
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
-from foon_asp.rules.number_limits import ROOTS, beyond
+from foon_asp.rules.number_limits import beyond
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 COST = ("cost", 3)
@@ -152,20 +153,16 @@ class _Reader:
         found: list[AST] = []
         sources: list[Source] = []
         for name in names:
-            for rule, text in beyond(self._rules, f"cost({name},{world},{BEYOND})"):
+            for rule, text in beyond(self._rules, f"cost({name},{world},{BEYOND})".format):
                 before = len(found)
                 parse_string(text, found.append)
                 sources += [self._source(rule)] * (len(found) - before)
-        if not found:
-            return
-        yield Statement(ROOTS, sources[0], False)
         rules = [
             (rule, source)
             for rule, source in zip(found, sources, strict=True)
             if rule.ast_type is ASTType.Rule
         ]
-        heads = {_signature(atom) for rule, _ in rules for atom in _Atoms(rule).heads}
-        writer = _World(dependent | heads, world)
+        writer = _World(dependent, world)
         yield from (writer.written(rule, source) for rule, source in rules)
 
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
@@ -267,7 +264,7 @@ class _Reader:
 
     def _is_plain(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
-        return not atoms.has_interval and len(tables) < 2 and len(atoms.used) <= _FEW
+        return not (atoms.has_interval or atoms.divides) and len(tables) < 2 and len(atoms.used) <= _FEW
 
     def _source(self, at: AST) -> Source:
         begin = at.location.begin
@@ -294,7 +291,8 @@ def _signature(atom: AST) -> Signature:
 class _Atoms(Transformer):
     """Goes through a rule and notes its atoms, as the terms that they are, and how its variables are used.
 
-    ``compared`` are variables whose values matter, beyond whether two are the same.
+    ``compared`` are variables whose values matter, beyond whether two are the same. At -2147483648 / -1 the
+    process of clingo ends, so it matters whether a rule ``divides``.
     """
 
     def __init__(self, rule: AST) -> None:
@@ -303,6 +301,7 @@ class _Atoms(Transformer):
         self.negated: list[AST] = []
         self.compared: set[str] = set()
         self.has_interval = False
+        self.divides = False
         self._noted = self.heads
         self.visit(rule.head)
         self._noted = self.used
@@ -343,6 +342,11 @@ class _Atoms(Transformer):
     def visit_Variable(self, variable: AST) -> AST:  # noqa: N802
         self.compared.add(variable.name)
         return variable
+
+    def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802
+        self.divides |= term.operator_type in {BinaryOperator.Division, BinaryOperator.Modulo}
+        self.visit_children(term)
+        return term
 
     def visit_Interval(self, interval: AST) -> AST:  # noqa: N802
         self.has_interval = True

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from foon_asp.deadline import Deadline
-from foon_asp.encoding.encoding_file import LARGEST
 from foon_asp.encoding.facts import hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
+from foon_asp.grounding.exact import LARGEST
 from foon_asp.problem import Contradiction, Problem, Restriction
 from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, meaning
 from foon_asp.proof.ruled import Ruled

@@ -14,6 +14,7 @@ from foon_asp.encoding.encoding import Encoding, read_encoding
 from foon_asp.encoding.facts import hundredths, write_facts_read
 from foon_asp.encoding.search import run
 from foon_asp.errors import UserError
+from foon_asp.grounding.parsing import parse
 from foon_asp.grounding.run import Run
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
@@ -24,6 +25,7 @@ from foon_asp.rules.flat_answers import FlatAnswers
 from foon_asp.rules.flat_body import Asking, FlatBodies, NotFlatError, Way
 from foon_asp.rules.lifted_program import NOBODY, LiftedProgram, stands_alone
 from foon_asp.rules.limit import Limit, Limiting, limiting
+from foon_asp.rules.number_limits import number_checks
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
 _DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}
@@ -310,12 +312,22 @@ class Rules:
         required = [_ids(problem, each) for each in helps if NOBODY not in each]
         return Restriction(_ids(problem, removed).__contains__, tuple(required))
 
+    def _checks(self, program: LiftedProgram) -> str:
+        """Give rules that find what a program calculates beyond clingo's numbers."""
+        analysis = self._analysis
+        if not number_checks((*analysis.definitions, *analysis.statements)):
+            return ""
+        statements: list[AST] = []
+        parse(Stated("rules", program.text), statements.append, lambda *_: None)
+        return number_checks(statements)
+
     def _ask(
         self, program: LiftedProgram, predicates: Sequence[Signature], problem: Problem, deadline: Deadline
     ) -> Run | None:
         """Let clingo derive some predicates; ``None`` where it has no answer or something is wrong."""
         with deadline.watched("writing facts"):
-            text = program.text + write_facts_read(problem, sorted(reach(problem).units), program.reads)
+            rules = program.text + self._checks(program)
+            text = rules + write_facts_read(problem, sorted(reach(problem).units), program.reads)
         constants = [word for constant in self._constants for word in ("-c", constant)]
         try:
             found = run((), text, constants, deadline, "ignore", predicates=predicates, endless=self._endless)
