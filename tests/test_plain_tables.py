@@ -166,8 +166,12 @@ def test_lists_are_folded_to_the_terminal() -> None:
 def test_what_stands_over_and_under_a_table_is_not_folded_to_it() -> None:
     shown_lines = shown(foon_asp.optima(foon_asp.load().problem("ice")), 120)
     assert shown_lines[0] == "The best task trees (strict containers)"
-    assert shown_lines[-2] == "optimal: proved best by the objective named, whose figure is bold"
-    assert len(shown_lines[2]) < len(shown_lines[-2])  # the rule under the headings
+    assert shown_lines[-1] == "optimal: proved best by the objective named"  # and no status that no row has
+    shown_lines = shown(foon_asp.optima(foon_asp.load().problem("ice", "apple pie")), 120)
+    assert shown_lines[-2:] == [
+        "optimal: proved best by the objective named",
+        "infeasible: proved that no tree exists",
+    ]
 
 
 def test_at_75_columns_tables_are_tables() -> None:

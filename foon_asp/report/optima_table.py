@@ -25,10 +25,14 @@ def optima_table(outcomes: Sequence[Outcome]) -> Stackable:
     """Lay out the table; outcomes of one goal stand together, and equal trees share a row."""
     problem = outcomes[0].problem
     trees, tree = ("task trees", "tree") if problem.items is None else ("plans", "plan")
+    meanings = {
+        Status.OPTIMAL: "optimal: proved best by the objective named",
+        Status.INFEASIBLE: f"infeasible: proved that no {tree} exists",
+    }
+    found = {outcome.status for outcome in outcomes}
     table = Table(
         title=f"The best {trees} ({problem.conditions})",
-        caption="optimal: proved best by the objective named, whose figure is bold\n"
-        f"infeasible: proved that no {tree} exists",
+        caption="\n".join(meaning for status, meaning in meanings.items() if status in found) or None,
         box=SIMPLE_HEAD,
         pad_edge=False,
         show_edge=False,
