@@ -336,6 +336,7 @@ class Course(Listener):
         monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
         monkeypatch.setattr(reduction, "_SMALL", small)
         monkeypatch.setattr(reduction, "_EASY", easy)
+        monkeypatch.setattr(reduction, "_EFFORT", 0)
         monkeypatch.setattr(shared_costs, "share_costs", self.share)
         if hand:
             monkeypatch.setattr(reduction, "without_spare", lambda *_: {*hand})

@@ -28,9 +28,9 @@ class Status(StrEnum):
 class Proof(StrEnum):
     """What proves a claim.
 
-    ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search; see
-    docs/reductions.md. ``counts``: where items are used up, no whole counts of executions cost less; see
-    docs/plans.md. ``certificate``: a certificate that was verified without either.
+    ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search, at once or case by
+    case; see docs/reductions.md. ``counts``: where items are used up, no whole counts of executions cost
+    less; see docs/plans.md. ``certificate``: a certificate that was verified without either.
     """
 
     SOLVER = "solver"

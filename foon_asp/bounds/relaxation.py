@@ -17,6 +17,10 @@ _OPTIONS: Final[dict[str, bool | str | float]] = {
 _STEPS = 4000  # of the simplex algorithm: at most about a second, with thousands of columns and rows
 
 
+class UnsolvedError(BugError):
+    """HiGHS ends a covering problem with something else than a solution."""
+
+
 class Relaxed(NamedTuple):
     """A basic optimum: its value, the share ``x`` of every column, and its basis.
 
@@ -62,6 +66,14 @@ class Covering:
         takes = self._array([-float(amount) for amount in amounts.values()])
         self._highs.addRow(-float(most), self._library.kHighsInf, len(amounts), columns, takes)
 
+    def bound(self, column: int, least: float, most: float) -> None:
+        """Let a column take no less and no more than so much."""
+        self._highs.changeColBounds(column, least, most)
+
+    def demand(self, row: int, least: float) -> None:
+        """Let a row ask for so much; 0 is nothing."""
+        self._highs.changeRowBounds(row, least, self._library.kHighsInf)
+
     def solve(self, expired: Callable[[], bool] | None = None) -> Relaxed:
         """Find a basic optimum of the rows so far; or, where time is up by then, what there is by then.
 
@@ -75,7 +87,7 @@ class Covering:
         while highs.getModelStatus() == status.kIterationLimit and not (expired and expired()):
             highs.run()
         if highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty, status.kIterationLimit}:
-            raise BugError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
+            raise UnsolvedError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
         basis, solution = highs.getBasis(), highs.getSolution()
         basic = self._library.HighsBasisStatus.kBasic
         return Relaxed(

@@ -8,7 +8,7 @@ whatever they were.
 
 import math
 import random
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -55,6 +55,22 @@ def share_costs(
     return _Sharing(graph, targets, actions, cost).share(known, enough, expired)
 
 
+def renumbered(
+    graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
+) -> tuple[Hypergraph, list[int], list[int]]:
+    """Give a graph of some actions alone, its objects by their numbers before, and its targets."""
+    targets, start = tuple(targets), graph.start
+    objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
+    number = {o: place for place, o in enumerate(objects)}
+    small = Hypergraph(
+        len(number),
+        [[number[o] for o in graph.needs[a] if o in number] for a in actions],
+        [[number[o] for o in graph.gives[a] if o in number] for a in actions],
+        (),
+    )
+    return small, objects, [number[o] for o in targets]
+
+
 class _Sharing:
     def __init__(
         self,
@@ -64,18 +80,8 @@ class _Sharing:
         cost: Callable[[int], int],
     ) -> None:
         self._actions = sorted(actions)
-        start = graph.start
-        self._objects = sorted(
-            {o for a in self._actions for o in graph.needs[a] if o not in start}.union(targets)
-        )
-        number = {o: place for place, o in enumerate(self._objects)}
-        small = Hypergraph(
-            len(number),
-            [[number[o] for o in graph.needs[a] if o in number] for a in self._actions],
-            [[number[o] for o in graph.gives[a] if o in number] for a in self._actions],
-            (),
-        )
-        self._cutter = Cutter(small, [number[o] for o in targets])
+        small, self._objects, within = renumbered(graph, targets, self._actions)
+        self._cutter = Cutter(small, within)
         self._costs = [cost(a) for a in self._actions]
         self._dearest = max(self._costs, default=1)
         self._random = random.Random(0)

@@ -18,7 +18,7 @@ from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
-from foon_asp.reduce.upper_bound import following, improved, varied, without_spare
+from foon_asp.reduce.upper_bound import following, guessed, improved, varied, without_spare
 from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 if TYPE_CHECKING:  # few questions need it
@@ -32,6 +32,8 @@ _EASY = 600  # actions that clingo chooses from faster than better trees are loo
 _SMALL = 200  # actions that clingo chooses from faster than costs are shared out among all cuts
 _ROUNDS = 24  # of cuts, trees and what they leave
 _FEW = 6  # of these, where other costs are tried
+_EFFORT = 3_000_000  # actions looked at while branching, before clingo is asked: some 20 s of a processor
+_NEAR = 4, 3  # of so many parts of what the tree costs, those that a bound has to reach for branching to pay
 _WORTH = 0.9  # of the actions may be left for another time to be worth it
 
 
@@ -164,7 +166,7 @@ class _Reducer:
         self.problem, self.objectives, self.reductions = problem, objectives, reductions
         self.expired, self.listener, self.spare, self.rest = expired, listener, spare, rest
         self.extended = extended  # so costs of all actions are asked for later
-        self.rounds = _ROUNDS
+        self.rounds, self.effort = _ROUNDS, _EFFORT
         self.extending = False  # some trees were left out before there were cuts
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse: Callable[[int], int] = CoarseCosts(problem, objectives[0])
@@ -317,13 +319,49 @@ class _Reducer:
                 self.left = beside_forced(self.graph, self.left)
                 changed = len(self.left) < before[0]
             if not changed and costs is not None and not thorough:
-                if self._share_costs(costs):
+                if self._share_costs(costs) or self._branch(costs):
                     return True
                 changed = (len(self.left), self.tree) != before
             if not changed and (thorough or len(self.left) <= _EASY):
                 break
             thorough = not changed
             guide = derive(self.graph, self.left, costs or self.coarse, added=False).cost
+        return False
+
+    def _branch(self, costs: ExactCosts) -> bool:
+        """Branch over what cuts leave, up to an effort; whether the tree is proved optimal.
+
+        Where rounding may decide, and where rules decide what counts as a tree, that is left to clingo.
+        """
+        only_better = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
+        if not only_better or costs.doubt or costs.limited or self.rest:
+            return False
+        total, (parts, enough) = self._total(costs), _NEAR
+        if len(self.left) <= _SMALL or self.effort <= 0 or self.bound * parts < total * enough:
+            return False
+        from foon_asp.bounds.branching import Branching  # noqa: PLC0415 (few questions need it)
+
+        graph, left = self.graph, self.left
+
+        def bounded(bound: int) -> None:
+            if bound > self.bound:
+                self.bound = bound
+                self.listener.bound(costs, bound)
+
+        known = [cut.objects for cut in self.cuts.cuts] if self.cuts else []
+        known += [objects for objects, _ in self.shared.cuts] if self.shared else []
+        branching = Branching(
+            *(graph, graph.goals, left, costs, known, total),
+            lambda shares, without: guessed(graph, left, costs, shares, without),
+            *(self._take, bounded),
+        )
+        settled = branching.search(self.effort, self.expired)
+        self.effort = branching.effort
+        if settled:
+            bounded(self._total(costs))
+            return True
+        if self.shared is not None and self._total(costs) < total:
+            self._shared(costs, self.shared)
         return False
 
     def _share_costs(self, costs: ExactCosts) -> bool:

@@ -1,7 +1,7 @@
 """Trees that are good, found fast, with nothing in them that can be left out."""
 
 import random
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator, Mapping
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
@@ -34,6 +34,25 @@ def without_spare(graph: Graph, tree: Collection[int], cost: Callable[[int], int
             for other in freed or ():  # it may not have been replaceable before
                 heappush(waiting, (-cost(other), other))
     return support.left
+
+
+def guessed(
+    graph: Graph,
+    actions: Collection[int],
+    cost: Callable[[int], int],
+    shares: Mapping[int, float],
+    without: Collection[int],
+) -> Iterator[set[int]]:
+    """Give trees without some actions that use what a relaxed solution takes."""
+    allowed = [a for a in actions if a not in without]
+
+    def unshared(action: int) -> int:
+        return 1 + cost(action) * int(_FINE * (1 - min(1.0, shares[action])))
+
+    for added in (True, False):
+        found = derive(graph, allowed, unshared, added).tree(graph, graph.goals)
+        if found is not None:
+            yield without_spare(graph, found, cost)
 
 
 def following(

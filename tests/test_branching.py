@@ -1,0 +1,274 @@
+"""Branching over cuts: what it proves is held against brute force, whatever floats say."""
+
+import math
+import random
+from collections.abc import Callable, Collection, Iterable, Mapping
+from fractions import Fraction
+from typing import ClassVar
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from foon_asp.asp import Proof, Settings, solve
+from foon_asp.bounds import branching
+from foon_asp.bounds.branching import Branching
+from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.landmark_cuts import Cuts
+from foon_asp.bounds.lower_bound import Branch, Hopeless, Packing
+from foon_asp.bounds.lower_bound import Proof as Proved
+from foon_asp.bounds.relaxation import Covering, Relaxed
+from foon_asp.certificate import certify
+from foon_asp.problem import ContainerRule, Objective, levels
+from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce, reduction
+from tests.random_problems import random_problem
+from tests.test_shared_costs import asked, cheapest
+
+
+def require_proves(
+    proof: Proved,
+    graph: Hypergraph,
+    targets: Collection[int],
+    costs: list[int],
+    total: int,
+    used: frozenset[int] = frozenset(),
+    without: frozenset[int] = frozenset(),
+) -> None:
+    """Require that a proof shows, by whole numbers alone, that no derivation costs less than ``total``."""
+    wanted = {*targets}.union(*(graph.needs[a] for a in used))
+
+    def crossing(objects: Iterable[int]) -> set[int]:
+        inside = {*objects}
+        assert inside & wanted
+        assert inside.isdisjoint(graph.start)
+        actions = {a for a in range(len(costs)) if inside & {*graph.gives[a]}} - without
+        return {a for a in actions if inside.isdisjoint(graph.needs[a])}
+
+    if isinstance(proof, Branch):
+        assert proof.action not in used | without
+        require_proves(proof.without, graph, targets, costs, total, used, without | {proof.action})
+        require_proves(proof.using, graph, targets, costs, total, used | {proof.action}, without)
+    elif isinstance(proof, Hopeless):
+        assert not crossing(proof.cut.objects)
+    else:
+        assert isinstance(proof, Packing)
+        load = [Fraction(0)] * len(costs)
+        proved = Fraction(sum(costs[a] for a in used))
+        for cut, (weight,) in proof.weights:
+            assert weight > 0
+            proved += weight
+            for action in crossing(cut.objects):
+                load[action] += weight
+        assert all(carried <= (0 if a in used else costs[a]) for a, carried in enumerate(load))
+        assert math.ceil(proved) >= total
+
+
+class Run:
+    """A search with no derivation in hand, for one that costs less than all actions and one more."""
+
+    def __init__(self, graph: Hypergraph, targets: list[int], costs: list[int], effort: int = 10**6) -> None:
+        self.trees: list[set[int]] = []
+        self.bounds: list[int] = []
+        self.question = graph, targets, costs
+        self.total = sum(costs) + 1
+        everything = range(len(costs))
+        search = Branching(
+            *(graph, targets, everything, costs.__getitem__, (), self.total),
+            *(lambda shares, without: (), self.trees.append, self.bounds.append),
+        )
+        self.proof = search.proof() if search.search(effort, lambda: False) else None
+
+    def require_right(self, best: int) -> None:
+        graph, targets, costs = self.question
+        before = self.total
+        for tree in self.trees:
+            cost = sum(costs[a] for a in tree)
+            assert best <= cost < before
+            reached = graph.reach(frozenset(range(len(costs))) - tree)
+            assert all(reached[o] for o in targets)
+            before = cost
+        assert all(bound <= best for bound in self.bounds)
+        assert self.bounds == sorted(set(self.bounds))
+        if self.proof is not None:
+            assert before == best
+            require_proves(self.proof, graph, targets, costs, best)
+
+
+def branches(proof: Proved | None) -> int:
+    return 1 + branches(proof.without) + branches(proof.using) if isinstance(proof, Branch) else 0
+
+
+def corners(size: int, price: int = 1) -> tuple[Hypergraph, list[int], list[int]]:
+    """Give a question whose relaxation falls short: a goal for each two of some things, which one makes."""
+    pairs = [(a, b) for a in range(size) for b in range(a)]
+    needs: list[list[int]] = [[] for _ in range(size)]
+    gives = [[1 + a] for a in range(size)]
+    targets = []
+    for goal, pair in enumerate(pairs, start=1 + size):
+        targets.append(goal)
+        for one in pair:
+            needs.append([1 + one])
+            gives.append([goal])
+    graph = Hypergraph(1 + size + len(pairs), needs, gives, [0])
+    return graph, targets, [price] * size + [1] * (len(needs) - size)
+
+
+@pytest.mark.parametrize("price", [1, 3, 10**30])
+def test_what_the_relaxation_leaves_open_is_closed_by_branching(price: int) -> None:
+    run = Run(*corners(4, price))
+    run.require_right(best=3 * price + 6)
+    assert branches(run.proof) > 0
+    assert run.proof is not None
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_cheapest_derivation_is_found_and_proved(seed: int) -> None:
+    question = asked(seed)
+    run = Run(*question)
+    run.require_right(cheapest(*question))
+    assert run.proof is not None
+
+
+def _garbage(seed: int, monkeypatch: pytest.MonkeyPatch, *, weights: bool) -> None:
+    """Let HiGHS say anything of what is taken, and of weights."""
+    drawn, told, solve = random.Random(seed), Covering.weights, Covering.solve
+
+    def taken(self: Covering, expired: Callable[[], bool] | None = None) -> Relaxed:
+        relaxed = solve(self, expired)
+        return relaxed._replace(
+            value=drawn.uniform(-9, 9), x=[drawn.choice([0, 0.5, 1, 7, math.nan, x]) for x in relaxed.x]
+        )
+
+    monkeypatch.setattr(Covering, "solve", taken)
+    if weights:
+        monkeypatch.setattr(
+            Covering,
+            "weights",
+            lambda self: [drawn.choice([w, w, -1.0, math.inf, math.nan, 3.0, 1e300]) for w in told(self)],
+        )
+
+
+@pytest.mark.parametrize("weights", [False, True])
+@pytest.mark.parametrize(
+    "seed", [*range(6), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(6, 60))]
+)
+def test_floats_may_be_wrong_and_what_is_proved_is_not(
+    seed: int, weights: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    question = asked(seed)
+    _garbage(seed, monkeypatch, weights=weights)
+    monkeypatch.setattr(branching, "_ROUNDS", seed % 3)
+    run = Run(*question, effort=20_000)
+    run.require_right(cheapest(*question))
+
+
+@given(st.integers(2, 5), st.data())
+@pytest.mark.slow
+def test_any_prices(size: int, data: st.DataObject) -> None:
+    graph, targets, costs = corners(size)
+    costs = [data.draw(st.integers(1, 4)) for _ in costs[:size]] + costs[size:]
+    run = Run(graph, targets, costs)
+    total = min(sum(costs[:size]) - costs[left_out] + size * (size - 1) // 2 for left_out in range(size))
+    run.require_right(total)
+    assert run.proof is not None
+
+
+@pytest.mark.parametrize("effort", [0, 1, 40, 80, 160, 320])
+def test_an_effort_that_is_not_enough_leaves_a_bound(effort: int) -> None:
+    Run(*corners(6), effort=effort).require_right(best=5 + 15)
+
+
+@pytest.mark.parametrize("asks", [0, 1, 2, 4, 8, 16, 1000])
+def test_time_that_is_up_leaves_a_bound_and_the_best_derivation(asks: int) -> None:
+    graph, targets, costs = corners(4)
+    left = iter(range(asks))
+    trees: list[set[int]] = []
+    bounds: list[int] = []
+    search = Branching(
+        *(graph, targets, range(len(costs)), costs.__getitem__, (), sum(costs)),
+        *(lambda shares, without: (), trees.append, bounds.append),
+    )
+    assert search.search(10**6, lambda: next(left, None) is None) == (asks == 1000)
+    assert all(bound <= 3 + 6 for bound in bounds)
+    assert all(sum(costs[a] for a in tree) >= 3 + 6 for tree in trees)
+
+
+def test_guessed_derivations_count_and_those_of_other_actions_do_not() -> None:
+    graph, targets, costs = corners(4)
+    best = {0, 1, 2, *range(4, 4 + 12, 2)}
+    heard: list[set[int]] = []
+    calls: list[frozenset[int]] = []
+
+    def guess(shares: Mapping[int, float], without: Collection[int]) -> list[set[int]]:
+        assert shares.keys() == set(range(len(costs)))
+        calls.append(frozenset(without))
+        reached = graph.reach(frozenset(range(len(costs))) - best)
+        return [{99}, best] if all(reached[o] for o in targets) else [{99}]
+
+    search = Branching(
+        *(graph, targets, range(len(costs)), costs.__getitem__, (), sum(costs)),
+        *(guess, heard.append, lambda bound: None),
+    )
+    assert search.search(10**6, lambda: False)
+    assert calls[0] == frozenset()
+    assert heard
+    assert {99} not in heard
+
+
+class Noted(Branching):
+    """Notes how searches ended."""
+
+    ended: ClassVar[list[bool]] = []
+
+    def search(self, effort: int, expired: Callable[[], bool]) -> bool:
+        self.ended.append(super().search(effort, expired))
+        return self.ended[-1]
+
+
+@pytest.fixture
+def ended(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
+    """Leave all to branching, with a tree that may be bad and no cuts, and tell how that ends."""
+    monkeypatch.setattr(reduction, "_SMALL", 0)
+    monkeypatch.setattr(reduction, "_NEAR", (1, 0))
+    monkeypatch.setattr(reduction, "landmark_cuts", lambda *_: Cuts(0, {}, []))
+    monkeypatch.setattr(reduction, "improved", lambda graph, few, tree, *_: tree)
+    monkeypatch.setattr(reduction, "guessed", lambda *_: ())
+    monkeypatch.setattr(reduction._Reducer, "_share_costs", lambda self, costs: False)
+    monkeypatch.setattr(branching, "Branching", Noted)
+    Noted.ended.clear()
+    return Noted.ended
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rule", ContainerRule)
+@pytest.mark.parametrize("seed", range(25))
+def test_answers_are_those_of_the_plain_program(seed: int, rule: ContainerRule, ended: list[bool]) -> None:
+    problem = random_problem(seed, rule, units=14)
+    by = [(Objective.UNITS,), (Objective.PRICE,), (Objective.INPUTS, Objective.PRICE), (Objective.KITCHEN,)]
+    objectives = by[seed % 4]
+    plain = solve(problem, objectives, Settings(reductions=NONE))
+    for reductions in (ALL, frozenset({Reduction.BOUNDS})):
+        outcome = solve(problem, objectives, Settings(reductions=reductions))
+        assert outcome.status is plain.status
+        if plain.costs is not None and outcome.costs is not None and outcome.units is not None:
+            assert outcome.costs.key(levels(objectives)) == plain.costs.key(levels(objectives)), reductions
+            if ended:
+                assert ended[-1]
+                assert outcome.proof is Proof.CUTS
+                assert certify(problem, levels(objectives), outcome.units, cuts=outcome.cuts) is not None
+
+
+@pytest.mark.parametrize("objective", [Objective.UNITS, Objective.PRICE, Objective.SUCCESS])
+def test_some_questions_are_branched_and_those_with_rounded_rates_are_not(
+    objective: Objective, ended: list[bool]
+) -> None:
+    for seed in range(10):
+        solve(random_problem(seed, ContainerRule.STRICT, units=14), (objective,), Settings())
+    assert bool(ended) == (objective is not Objective.SUCCESS)
+    assert all(ended)
+
+
+def test_what_is_as_good_is_not_branched_away(ended: list[bool]) -> None:
+    for seed in range(10):
+        reduce(random_problem(seed, ContainerRule.STRICT, units=14), levels((Objective.UNITS,)), SAFE)
+    assert not ended
