@@ -10,7 +10,7 @@ import pytest
 
 from foon_asp.bounds import lower_bound
 from foon_asp.bounds.cut import Cut, Cutter
-from foon_asp.bounds.exact_optimum import ExactOptimum, exact_optimum
+from foon_asp.bounds.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic
 from foon_asp.bounds.lower_bound import (
@@ -206,6 +206,37 @@ def test_a_cheaper_derivation_may_be_found_among_those_that_use_an_action() -> N
     assert len(sets) == 3
     assert sets[0] == 0
     assert Cutter(graph, targets).reached_by(found.value.actions)
+
+
+def test_cuts_are_grown_beside_each_other_and_past_what_costs_nothing() -> None:
+    graph, targets = covering(BOWTIE, 6)
+    price = costs(*[1] * 5, *[0] * 12)
+
+    def node(limits: Sequence[Limit] = ()) -> _Node:
+        prover = Prover(graph, targets, price, COUNT, limits=limits)
+        return _Node(prover, Cutter(graph, targets), frozenset(), frozenset(), None)
+
+    free = node()
+    free._share([0.0] * 17)
+    assert free.shares == [0.0] * 5 + [1.0] * 12
+    assert free._admit_beside()
+    members = [a for cut in free.cuts for a in cut.members]
+    assert len(members) == len({*members}) > 2
+    assert max(members) < 5
+    free._share([1.0] * 5 + [0.0] * 12)
+    assert not free._admit_beside()
+    # of what a limit may count, all counts
+    limited = node([({16: Fraction(1)}, Fraction(1))])
+    limited._share([0.0] * 18)
+    assert limited.shares == [0.0] * 18
+
+
+def test_what_is_cheaper_has_nothing_that_cannot_run() -> None:
+    # 1 comes of 0 at once, dear or cheap, or for nothing of 2, which has a price
+    graph = Hypergraph(3, needs=[[], [], [2], []], gives=[[1], [1], [1], [2]], start=[0])
+    with pytest.raises(CheaperError) as found:
+        Prover(graph, [1], costs(5, 1, 0, 4), COUNT).prove([0])
+    assert found.value.actions == (1,)
 
 
 def test_the_most_expensive_of_those_half_taken_is_branched_on() -> None:

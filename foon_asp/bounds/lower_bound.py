@@ -24,6 +24,7 @@ from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.bounds.relaxation import Covering
 
 _HIT = 0.999999  # a landmark of a greater share is taken to be hit
+_BESIDE = 40  # cuts that are grown beside each other for one solution
 _ORDERS = 3  # in how many orders cuts are grown before the relaxation counts as the best there is
 _FINER = 1e-4  # how much less a level counts than the one before, in floats
 
@@ -215,7 +216,7 @@ class Prover:
             if not breaking:
                 cheaper = goal is not None and self._order.compare(self._total(taken), goal) < 0
                 if cheaper and cutter.reached_by(taken) and not node.exceeds(taken):
-                    raise CheaperError(taken)
+                    raise CheaperError(self._able(taken))
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]
         return Branch(
@@ -241,6 +242,12 @@ class Prover:
     def _exceeded(self, derivation: Iterable[int]) -> Limit | None:
         chosen = frozenset(derivation)
         return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
+
+    def _able(self, actions: Sequence[int]) -> list[int]:
+        """Give those of some actions that can run by these alone."""
+        graph = self._graph
+        reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
+        return [action for action in actions if all(reached[o] for o in graph.needs[action])]
 
     def _share_out(self, cuts: Iterable[Cut]) -> Packing:
         """Give each cut in turn the weight that its members have left of their costs."""
@@ -285,6 +292,8 @@ class _Node:
         self._covering = Covering([*self._floats, *[prover.scaled(dear)] * len(self._limits)])
         for amounts, most in self._limits:
             self._covering.limit(amounts, most)
+        told = self._limits or prover._rules is not None
+        self._free = [] if told else [place for place, cost in enumerate(self._costs) if not any(cost)]
         self.cuts: list[Cut] = []
         self._rows: list[list[int]] = []
         self.shares: Sequence[float]
@@ -319,16 +328,22 @@ class _Node:
             if self._prover._expired():
                 raise _TimeUpError
             relaxed = self._covering.solve()
-            self.shares = relaxed.x
+            self._share(relaxed.x)
             if relaxed.value < wanted * 0.9999999 and self._separate():
                 continue
             exact = exact_optimum(self._rows, self._costs, order, relaxed.columns, relaxed.rows, self._limits)
             if exact is not None:
                 if enough is not None and self.suffices(exact.value, enough):
                     return exact
-                self.shares = [float(exact.x.get(place, 0)) for place in range(len(self._actions))]
+                self._share([float(exact.x.get(place, 0)) for place in range(len(self._actions))])
             if not self._separate():
                 return exact
+
+    def _share(self, x: Sequence[float]) -> None:
+        """Note a solution, with all that costs nothing and is in no limit or rule taken as a whole."""
+        self.shares = [*x]
+        for place in self._free:
+            self.shares[place] = 1.0
 
     def packing(self, exact: ExactOptimum) -> Packing:
         """Give the weighted cuts of an exact optimum."""
@@ -356,7 +371,22 @@ class _Node:
 
     def _separate(self) -> bool:
         """Look for cuts whose landmarks have shares of less than 1; whether there were any."""
-        return any(self._admit_missed() for _ in range(_ORDERS))
+        return self._admit_beside() or any(self._admit_missed() for _ in range(_ORDERS))
+
+    def _admit_beside(self) -> bool:
+        """Grow cuts with no action in common, of dear ones where it can be, and add those missed."""
+        chance = self._prover._random.random
+        shares = dict(zip(self._actions, self.shares, strict=False))
+        missed: list[Cut] = []
+        while len(missed) < _BESIDE:
+            dear = {a: cost * (0.5 + chance()) for a, cost in zip(self._actions, self._floats, strict=True)}
+            cut = self._cutter.cut(self._used, sorted(self._actions, key=lambda a: (-shares[a], dear[a])))
+            if cut is None or sum(shares[a] for a in cut.members) >= _HIT:
+                break
+            missed.append(cut)
+            shares.update(dict.fromkeys(cut.members, 1.0))
+        self.admit(missed)
+        return bool(missed)
 
     def _admit_missed(self) -> bool:
         """Grow cuts in an order with great shares first, arbitrary else, and add those that are missed."""
