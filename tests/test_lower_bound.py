@@ -536,6 +536,33 @@ def test_a_relaxation_is_stopped_on_the_way(monkeypatch: pytest.MonkeyPatch) -> 
     assert hexagon().solve().value == pytest.approx(2.0)
 
 
+def test_a_solution_amid_others_is_none_where_it_takes_long_and_a_corner_follows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    relaxation = Covering([1.0, 1.0, 1.0, 5.0])
+    for row in ([0, 1, 3], [1, 2], [0, 2, 3]):
+        relaxation.add(row)
+    amid = relaxation.inside()
+    assert amid is not None
+    assert amid.value == pytest.approx(1.5, abs=1e-5)
+    assert amid.x == pytest.approx([0.5, 0.5, 0.5, 0.0], abs=1e-4)
+    assert amid.weights == pytest.approx([0.5] * 3, abs=1e-4)
+    corner = relaxation.solve()
+    assert corner.value == pytest.approx(1.5)
+    assert (corner.columns, corner.rows) == ([0, 1, 2], [0, 1, 2])
+    relaxation.add([3])
+    assert relaxation.solve().value == pytest.approx(6.0)
+    rng = random.Random(1)
+    many = Covering([1.0] * 40)
+    for _ in range(60):
+        many.add(rng.sample(range(40), 5))
+    whole = many.inside()
+    assert whole is not None
+    monkeypatch.setattr("foon_asp.bounds.relaxation._SOON", 0.0)
+    assert many.inside() is None
+    assert many.solve().value == pytest.approx(whole.value, abs=1e-5)  # by steps from nothing
+
+
 def test_a_row_that_nothing_covers_is_a_bug(capfd: pytest.CaptureFixture[str]) -> None:
     relaxation = Covering([1.0])
     relaxation.add([])

@@ -12,7 +12,7 @@ from foon_asp.bounds import shared_costs
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
-from foon_asp.bounds.relaxation import Covering, Relaxed
+from foon_asp.bounds.relaxation import Covering, Relaxed, Weighed
 from foon_asp.bounds.shared_costs import PARTS, SharedCosts, _Sharing, share_costs
 from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, levels
@@ -77,7 +77,13 @@ def test_no_derivation_costs_less_than_the_bound(
 ) -> None:
     graph, targets, costs = asked(seed)
     if wrong:  # nothing that HiGHS says of weights makes a bound too great
-        drawn, told = random.Random(seed), Covering.weights
+        drawn, told, amid = random.Random(seed), Covering.weights, Covering.inside
+
+        def inside(relaxation: Covering) -> Weighed | None:
+            found = amid(relaxation)
+            return found and found._replace(weights=[drawn.uniform(-1, 3) for _ in found.weights])
+
+        monkeypatch.setattr(Covering, "inside", inside)
         monkeypatch.setattr(Covering, "weights", lambda it: [drawn.uniform(-1, 3) for _ in told(it)])
     found = share_costs(graph, targets, range(len(costs)), costs.__getitem__, (), 10**15, lambda: False)
     assert (found is None) == (not targets)
@@ -110,15 +116,24 @@ def test_costs_that_no_float_can_hold(seed: int) -> None:
 
 
 class Told:
-    """In place of HiGHS: says a value for each solution, the same shares in all, and weights."""
+    """In place of HiGHS: says a value for each solution, the same shares in all, and weights.
+
+    With ``amid``, solutions are those that are no corners, too.
+    """
 
     def __init__(self, values: Sequence[float], shares: list[float], weights: Sequence[float] = ()) -> None:
         self._values, self._shares, self._weights = values, shares, weights
-        self.solved = 0
+        self.solved, self.amid = 0, False
         self.rows: list[tuple[int, ...]] = []
 
     def add(self, row: tuple[int, ...]) -> None:
         self.rows.append(row)
+
+    def inside(self) -> Weighed | None:
+        if not self.amid:
+            return None
+        solved = self.solve(bool)
+        return Weighed(solved.value, solved.x, self.weights())
 
     def solve(self, expired: Callable[[], bool]) -> Relaxed:
         self.solved += 1
@@ -147,7 +162,13 @@ def told(monkeypatch: pytest.MonkeyPatch, targets: int, told: Told, enough: int)
 
 
 # by the dearest action, 101 would be enough: a hundredth of what lacks, and no more, has to come of eight
-ENDS = [([0.0] * 30, 9), ([0.0] * 8 + [1.0] * 30, 17), ([0.0, 101.0, 101.0], 2)]
+# costs are whole, so a little more than 201 is as good as 202
+ENDS = [
+    ([0.0] * 30, 9),
+    ([0.0] * 8 + [1.0] * 30, 17),
+    ([0.0, 100.506], 2),
+    ([0.0] + [100.5] * 9, 10),
+]
 
 
 def test_cuts_are_looked_for_until_they_bring_little(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -245,6 +266,49 @@ def test_weights_are_those_wanted_and_what_is_left_goes_to_the_greatest(
         {0: 0.5, 1: 0.25, 2: 0.0, 3: 0.0, 4: 1.0},
     )
     assert relaxation.rows == [(0, 1), (1, 2), (2, 3), (2,), (4,), (4,)]
+
+
+def shared_of_five(relaxation: Told, enough: int, monkeypatch: pytest.MonkeyPatch) -> int:
+    """Share out costs of 10 among five targets of one action each; gives the bound."""
+    with monkeypatch.context() as patched:
+        patched.setattr(shared_costs, "Covering", lambda _: relaxation)
+        graph = Hypergraph(6, [[]] * 5, [[n] for n in range(1, 6)], [0])
+        known = [({n + 1}, (n,)) for n in range(5)]
+        found = share_costs(graph, range(1, 6), range(5), lambda _: 10, known, enough, lambda: False)
+    assert found is not None
+    return found.bound
+
+
+def test_a_solution_amid_others_is_enough_where_its_weights_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    # what is left of the costs goes to the cuts as well, so all five are known to come to 50
+    exact = Told([5.0] * 3, [1.0] * 5, [1.0] * 5)
+    exact.amid = True
+    assert (shared_of_five(exact, 50, monkeypatch), exact.solved) == (50 * PARTS, 1)
+    # the value says more than the weights come to: a corner is looked for
+    vague = Told([5.002, 5.0], [1.0] * 5, [1.0] * 5)
+    vague.amid = True
+    assert (shared_of_five(vague, 50, monkeypatch), vague.solved) == (50 * PARTS, 2)
+    near = Told([5.0009], [1.0] * 5, [1.0] * 5)
+    near.amid = True
+    assert (shared_of_five(near, 50, monkeypatch), near.solved) == (50 * PARTS, 1)
+
+
+def test_where_time_is_up_the_last_solution_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Ended(Told):
+        def inside(self) -> Weighed | None:
+            return None if self.solved else super().inside()
+
+    relaxation = Ended([1.0], [0.0] * 5, [0.5])
+    relaxation.amid = True
+    looks = iter([False] * 6)  # within the round of cuts that follows, and then time is up
+    monkeypatch.setattr(shared_costs, "Covering", lambda _: relaxation)
+    graph = Hypergraph(6, [[]] * 5, [[n] for n in range(1, 6)], [0])
+    known = [({1}, (0,))]
+    found = share_costs(graph, range(1, 6), range(5), lambda _: 10, known, 50, lambda: next(looks, True))
+    assert found is not None
+    assert relaxation.solved == 1
+    assert found.bound > 10 * PARTS  # rows that came later have what is left
+    require_holds(graph, [*range(1, 6)], [10] * 5, found)
 
 
 @pytest.mark.parametrize("rule", ContainerRule)

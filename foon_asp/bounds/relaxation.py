@@ -1,5 +1,6 @@
 """The linear relaxation of hitting every landmark, in floats: where exact weights start from."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Final, NamedTuple
@@ -11,9 +12,19 @@ _OPTIONS: Final[dict[str, bool | str | float]] = {
     "presolve": "off",
     "solver": "simplex",
     "threads": 1,
+    "time_limit": math.inf,
     "primal_feasibility_tolerance": 1e-10,
     "dual_feasibility_tolerance": 1e-10,
 }
+_INSIDE: Final[dict[str, bool | str | float]] = {
+    "solver": "ipm",
+    "presolve": "on",
+    "run_crossover": "off",
+    "primal_feasibility_tolerance": 1e-7,
+    "dual_feasibility_tolerance": 1e-7,
+}
+_CORNER: Final[dict[str, bool | str | float]] = _INSIDE | _OPTIONS | {"solver": "ipm", "run_crossover": "on"}
+_SOON = 2.0  # seconds: steps of the interior point method cannot be continued
 _STEPS = 4000  # of the simplex algorithm: at most about a second, with thousands of columns and rows
 
 
@@ -34,6 +45,14 @@ class Relaxed(NamedTuple):
     rows: list[int]
 
 
+class Weighed(NamedTuple):
+    """An optimum, perhaps amid others: its value, the share ``x`` of each column, the weight of each row."""
+
+    value: float
+    x: list[float]
+    weights: list[float]
+
+
 class Covering:
     """Minimize the sum of ``costs[c] * x[c]``, ``x >= 0``, with ``x`` adding up to 1 or more in every row.
 
@@ -48,8 +67,8 @@ class Covering:
 
         self._library, self._array = highspy, np.array
         self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
-        for option, value in _OPTIONS.items():
-            self._highs.setOptionValue(option, value)
+        self._set(_OPTIONS)
+        self._cornered = True  # the last solution, if any
         count = len(costs)
         self._highs.addVars(count, np.zeros(count), np.full(count, highspy.kHighsInf))
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
@@ -74,6 +93,27 @@ class Covering:
         """Let a row ask for so much; 0 is nothing."""
         self._highs.changeRowBounds(row, least, self._library.kHighsInf)
 
+    def _set(self, options: dict[str, bool | str | float]) -> None:
+        for option, value in options.items():
+            self._highs.setOptionValue(option, value)
+
+    def inside(self) -> Weighed | None:
+        """Find an optimum amid all others: of many rows sooner than a corner, and less exact.
+
+        ``None`` where nothing near enough to an optimum is found soon. It cannot be stopped on the way.
+        """
+        self._cornered = False
+        self._run(_INSIDE)
+        if self._highs.getModelStatus() != self._library.HighsModelStatus.kOptimal:
+            return None
+        solution = self._highs.getSolution()
+        value = float(self._highs.getObjectiveValue())
+        return Weighed(value, list(solution.col_value), list(solution.row_dual))
+
+    def _run(self, options: dict[str, bool | str | float]) -> None:
+        self._set(options | {"time_limit": self._highs.getRunTime() + _SOON})
+        self._highs.run()
+
     def solve(self, expired: Callable[[], bool] | None = None) -> Relaxed:
         """Find a basic optimum of the rows so far; or, where time is up by then, what there is by then.
 
@@ -82,6 +122,10 @@ class Covering:
         highs = self._highs
         if expired is not None:
             highs.setOptionValue("simplex_iteration_limit", _STEPS)
+        if not self._cornered:  # steps of the simplex algorithm would start from nothing
+            self._cornered = True
+            self._run(_CORNER)
+            self._set(_OPTIONS)
         highs.run()
         status = self._library.HighsModelStatus
         while highs.getModelStatus() == status.kIterationLimit and not (expired and expired()):

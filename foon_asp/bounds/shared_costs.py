@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.relaxation import Covering
+from foon_asp.bounds.relaxation import Covering, Weighed
 
 PARTS = 720720  # of 1: most weights are simple fractions
 _HIT = 0.999  # a landmark of a greater share is taken to be hit
@@ -23,6 +23,7 @@ _ALONE = 8  # times as many actions as there are, at most, for targets looked at
 _SMALL = 0.5  # of the actions, at most, that a target may need for this
 _STALLED = 8  # solutions after which a bound that hardly grows counts as the best there is
 _GROWS = 0.01  # of what lacks, how much these have to bring
+_LOST = Fraction(1, 100)  # how much less than the solution the weights may add up to
 
 
 class SharedCosts(NamedTuple):
@@ -103,15 +104,29 @@ class _Sharing:
         for objects, members in known:
             row = tuple(place[a] for a in members if a in place)
             self._add(frozenset(objects), row)
+        wanted = (100 * enough - 99) / (100 * self._dearest)  # costs are whole, and so are bounds
         values: list[float] = []
-        while True:
-            solved = self._covering.solve(expired)
-            values.append(solved.value)
-            lacks = enough / self._dearest - solved.value
+        last: Weighed | None = None
+        inside = True  # which is found sooner, until it is not exact enough
+        while last is None or not expired():
+            found = self._covering.inside() if inside else None
+            if found is None:
+                if last is not None and expired():
+                    break
+                inside = False
+                solved = self._covering.solve(expired)
+                found = Weighed(solved.value, solved.x, self._covering.weights())
+            last = found
+            values.append(found.value)
+            lacks = wanted - found.value
             grown = values[-1] - values[-1 - _STALLED] if len(values) > _STALLED else math.inf
-            if lacks <= 0 or grown < _GROWS * lacks or not self._separate(solved.x, expired):
-                break
-        return self._shared(solved.x)
+            if lacks <= 0 or grown < _GROWS * lacks or not self._separate(found.x, expired):
+                shared = self._shared(found)
+                lost = Fraction(found.value) * self._dearest - Fraction(shared.bound, PARTS)
+                if not inside or lost < _LOST:
+                    return shared
+                inside = False
+        return self._shared(last)
 
     def _add(self, objects: frozenset[int], row: tuple[int, ...]) -> None:
         self._cuts.append(objects)
@@ -162,11 +177,12 @@ class _Sharing:
         together = [Cutter(graph, others, reachable=everything)] if others else []
         return alone, together
 
-    def _shared(self, x: list[float]) -> SharedCosts:
+    def _shared(self, solved: Weighed) -> SharedCosts:
         left = [c * PARTS for c in self._costs]
         weights = [0] * len(self._rows)
         of_1 = self._dearest * PARTS
-        wanted = [max(0, round(Fraction(w) * of_1)) for w in self._covering.weights()]
+        wanted = [max(0, round(Fraction(w) * of_1)) for w in solved.weights]
+        wanted += [0] * (len(self._rows) - len(wanted))  # of rows that came later
         dearest_first = sorted(range(len(wanted)), key=lambda row: -wanted[row])
         for limit in (wanted, None):  # what is left by rounding goes to whom it helps
             for row in dearest_first:
@@ -181,5 +197,5 @@ class _Sharing:
             sum(weights),
             {a: left[n] for n, a in enumerate(self._actions)},
             [(cut, weights[row]) for row, cut in enumerate(self._cuts) if weights[row]],
-            {a: x[n] for n, a in enumerate(self._actions)},
+            {a: solved.x[n] for n, a in enumerate(self._actions)},
         )
