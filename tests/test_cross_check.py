@@ -85,6 +85,15 @@ def test_every_engine_agrees_with_brute_force(engine: Solve, rule: ContainerRule
     assert trees > 10
 
 
+@pytest.mark.parametrize("engine", SOLVERS)
+def test_nothing_is_made_where_all_goals_are_at_hand(engine: Solve) -> None:
+    problem = random_problem(0, ContainerRule.STRICT)
+    at_hand = replace(problem, goals=(min(problem.kitchen),))
+    for objective in Objective:
+        answer = engine(at_hand, levels((objective,)), frozenset(), 60.0)
+        assert (answer.units, answer.finished) == ((), True)
+
+
 @pytest.mark.parametrize("rule", [RULES[0], pytest.param(RULES[1], marks=pytest.mark.slow)])
 @pytest.mark.slow
 def test_all_engines_give_one_answer(rule: ContainerRule) -> None:

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+import foon_asp
 from foon_asp.encoding import exact_success
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -149,6 +150,16 @@ def test_one_objective_or_four_are_no_trade_off(cli: Cli) -> None:
         ran = cli("pareto", "--goal", "tea", "--objective", listed)
         assert ran.code == 2
         assert "expected 2 or 3" in ran.err
+
+
+def test_a_front_of_a_goal_at_hand_by_costs_that_no_unit_has() -> None:
+    """Nothing is left to do, so no unit has a cost; and still no tree costs less than 0."""
+    units = [("brew", "water", "tea")]
+    problem = foon_asp.build(units, kitchen="tea", goals="tea", rates={"brew": 0.5}).problem("tea")
+    for objectives in ("attempts,success", "success,attempts", "units,attempts", "attempts,kitchen,success"):
+        front = foon_asp.pareto(problem, objectives)
+        assert [list(point.units) for point in front.points] == [[]]
+        assert front.complete
 
 
 def test_the_answer_in_json(cli: Cli) -> None:

@@ -44,6 +44,8 @@ def solve_with_fast_downward(
     program = driver()
     if program is None:
         raise BugError("Fast Downward is asked for where it is not installed")
+    if not scope_of(problem, forbidden).goals:  # which it refuses, and it takes nothing to make none
+        return EngineAnswer(NAME, objectives[:1], (), True)
     with tempfile.TemporaryDirectory() as name:
         task, plan = Path(name, "task.sas"), Path(name, "plan")
         task.write_text("\n".join(_task(problem, objectives[0], forbidden)) + "\n", encoding="ascii")

@@ -20,6 +20,8 @@ def solve_with_highs(
     problem: Problem, objectives: tuple[Objective, ...], forbidden: frozenset[int], seconds: float
 ) -> EngineAnswer:
     """Find a best tree by all objectives, one after the other, each held where the ones before are best."""
+    if not scope_of(problem, forbidden).goals:  # it has no variables then, and nothing to hold
+        return EngineAnswer(NAME, objectives, (), True)
     end = time.monotonic() + seconds
     program = _Program(problem, forbidden)
     units: tuple[int, ...] | None = None
