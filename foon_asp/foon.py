@@ -230,9 +230,9 @@ def _network(units: Iterable[PlainUnit], tell: Callable[[int], None]) -> Network
         elif isinstance(unit, tuple | list) and len(unit) == 3:
             motion, inputs, outputs = unit
         else:
-            raise UserError(f"found the unit {unit!r}, expected {_UNIT}")
+            raise UserError(f"found the unit {unit!r}; {_UNIT}")
         if not isinstance(motion, str) or not motion.strip():
-            raise UserError(f"found the motion {motion!r} of unit {number}, expected {_UNIT}")
+            raise UserError(f"found the motion {motion!r} of unit {number}, expected a name; {_UNIT}")
         place = Source("the units", number)
         builder.add(motion, [*_nodes(inputs, number)], [*_nodes(outputs, number)], place)
         if number % _OFTEN == 0:

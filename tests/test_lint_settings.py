@@ -342,3 +342,11 @@ def test_the_hooks_call_verbs_that_there_are(cli: Cli) -> None:
     for hook in hooks:
         program, *words = hook["entry"].split()
         assert (program, cli(*words, "--help").code, hook["pass_filenames"]) == ("foon-asp", 0, False)
+
+
+def test_of_a_misspelt_kind_the_nearest_is_named(cli: Cli, tmp_path: Path) -> None:
+    assert (
+        "'near-nam' is no kind of finding; did you mean 'near-name'?"
+        in cli("lint", tmp_path, "--select", "near-nam").err
+    )
+    assert "docs/lint.md lists them" in cli("lint", tmp_path, "--ignore", "xyz").err

@@ -61,11 +61,11 @@ def test_a_network_of_plain_values() -> None:
 @pytest.mark.parametrize(
     ("units", "message"),
     [
-        (["pour"], "found the unit 'pour', expected a unit is its motion|found the unit 'pour'"),
+        (["pour"], "found the unit 'pour'; a unit is its motion, its inputs and its outputs"),
         ("pour", "found units='pour', expected several units"),
         (3, "found units=3"),
         ([("pour", "water")], "found the unit"),
-        ([(3, "water", "tea")], "found the motion 3 of unit 1"),
+        ([(3, "water", "tea")], "found the motion 3 of unit 1, expected a name; a unit is"),
         ([("pour", 3, "tea")], "found 3 in unit 1, expected object nodes"),
         ([("pour", [3], "tea")], "found 3 in unit 1, expected an object node"),
         ([("pour", "water; in [", "tea")], "of unit 1 cannot be read: at column"),

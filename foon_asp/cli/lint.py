@@ -4,6 +4,7 @@ import dataclasses
 import functools
 import sys
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 
 import click
@@ -38,7 +39,18 @@ from foon_asp.text.folder_files import foon_files
 from foon_asp.text.json_value import json_text
 from foon_asp.text.plain_file import plain_text, read_content
 
-_CODE = click.Choice(list(CATALOG))
+
+class _Code(click.Choice[str]):
+    """The code of a rule; of a misspelt one the nearest is named, and not all sixty."""
+
+    def get_invalid_choice_message(self, value: object, ctx: click.Context | None) -> str:
+        """Say what was given, and what may be meant."""
+        near = get_close_matches(str(value), self.choices, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else "docs/lint.md lists them"
+        return f"{value!r} is no kind of finding; {hint}"
+
+
+_CODE = _Code(list(CATALOG))
 _STDIN = "-"
 
 

@@ -170,7 +170,7 @@ class TreePanel {
     this.kitchen.replaceChildren(
       el("summary", {}, `Kitchen after ${this.step ? `step ${this.step}` : "no step"}: ${counted(there.length, "object")}`),
       this.items === "lasting" ? el("p", { class: "said" }, "Nothing runs out: what was made or at hand stays. Only what the plan takes is listed.")
-        : el("p", { class: "said" }, "What is used up is gone. Of what the kitchen had, what the plan takes is listed."),
+        : el("p", { class: "said" }, "What was made and is used up is gone. What the plan takes from the kitchen is listed as it was at the start."),
       el("ul", {}, there.map(({ node, copies, came }) => {
         const item = this.thing(node, came ? "plus" : "", this.step);
         if (copies > 1) item.firstChild.append(el("small", {}, ` × ${copies}`));
