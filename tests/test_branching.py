@@ -21,6 +21,7 @@ from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, levels
 from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce, reduction
+from tests.gap_problem import gap_problem
 from tests.random_problems import random_problem
 from tests.test_shared_costs import asked, cheapest
 
@@ -255,7 +256,30 @@ def test_answers_are_those_of_the_plain_program(seed: int, rule: ContainerRule, 
             if ended:
                 assert ended[-1]
                 assert outcome.proof is Proof.CUTS
-                assert certify(problem, levels(objectives), outcome.units, cuts=outcome.cuts) is not None
+                by_cases = certify(problem, levels(objectives), outcome.units, cases=outcome.cases)
+                assert by_cases is not None
+                assert by_cases.certified == levels(objectives)
+
+
+@pytest.mark.parametrize("objective", [Objective.UNITS, Objective.KITCHEN])
+def test_a_certificate_tells_the_cases_of_the_search_apart(objective: Objective, ended: list[bool]) -> None:
+    """Also where an item is taken or not, which has other numbers in a certificate."""
+    told: set[str] = set()
+    for seed in range(4):
+        problem = gap_problem(seed)
+        outcome = solve(problem, (objective,), Settings())
+        assert outcome.units is not None
+        certificate = certify(problem, levels((objective,)), outcome.units, cases=outcome.cases)
+        assert certificate is not None
+        assert certificate.certified == levels((objective,))
+        if outcome.cases is not None:
+            action, units = outcome.cases[0], len(problem.network)
+            assert certificate.content["proof"]["branch"] == (
+                {"unit": action} if action < units else {"item": action - units}
+            )
+            told.update(certificate.content["proof"]["branch"])
+    assert all(ended)
+    assert told == ({"unit"} if objective is Objective.UNITS else {"item"})
 
 
 @pytest.mark.parametrize("objective", [Objective.UNITS, Objective.PRICE, Objective.SUCCESS])

@@ -3,9 +3,12 @@
 from enum import StrEnum
 from fractions import Fraction
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.problem import Costs, Objective, Problem
+
+if TYPE_CHECKING:  # few questions need it
+    from foon_asp.bounds.lower_bound import Cases
 
 
 class Status(StrEnum):
@@ -51,7 +54,8 @@ class Outcome(NamedTuple):
     ``certified`` are the objectives, from the first on, by which a certificate proves the tree the best.
     ``left`` counts the units that were left for the search, 0 if it was not needed. ``cuts`` are the sets of
     object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.bounds`. ``stopped``
-    names the limit that stopped an unproved answer, and what was being done.
+    names the limit that stopped an unproved answer, and what was being done. ``cases`` are those that a proof
+    by cuts tells apart, if one alone was not enough: a unit, then the cases without it and those with it.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))
@@ -72,3 +76,4 @@ class Outcome(NamedTuple):
     left: int = 0
     cuts: tuple[tuple[int, ...], ...] = ()
     stopped: str | None = None
+    cases: "Cases" = None

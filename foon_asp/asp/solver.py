@@ -673,6 +673,7 @@ class _Solver:
             units=self.holds.tree(units),
             costs=self.heard.costs(units),
             left=0 if proof is Proof.CUTS else len(first.units),
+            cases=reduced.cases if reduced else None,
             cuts=tuple(tuple(sorted(objects)) for objects in cuts if max(objects) < size),
         )
         assert self.heard.best is not None

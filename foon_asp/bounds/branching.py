@@ -17,7 +17,7 @@ from typing import Any
 
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.lower_bound import Branch, Hopeless, Packing, Proof
+from foon_asp.bounds.lower_bound import Branch, Cases, Hopeless, Packing, Proof
 from foon_asp.bounds.relaxation import Covering, UnsolvedError
 from foon_asp.bounds.shared_costs import PARTS, renumbered
 
@@ -130,6 +130,15 @@ class Branching:
     def proof(self) -> Proof:
         """Prove what a search came to."""
         return self._proof(self._first)[0]
+
+    def cases(self) -> Cases:
+        """Give the actions that were branched on, without what was left out by the way."""
+        return self._cases(self._first)
+
+    def _cases(self, place: _Place) -> Cases:
+        if place.hopeless or place.without is None or place.using is None or place.action is None:
+            return None
+        return self._actions[place.action], self._cases(place.without), self._cases(place.using)
 
     def _stopped(self, expired: Callable[[], bool]) -> bool:
         return self.effort <= 0 or expired()

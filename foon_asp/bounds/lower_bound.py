@@ -11,7 +11,7 @@ of it may carry more weight, and what all that there is carries is taken from th
 
 import math
 import random
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cmp_to_key
 from operator import mul
@@ -65,6 +65,9 @@ class Branch(NamedTuple):
 
 
 Proof = Packing | Hopeless | Broken | Branch
+Cases = (
+    tuple[int, "Cases", "Cases"] | None
+)  # an action, and the cases without it and with it, told apart further
 
 
 class Rules(Protocol):
@@ -132,14 +135,16 @@ class Prover:
         """Give a cost as one float, in which a level counts much less than the one before it."""
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
-    def prove(self, derivation: Iterable[int]) -> Proof | None:
+    def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
         """Prove that no derivation costs less than this one; ``None`` where that takes too long.
 
-        Raises :class:`CheaperError` when one is met that does.
+        ``cases`` are told apart first, where those cuts that are known do not suffice. Raises
+        :class:`CheaperError` when a derivation is met that costs less.
         """
         actions = frozenset(derivation)
         try:
-            return self._prove(actions, self._total(actions), frozenset(), self._forbidden, self._known)
+            goal, nothing = self._total(actions), frozenset[int]()
+            return self._prove(actions, goal, nothing, self._forbidden, self._known, cases)
         except _TimeUpError:
             return None
 
@@ -175,7 +180,8 @@ class Prover:
         goal: Vector | None,
         used: frozenset[int],
         forbidden: frozenset[int],
-        known: Iterable[frozenset[int]] = (),
+        known: Collection[frozenset[int]] = (),
+        cases: Cases = None,
     ) -> Proof:
         """Prove that derivations with the used actions and none of the forbidden cost at least ``goal``.
 
@@ -194,10 +200,16 @@ class Prover:
         if left is not None:
             before = set(cutter.targets)
             widened = [cutter.widened(cut) for cut in known if not before.isdisjoint(cut)]
+            widened = [cut for cut in widened if used.isdisjoint(cut.members)]
             packing = self._share_out(widened)
             value, rounded = self.rounded(self._order.total(weight for _, weight in packing.weights))
             if self._order.compare(value, left) >= 0:
                 return packing._replace(rounded=rounded)
+        undecided = set(cutter.actions) - used if cases else ()
+        while cases is not None and cases[0] not in undecided:
+            cases = cases[2] if cases[0] in used else cases[1]
+        if cases is not None:
+            return self._branch(derivation, goal, used, forbidden, known, cases[0], cases[1:])
         while True:
             node = _Node(self, cutter, derivation, used, goal)
             node.admit(widened)
@@ -219,10 +231,25 @@ class Prover:
                     raise CheaperError(self._able(taken))
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]
+        known = [frozenset(cut.objects) for cut in node.cuts]
+        return self._branch(derivation, goal, used, forbidden, known, action, (None, None))
+
+    def _branch(
+        self,
+        derivation: frozenset[int],
+        goal: Vector | None,
+        used: frozenset[int],
+        forbidden: frozenset[int],
+        known: Collection[frozenset[int]],
+        action: int,
+        told: Sequence[Cases],
+    ) -> Branch:
+        """Prove the same of derivations without an action, and of those with it."""
+        without, using = told
         return Branch(
             action,
-            self._prove(derivation, goal, used, forbidden | {action}),
-            self._prove(derivation, goal, used | {action}, forbidden),
+            self._prove(derivation, goal, used, forbidden | {action}, known, without),
+            self._prove(derivation, goal, used | {action}, forbidden, known, using),
         )
 
     def rounded(self, bound: Vector) -> tuple[Vector, int | None]:

@@ -8,6 +8,7 @@ from functools import cache, cached_property
 from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic, Vector
+from foon_asp.bounds.lower_bound import Cases
 from foon_asp.certificate.coverage import Coverage
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.proof import ruled, verify
@@ -137,6 +138,18 @@ class Arrays:
         steps = self.ruled.used(frozenset(units)).difference(units)
         taking = (action for o, action in self.items.items() if o in needed)
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
+
+    def cases(self, cases: Cases) -> Cases:
+        """Give cases of an answer by the numbers of actions here, as far as these are known.
+
+        There, the taking of an item is numbered by the object, after all units.
+        """
+        if cases is None:
+            return None
+        action, without, using = cases
+        units = len(self.problem.network)
+        here = action if action < units else self.items.get(action - units)
+        return None if here is None else (here, self.cases(without), self.cases(using))
 
     def stated(self, vector: Sequence[Fraction]) -> list[object]:
         """Write a cost or weight as certificates do, one part an objective; raises like :func:`written`."""

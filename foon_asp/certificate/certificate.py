@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.lexicographic import Vector
-from foon_asp.bounds.lower_bound import Broken, CheaperError, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import Broken, Cases, CheaperError, Hopeless, Packing, Proof, Prover
 from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
@@ -65,13 +65,15 @@ def certify(
     expired: Callable[[], bool] = lambda: False,
     cuts: Sequence[Sequence[int]] = (),
     subject: verify.Subject | None = None,
+    cases: Cases = None,
 ) -> Certificate | None:
     """Prove a tree optimal by a lexicographic list of objectives, or by as many from the first as can be.
 
     ``units`` is the tree in an order that executes. Without constraints that are not covered, a tree that is
     not optimal raises :class:`NotBestError`. With such constraints it may well not be optimal among all
     trees: then the certificate proves a bound on all of them. ``cuts`` are sets of object nodes, a goal in
-    each, that are tried first: :attr:`foon_asp.asp.Outcome.cuts`. ``subject`` is the whole that the network
+    each, that are tried first, and ``cases`` are told apart first: :attr:`foon_asp.asp.Outcome.cuts` and
+    ``Outcome.cases``. ``subject`` is the whole that the network
     is a part of, if it is one: with all makers of each node that is neither at hand nor an output alone, and
     without constraints. ``None`` where nothing is found before
     ``expired`` says so, for objectives that need rates with rates of 0 or with rates that are not those of
@@ -91,7 +93,7 @@ def certify(
         arrays = Arrays(problem, objectives[:count], covered)
         prover = _prover(arrays, expired, known)
         try:
-            proof = prover.prove(arrays.actions(units))
+            proof = prover.prove(arrays.actions(units), arrays.cases(cases))
         except CheaperError as cheaper:
             guide = tuple(a for a in cheaper.actions if a < len(problem.network))
             if not covered.partial:

@@ -83,7 +83,9 @@ def _certified(
         return None
     wanted = levels(outcome.objectives)
     try:
-        return certify(outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts, subject)
+        return certify(
+            outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts, subject, outcome.cases
+        )
     except NotBestError as better:
         why = f"there is a better tree, {_tree(outcome, better.units)}"
         raise _contradiction(outcome, settings, why) from None

@@ -22,6 +22,7 @@ from foon_asp.reduce.upper_bound import following, guessed, improved, varied, wi
 from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 if TYPE_CHECKING:  # few questions need it
+    from foon_asp.bounds.lower_bound import Cases
     from foon_asp.bounds.shared_costs import SharedCosts
 
 _LARGE = 40_000  # actions from which on it pays not to look at all of them
@@ -47,6 +48,7 @@ class Reduced(NamedTuple):
     says that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
     ``wide`` tells which units trees up to a cost can have, whatever rules leave of these trees. ``shared``
     are the cuts among which costs were shared out as well as can be, where the others left too much.
+    ``cases`` are those that a proof by branching tells apart.
     """
 
     tree: frozenset[int] | None
@@ -58,6 +60,7 @@ class Reduced(NamedTuple):
     interrupted: bool = False
     wide: Wide | None = None
     shared: "SharedCosts | None" = None
+    cases: "Cases" = None
 
 
 class Listener:
@@ -181,6 +184,7 @@ class _Reducer:
         self.cuts: Cuts | None = None
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
+        self.cases: Cases = None
 
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
         ended = settled = hopeless = False
@@ -358,6 +362,7 @@ class _Reducer:
         settled = branching.search(self.effort, self.expired)
         self.effort = branching.effort
         if settled:
+            self.cases = branching.cases()
             bounded(self._total(costs))
             return True
         if self.shared is not None and self._total(costs) < total:
@@ -480,4 +485,5 @@ class _Reducer:
             early and not settled,
             self.wide,
             self.shared,
+            self.cases,
         )
