@@ -1,7 +1,7 @@
 """The first half of every question: the network left after the cut, its measures, and its program."""
 
 from collections.abc import Collection, Sequence
-from contextlib import nullcontext
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -123,8 +123,7 @@ class Prepared:
 
         As :func:`foon_asp.encoding.search.run` does; nothing is known where a limit comes before.
         """
-        from foon_asp.asp.integrity import placed  # noqa: PLC0415 (all of it takes clingo along)
-        from foon_asp.encoding.search import run  # noqa: PLC0415
+        from foon_asp.encoding.search import run  # noqa: PLC0415 (both take clingo along)
         from foon_asp.grounding.run import Run  # noqa: PLC0415
 
         program, relaxed = self.program, self.settings.relaxed
@@ -133,7 +132,11 @@ class Prepared:
         except KeyboardInterrupt:
             self.deadline.interrupt()
             return Run()
-        with nullcontext() if relaxed is None else placed(relaxed, text):
+        with ExitStack() as stack:
+            if relaxed is not None:
+                from foon_asp.asp.integrity import placed  # noqa: PLC0415 (which parses)
+
+                stack.enter_context(placed(relaxed, text))
             return run(
                 (*program.files, *encodings),
                 text,

@@ -187,7 +187,8 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
 
 def _each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
     """Give units as things of their own that count 1 each."""
-    return [(frozenset({unit}), Fraction(1)) for unit in sorted(units)]
+    one = Fraction(1)
+    return [(frozenset({unit}), one) for unit in sorted(units)]
 
 
 def _at_most_units(question: Question, max_units: int) -> Meaning:
@@ -199,8 +200,12 @@ def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> M
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
-    labels = map(question.labelled, sorted(question.utensils))
-    each = [(units, Fraction(1)) for nodes in labels if (units := question.touching(nodes))]
+    labelled: dict[str, list[int]] = {label: [] for label in sorted(question.utensils)}
+    for o, node in enumerate(question.network.objects):
+        if node.label in labelled:
+            labelled[node.label].append(o)
+    one = Fraction(1)
+    each = [(units, one) for nodes in labelled.values() if (units := question.touching(nodes))]
     return Meaning(things=each, most=Fraction(max_utensils))
 
 

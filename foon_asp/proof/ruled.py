@@ -55,7 +55,7 @@ class Ruled:
                 amounts: dict[int, Fraction] = {}
                 for units, amount in meaning.things:
                     thing = self._thing(units)
-                    amounts[thing] = amounts.get(thing, Fraction(0)) + amount
+                    amounts[thing] = amounts[thing] + amount if thing in amounts else amount
                 self.limits[place] = Limit(amounts, meaning.most)
         several = (limit for meaning in meanings for limit in meaning.limits)
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
