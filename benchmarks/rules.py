@@ -10,11 +10,14 @@ matter: a motion that many units have, one use fewer than the best tree makes, a
 1.2 times the other time for a rule that deletes, and 5 times for others, plus 0.1 s; *within* counts the
 goals that took no more, and *of allowed* is the median of what they took of that. Times are seconds of
 processors, after reading, those of clingo's own process included. ``--plain SECONDS`` solves each question
-with ``--reduce none`` as well, for at most so long, and compares the answers; the exit code is 1 where two
-differ.
+with ``--reduce none`` as well, the plain program under the same options of clingo, in a process of its own
+for at most so many seconds of a processor. It compares the answers, and says how many were proved so and
+what they took, at the limit as well; the exit code is 1 where two differ.
 """
 
 import argparse
+import os
+import pickle
 import random
 import resource
 import subprocess
@@ -49,6 +52,8 @@ COLUMNS = (
     "worst s",
     "of allowed",
     "within",
+    "plain proved",
+    "plain s",
 )
 DELETING = {
     *("forbid_motion", "forbid_object", "forbid_ingredient", "never_heated"),
@@ -76,6 +81,8 @@ class Measured(NamedTuple):
     with_: float
     outcome: Outcome
     allowed: float
+    plain: float | None = None
+    plain_proved: bool = False
 
 
 def main() -> int:
@@ -143,9 +150,11 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
             row = [_asked(outcome, objectives, asked, arguments.limit) for outcome in of]
             if asked.name in DELETING:
                 row = list(_without_units(row, objectives, asked, arguments.limit))
-            rows.setdefault(asked.name, []).extend(row)
             if arguments.plain:
-                different += sum(_differs(m.outcome, objectives, asked, arguments.plain) for m in row)
+                both = [_with_plain(m, objectives, asked, arguments.plain) for m in row]
+                row = [measured for measured in both if measured is not None]
+                different += len(both) - len(row)
+            rows.setdefault(asked.name, []).extend(row)
             if asked.name in DELETING:
                 _print(folder.name, objectives, asked, row)
         for constraint, row in rows.items():
@@ -277,23 +286,50 @@ def _without_units(
         yield measured._replace(without=without, allowed=1.2 * without + 0.1)
 
 
-def _differs(outcome: Outcome, objectives: tuple[Objective, ...], asked: Asked, limit: float) -> bool:
-    _, plain = _timed(
-        outcome.problem, objectives, asked.settings._replace(deadline=Deadline(limit), reductions=NONE)
-    )
-    if plain.status in {Status.FEASIBLE, Status.UNKNOWN}:
-        return False
-    if plain.costs is None or outcome.costs is None:
-        return plain.costs is not outcome.costs
-    by = levels(objectives)
-    same = plain.costs.key(by) == outcome.costs.key(by)
-    if not same:
-        print(f"DIFFERENT: {asked}, {outcome.problem}: {plain.costs} and {outcome.costs}")
-    return not same
+def _with_plain(
+    measured: Measured, objectives: tuple[Objective, ...], asked: Asked, limit: float
+) -> Measured | None:
+    """Ask the plain program as well; ``None`` where the answers differ."""
+    outcome, by = measured.outcome, levels(objectives)
+    spent, found = _plain(outcome.problem, objectives, asked, limit)
+    ours = outcome.status, None if outcome.costs is None else outcome.costs.key(by)
+    proved = {Status.OPTIMAL, Status.INFEASIBLE}
+    if found is not None and found[0] in proved and ours[0] in proved and found != ours:
+        print(f"DIFFERENT: {asked}, {outcome.problem}: {found} and {ours}")
+        return None
+    return measured._replace(plain=spent, plain_proved=found is not None and found[0] in proved)
+
+
+def _plain(
+    problem: Problem, objectives: tuple[Objective, ...], asked: Asked, limit: float
+) -> tuple[float, tuple[Status, object] | None]:
+    """Give what the plain program takes, and its answer, if it has one before the limit."""
+    _spent()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    read, write = os.pipe()
+    child = os.fork()
+    if not child:
+        try:
+            resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit)))
+            found = solve(problem, objectives, asked.settings._replace(reductions=NONE))
+            key = None if found.costs is None else found.costs.key(levels(objectives))
+            with os.fdopen(write, "wb") as pipe:
+                pickle.dump((found.status, key), pipe)
+            _end_all()
+        finally:  # a worker of its own may have come to the limit before it
+            os._exit(0)
+    os.close(write)
+    with os.fdopen(read, "rb") as pipe:
+        said = pipe.read()
+    os.waitpid(child, 0)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return spent, pickle.loads(said) if said else None
 
 
 def _print(data: str, objectives: tuple[Objective, ...], asked: Asked, row: list[Measured]) -> None:
     removed = ""
+    plain = [m.plain for m in row if m.plain is not None]
     if asked.name in DELETING:
         restriction = _restricted(row[0].outcome.problem, asked).restriction
         assert restriction is not None
@@ -310,6 +346,8 @@ def _print(data: str, objectives: tuple[Objective, ...], asked: Asked, row: list
         f"{max(m.with_ for m in row):.2f}",
         f"{median(m.with_ / m.allowed for m in row):.2f}",
         f"{sum(m.with_ <= m.allowed for m in row)}/{len(row)}",
+        *([] if plain else ["", ""]),
+        *([f"{sum(m.plain_proved for m in row)}/{len(row)}", f"{median(plain):.2f}"] if plain else []),
     )
     print("| " + " | ".join(cells) + " |", flush=True)
 
