@@ -19,6 +19,7 @@ from foon_asp.network import UnitPrices
 from foon_asp.problem import Contradiction, Objective, Problem, Restriction, levels
 from foon_asp.proof.constraint import LIBRARY
 from foon_asp.resources import encodings_folder
+from foon_asp.rules import flat_answers
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.ready_made import READ, ReadyMade
 from tests.constraint_oracle import HEATS, settings_of
@@ -59,7 +60,8 @@ def test_a_tree_keeps_to_them_as_clingo_says(seed: int) -> None:
 
 @pytest.mark.sampled(12)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_they_remove_and_require_the_same(seed: int) -> None:
+def test_they_remove_and_require_the_same(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(flat_answers, "_OFTEN", 3)
     for problem, settings in asked(seed):
         rules = assemble(settings, silent).understood
         assert rules is not None

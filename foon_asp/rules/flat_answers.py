@@ -31,6 +31,8 @@ _Values = list[Any]  # of variables, by number: ids, texts, numbers, symbols
 _Step = Callable[[_Values], bool]
 _Row = tuple[Any, ...]
 
+_OFTEN = 2000  # times, which take longer than to look through a network for a label
+
 
 class FlatAnswers:
     """Answers flat bodies for a problem."""
@@ -58,12 +60,31 @@ class FlatAnswers:
         return any(self._step(way.items, (), _yes)(self._values) for way in ways)
 
     def removed(self, ways: Iterable[Way]) -> Callable[[int], bool]:
-        """Give a test of units: whether some way holds that takes it."""
-        tests = [(way.unit, self._step(way.items, (way.unit,), _yes)) for way in ways if way.unit is not None]
-        values = self._values
+        """Give a test of units: whether some way holds that takes it.
+
+        Once it was asked often, the units that a motion, a label or an ingredient leads to are found at once.
+        """
+        tests = [
+            (way, way.unit, self._step(way.items, (way.unit,), _yes)) for way in ways if way.unit is not None
+        ]
+        values, together = self._values, set[int]()
+        times = 0
 
         def is_removed(unit: int) -> bool:
-            for variable, test in tests:
+            nonlocal times
+            times += 1
+            if times == _OFTEN and isinstance(
+                self._problem.network.inputs, tuple
+            ):  # no store, read in pieces
+                for each in list(tests):
+                    way, variable, _ = each
+                    among = self._candidates(way, ())
+                    if not isinstance(among, range):
+                        together.update(self._true_of(variable, among, way.items))
+                        tests.remove(each)
+            if unit in together:
+                return True
+            for _, variable, test in tests:
                 values[variable] = unit
                 if test(values):
                     return True
