@@ -195,3 +195,11 @@ def test_clingo_options_reach_clingo(cli: Cli) -> None:
     ran = cli("solve", "--goal", "macaroni", "--", "--opt-strategy=bb", "--seed=7", "-t2")
     assert ran.code == 0
     assert "optimal by units" in ran.out
+
+
+@pytest.mark.parametrize("verb", ["solve", "pareto"])
+def test_that_there_is_no_tree_is_said_of_the_encodings_that_were_asked(verb: str, cli: Cli) -> None:
+    """By need, no tree has a unit that no goal needs, and the rule asks for one."""
+    ran = cli(verb, "--goal", "ice", "--rule", ':- not use(U) : motion(U,"bake").', "--encodings", "by_need")
+    assert ran.code == 1
+    assert "infeasible: proved that no task tree exists (strict containers, as by_need has it)" in ran.out

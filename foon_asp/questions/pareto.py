@@ -382,12 +382,12 @@ class _Silent(Reporter):
 
 def _headline(front: Front) -> str:
     rule = front.problem.conditions
+    if front.encodings is not None:
+        rule += f", as {front.encodings} has it"
     if not front.points:
         if front.complete:
             return f"infeasible: proved that no task tree exists ({rule})"
         return f"unknown: stopped at a limit before any point of the front was found ({rule})"
-    if front.encodings is not None:
-        rule += f", as {front.encodings} has it"
     *first, last = front.objectives
     by = f"{', '.join(first)} and {last}"
     number = len(front.points)

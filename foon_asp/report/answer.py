@@ -110,12 +110,12 @@ def headline(outcome: Outcome) -> str:
     rule = outcome.problem.conditions
     best = ", then ".join(outcome.objectives)
     what = "task tree" if outcome.problem.items is None else "plan"
+    if outcome.encodings is not None:
+        rule += f", as {outcome.encodings} has it"
     if outcome.costs is None:
         if outcome.status is Status.INFEASIBLE:
             return f"infeasible: proved that no {what} exists ({rule})"
         return f"unknown: stopped at {outcome.stopped or 'a limit'}, before any {what} was found ({rule})"
-    if outcome.encodings is not None:
-        rule += f", as {outcome.encodings} has it"
     claim = "optimal" if outcome.status is Status.OPTIMAL else "feasible, not proved best"
     return f"{claim} by {best} ({rule}): {costs_text(outcome.costs, outcome.objectives)}"
 
