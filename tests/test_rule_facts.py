@@ -159,3 +159,37 @@ def test_a_limit_on_prices_against_brute_force(seed: int) -> None:
                 tree = tuple(map(problem.network.unit, found.units))
                 assert oracle.key(problem, tree, ["units"]) == best
                 assert sum(prices[unit.motion] for unit in tree) <= most
+
+
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [
+        (":- use(U), rate(U,N), N < 1000000.", "a rule looks at rate/2, and no success rates are known"),
+        ("low(U) :- rate(U,_). :- use(U), low(U).", "a rule looks at rate/2, and no success rates are known"),
+        (":- use(U), risk(U,N), N > 5.", "a rule looks at risk/2, and no success rates are known"),
+        (":- use(U), cost(price,U,N), N > 0.", "a rule looks at cost(price,U,N), which only a question by"),
+        (":- use(U), cost(mine,U,N), N > 0.", "a rule looks at cost(mine,U,N), which only a question by"),
+        (":- use(U), cost(O,U,N), N > 0.", "a rule looks at cost(Objective,U,N), which only a question by"),
+    ],
+)
+@pytest.mark.parametrize("items", ["lasting", "used-up"])
+@pytest.mark.parametrize("how", ["--rule", "--soft"])
+def test_facts_that_a_question_has_not(
+    rule: str, said: str, items: str, how: str, cli: Cli, tmp_path: Path
+) -> None:
+    """The rule would never hold, and what it forbids was called optimal."""
+    network = tmp_path / "tea.jsonl"
+    network.write_text('{"id": "brew", "inputs": ["water"], "outputs": ["tea"], "price": 5}\n')
+    given = [how, rule if how == "--rule" else f"{rule}=2"]
+    if (items, how) == ("used-up", "--soft"):
+        return
+    ran = cli("solve", network, "--goal", "tea", "--items", items, *given)
+    assert (ran.code, ran.out) == (2, "")
+    assert said in ran.err
+
+
+def test_costs_that_a_question_has(cli: Cli, tmp_path: Path) -> None:
+    network = tmp_path / "tea.jsonl"
+    network.write_text('{"id": "brew", "inputs": ["water"], "outputs": ["tea"], "price": 5}\n')
+    for rule in (":- use(U), cost(price,U,N), N > 0.", ":- use(U), cost(_,U,N), N > 0."):
+        assert cli("solve", network, "--goal", "tea", "--objective", "price", "--rule", rule).code == 1

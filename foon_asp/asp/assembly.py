@@ -45,6 +45,9 @@ _RESERVED = (
     "--warn",  # what clingo leaves out, it says so in a warning
 )
 
+# Facts that are there where rates are known, and of costs by what is asked.
+_OF_SOME_QUESTIONS = {("rate", 2), ("risk", 2), ("cost", 3)}
+
 # A predicate of a search and not of its question: programs that are kept have it otherwise.
 _OF_ONE_SEARCH = ("optimize", 2)
 
@@ -136,6 +139,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
         ours=(*base, *questions),
         understood=understood,
         named=named,
+        reads=_reads([each for each in theirs if each.rules not in base]),
     )
 
 
@@ -163,6 +167,17 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
         looked_at=rules.looked_at,
     )
     return plain._replace(own=False, ready_made=rules, whole=whole)
+
+
+def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
+    """Give what rules of the user's own read and not every question has facts of, with the first argument."""
+    found: set[tuple[str, str]] = set()
+    for encoding in encodings:
+        rules = encoding.rules
+        file = rules.file if isinstance(rules, Stated) else rules
+        if (file is None or not is_own(file)) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
+            found.update(encoding.first_names(_OF_SOME_QUESTIONS))
+    return frozenset(found)
 
 
 def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:

@@ -170,6 +170,7 @@ def prepare(
         raise UserError("this question is not built for items that are used up")
     asked = levels(tuple(objectives))
     problem.require_known_for(asked)
+    program.require_facts(problem, asked)
     for objective in program.named.intersection(asked):
         raise UserError(
             f"found #const {objective} in a constraint or an encoding, but that is the name of a measure: "

@@ -1,5 +1,6 @@
 """The encodings of one question, put together."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -9,7 +10,9 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
 
+from foon_asp.errors import UserError
 from foon_asp.grounding.stated import Loaded
+from foon_asp.problem import Objective, Problem
 
 
 class Program(NamedTuple):
@@ -26,7 +29,9 @@ class Program(NamedTuple):
     ``ours`` are the files but for those that the user added. ``understood`` are the rules that are added,
     looked into: ``None`` where there are none, where encodings are replaced, and where some of the rules may
     be broken or dropped. ``named`` are the names of constants that files define. Where all rules are
-    ``ready_made`` constraints, clingo is asked the ``whole`` program.
+    ``ready_made`` constraints, clingo is asked the ``whole`` program. ``reads`` are
+    predicates that rules of the user's own read and not every question has facts of, with their first
+    argument where it is a name.
     """
 
     files: tuple[Loaded, ...]
@@ -45,6 +50,7 @@ class Program(NamedTuple):
     ours: tuple[Path, ...] = ()
     understood: "Rules | None" = None
     named: frozenset[str] = frozenset()
+    reads: frozenset[tuple[str, str]] = frozenset()
     ready_made: "ReadyMade | None" = None
     whole: "Program | None" = None
 
@@ -52,6 +58,21 @@ class Program(NamedTuple):
     def added(self) -> "Rules | ReadyMade | None":
         """What is known of the rules that are added."""
         return self.ready_made or self.understood
+
+    def require_facts(self, problem: Problem, objectives: Collection[Objective]) -> None:
+        """Raise :class:`UserError` for facts that rules read and that are not there."""
+        known = {objective.row.term for objective in objectives if objective.row.is_fact}
+        for name, first in sorted(self.reads):
+            if name == "cost" and (first not in known if first else not known):
+                raise UserError(
+                    f"a rule looks at cost({first or 'Objective'},U,N), which only a question by such an "
+                    "objective has: name it with --objective, or look at price/2 or facts of the network"
+                )
+            if name != "cost" and problem.rates is None:
+                raise UserError(
+                    f"a rule looks at {name}/2, and no success rates are known: give a file of rates, with "
+                    "--rates FILE or in Python load(..., rates=FILE)"
+                )
 
     @property
     def settled(self) -> "Program":

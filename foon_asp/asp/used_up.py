@@ -218,6 +218,7 @@ class _Solver:
         self.problem, self.objectives, self.levels = problem, objectives, asked
         self.settings, self.deadline, self.reporter = settings, settings.begun, reporter
         self.program = assemble(settings, reporter.warning, used_up=True)
+        self.program.require_facts(problem, asked)
         require_rules_of_plans(self.program)
         self.removed: Callable[[int], bool] = lambda _: False
         self.required: tuple[frozenset[int], ...] = ()

@@ -91,9 +91,22 @@ class Encoding:
     text: str = ""
     statements: list[AST] = field(default_factory=list)
 
+    def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
+        """Give predicates among some, with their first arguments where these are names."""
+        symbols = (node.symbol for each in self.statements for node in nodes(each) if _is_atom(node))
+        for symbol in symbols:
+            if (symbol.name, len(symbol.arguments)) in signatures:
+                first = symbol.arguments[0]
+                named = first.ast_type == ASTType.SymbolicTerm and first.symbol.type is SymbolType.Function
+                yield symbol.name, first.symbol.name if named else ""
+
     def remark(self, severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
         """Make a diagnostic about a place in these rules, with its line."""
         return located(severity, code, message, source, [self.rules])
+
+
+def _is_atom(node: AST) -> bool:
+    return node.ast_type == ASTType.SymbolicAtom and node.symbol.ast_type == ASTType.Function
 
 
 def read_encoding(rules: Loaded) -> Encoding:
