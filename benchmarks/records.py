@@ -114,7 +114,10 @@ def certified(found: Relaxed, limit: float) -> dict[str, Any]:
     if answer.units is None:
         return {}
     certificate = certify(
-        problem, answer.objectives, answer.units, expired=lambda: deadline.passed, cuts=answer.cuts
+        *(problem, answer.objectives, answer.units),
+        expired=lambda: deadline.passed,
+        cuts=answer.cuts,
+        cases=answer.cases,
     )
     if certificate is None:
         return {"certified": False}

@@ -282,8 +282,12 @@ def _certificate(found: Relaxed, deadline: Deadline) -> "Certificate | None":
     answer, units = found.answer, found.answer.units
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         if units is not None and found.proved:
-            by = answer.objectives
-            return certify(answer.problem, by, units, expired=lambda: deadline.passed, cuts=answer.cuts)
+            return certify(
+                *(answer.problem, answer.objectives, units),
+                expired=lambda: deadline.passed,
+                cuts=answer.cuts,
+                cases=answer.cases,
+            )
         if answer.status is Status.INFEASIBLE:
             return certify_infeasible(answer.problem)
     return None
