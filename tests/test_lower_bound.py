@@ -231,6 +231,31 @@ def test_cuts_are_grown_beside_each_other_and_past_what_costs_nothing() -> None:
     assert limited.shares == [0.0] * 18
 
 
+def test_no_more_cuts_are_looked_for_than_rounding_up_asks_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    # the sides of a triangle come to 3/2, and of its corners every cover has 2
+    graph, targets = covering([[0, 1], [0, 2], [1, 2]], 3)
+    price = costs(*[1] * 3, *[0] * 6)
+    best = [0, 1, *_deliveries([[0, 1], [0, 2], [1, 2]], [0, 1], 3)]
+    asked: list[float] = []
+    solve, separate = Covering.solve, _Node._separate
+
+    def solved(relaxation: Covering) -> Relaxed:
+        asked.append(solve(relaxation).value)
+        return solve(relaxation)
+
+    def separated(node: _Node) -> bool:
+        assert asked[-1] <= 1
+        return separate(node)
+
+    monkeypatch.setattr(Covering, "solve", solved)
+    assert isinstance(Prover(graph, targets, price, COUNT).prove(best), Branch)
+    monkeypatch.setattr(_Node, "_separate", separated)
+    proof = Prover(graph, targets, price, COUNT, multiples=[Fraction(1)]).prove(best)
+    assert isinstance(proof, Packing)
+    assert proof.rounded == 0
+    assert max(asked) > 1
+
+
 def test_what_is_cheaper_has_nothing_that_cannot_run() -> None:
     # 1 comes of 0 at once, dear or cheap, or for nothing of 2, which has a price
     graph = Hypergraph(3, needs=[[], [], [2], []], gives=[[1], [1], [1], [2]], start=[0])

@@ -15,7 +15,8 @@ from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.at_most import better_than
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.session import Session
-from foon_asp.asp.solver import _Solver
+from foon_asp.asp.solver import _cuts, _Solver
+from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
 from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.scales import Scales
@@ -24,7 +25,8 @@ from foon_asp.grounding.grounded import Grounded
 from foon_asp.grounding.run import Run
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Costs, Objective, Problem, levels
-from foon_asp.reduce import ALL, NONE, Reduced, Reduction, reduce
+from foon_asp.reduce import ALL, NONE, ExactCosts, Reduced, Reduction, Wide, reduce
+from foon_asp.reduce.graph import graph_of
 from foon_asp.resources import encodings_folder
 from tests.test_bounded import at_most
 from tests.test_objectives import NEW
@@ -925,6 +927,20 @@ def test_under_a_rule_all_that_can_be_made_is_left(tmp_path: Path) -> None:
     assert reduced.units == (0, 2)
     # the set of units that the rule asks for is a goal of no node, so no cut of it is told
     assert reduced.cuts == ((problem.goals[0],),)
+
+
+def test_cuts_from_before_anything_was_left_out_come_after_the_best() -> None:
+    def cuts(*objects: int) -> Cuts:
+        return Cuts(1, {}, [WeightedCut(frozenset({o}), (0,), 0, 1) for o in objects])
+
+    problem = ways(["0.5"])
+    costs = ExactCosts(problem, (UNITS,), [0])
+    wide = Wide(problem, graph_of(problem, (UNITS,)), [0], costs, cuts(1, 2), spare=False)
+    reduced = Reduced(frozenset(), (), False, costs, 0, cuts(2, 3), wide=wide)
+    assert _cuts(reduced) == [{2}, {3}, {1}]
+    assert _cuts(reduced._replace(wide=None)) == [{2}, {3}]
+    assert _cuts(reduced._replace(cuts=None)) == [{1}, {2}]
+    assert _cuts(None) == []
 
 
 @pytest.mark.parametrize("objectives", [(UNITS,), (SUCCESS,), (KITCHEN, SUCCESS, INPUTS)])

@@ -665,16 +665,13 @@ class _Solver:
         if units is None:
             return outcome
         began = time.perf_counter()
-        cuts = [cut.objects for cut in reduced.cuts.cuts] if reduced and reduced.cuts else []
-        if reduced and reduced.shared:
-            cuts = [objects for objects, _ in reduced.shared.cuts]
         size = len(self.problem.network.objects)  # beyond are sets of units that rules ask for
         outcome = outcome._replace(
             units=self.holds.tree(units),
             costs=self.heard.costs(units),
             left=0 if proof is Proof.CUTS else len(first.units),
             cases=reduced.cases if reduced else None,
-            cuts=tuple(tuple(sorted(objects)) for objects in cuts if max(objects) < size),
+            cuts=tuple(tuple(sorted(objects)) for objects in _cuts(reduced) if max(objects) < size),
         )
         assert self.heard.best is not None
         self.holds.outcome(outcome, None if self.program.replaced else self.heard.best[1], reduced)
@@ -684,3 +681,17 @@ class _Solver:
 
     def _spent(self, phase: str, began: float) -> None:
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
+
+
+def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
+    """Give the cuts of the best bound, and those that were found before anything was left out.
+
+    What was left out may cross many of the first; of the others, all units count.
+    """
+    if reduced is None:
+        return []
+    best = [cut.objects for cut in reduced.cuts.cuts] if reduced.cuts else []
+    if reduced.shared:
+        best = [objects for objects, _ in reduced.shared.cuts]
+    first = [cut.objects for cut in reduced.wide.cuts.cuts] if reduced.wide else []
+    return [*dict.fromkeys([*best, *first])]

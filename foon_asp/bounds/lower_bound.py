@@ -24,6 +24,7 @@ from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.bounds.relaxation import Covering
 
 _HIT = 0.999999  # a landmark of a greater share is taken to be hit
+_STEP = 0.99  # of what costs are multiples of: bounds are rounded up
 _BESIDE = 40  # cuts that are grown beside each other for one solution
 _ORDERS = 3  # in how many orders cuts are grown before the relaxation counts as the best there is
 _FINER = 1e-4  # how much less a level counts than the one before, in floats
@@ -351,6 +352,8 @@ class _Node:
         """Add cuts until none is found that the relaxed solution misses, or the bound is enough."""
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.scaled(enough)
+        if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
+            wanted -= _STEP * self._prover.scaled((self._prover._multiples[0],))
         while True:
             if self._prover._expired():
                 raise _TimeUpError
