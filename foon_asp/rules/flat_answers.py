@@ -31,7 +31,7 @@ _Values = list[Any]  # of variables, by number: ids, texts, numbers, symbols
 _Step = Callable[[_Values], bool]
 _Row = tuple[Any, ...]
 
-_OFTEN = 2000  # times, which take longer than to look through a network for a label
+_OFTEN = 15_000  # times, which take about as long as to look through 100,000 units for labels
 
 
 class FlatAnswers:
