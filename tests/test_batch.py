@@ -370,11 +370,13 @@ def test_parquet_of_another_question_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def scheduler(tmp_path: Path) -> Iterator[str]:
+def scheduler(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[str]:
     """Start a scheduler and two workers on this machine, and give its address."""
     pytest.importorskip("distributed")
     named = tmp_path / "scheduler.json"
-    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
+    env = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1]), **getattr(request, "param", {})}
+    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    quiet |= {"cwd": tmp_path, "env": env}
     dask = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
     options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(named)]
     worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(named)]
@@ -430,6 +432,46 @@ def test_nothing_is_lost_when_a_worker_dies_in_the_middle_of_a_task(
                 killed += 1
     assert killed == 2
     assert sorted(found) == sorted(asked)
+
+
+@dataclass(frozen=True)
+class Deadly:
+    """Data, to be opened, of which one goal kills the process that asks for it, and another one does so once.
+
+    Without a problem for any other.
+    """
+
+    folder: Path
+
+    def __call__(self) -> "Deadly":
+        return self
+
+    def named(self, *_: object) -> Sequence[str]:
+        return ()
+
+    def problem(self, asked: Asked) -> Problem:
+        (goal,) = asked.goals
+        time.sleep(0.05)  # so that others wait on the same worker
+        once = self.folder / "once"
+        if goal == "deadly" or (goal == "once" and not once.exists()):
+            once.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        raise UserError(f"answered {goal}")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scheduler", [{"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}], indirect=True)
+def test_only_the_question_that_kills_workers_in_the_middle_of_a_task_fails(
+    tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("foon_asp.batch.cluster._MOST", 8)
+    goals = [*map(str, range(30)), "once", *map(str, range(30, 47)), "deadly", *map(str, range(47, 70))]
+    rows = [*answer_on_cluster(Deadly(tmp_path), [Asked((goal,)) for goal in goals], scheduler)]
+    assert (tmp_path / "once").exists()
+    assert Counter(one.goals[0] for one, _ in rows) == Counter(goals)
+    errors = {one.goals[0]: str(row["error"]) for one, row in rows}
+    assert errors.pop("deadly").startswith("on the cluster: ")
+    assert errors == {goal: f"answered {goal}" for goal in goals if goal != "deadly"}
 
 
 def test_a_task_ends_in_time_and_leaves_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,13 +19,12 @@ from foon_asp.bounds.counts import (
     Landmark,
     Level,
     Measure,
-    Stopped,
     Sum,
     SumLimit,
     _around,
     _Model,
 )
-from foon_asp.bounds.whole_program import Solved, WholeProgram
+from foon_asp.bounds.whole_program import Solved, Stopped, WholeProgram
 
 _LONGEST = 4
 

@@ -13,12 +13,15 @@ from pathlib import Path
 
 import pytest
 
+import foon_asp
 from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.asp.used_up import solve_used_up
+from foon_asp.bounds.counts import CountBound
 from foon_asp.cli.main import cli as commands
 from foon_asp.cli.options import begin
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.grounding import worker_process
-from foon_asp.problem import Costs, Objective
+from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import chosen_objectives
 from foon_asp.questions.caller import Caller, asked_by
@@ -212,3 +215,35 @@ def test_a_process_ends_as_usual_though_at_once() -> None:
         check=False,
     )
     assert (ran.returncode, ran.stdout, ran.stderr) == (3, "first last\n", "")
+
+
+def test_plans_are_counted_no_longer_than_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    def endless(*_: object) -> None:
+        while time.monotonic() < began + 30:
+            sum(range(1000))
+
+    monkeypatch.setattr(CountBound, "counts", endless)
+    began = time.monotonic()
+    problem = foon_asp.load().problem("tea", items="used-up")
+    outcome = solve_used_up(problem, (Objective.UNITS,), Settings(deadline=Deadline(0.2)))
+    assert outcome.status is Status.UNKNOWN
+    assert outcome.stopped == "the time limit of 0.2 s while counting executions"
+    assert time.monotonic() < began + 30
+
+
+def test_what_is_left_out_at_a_limit_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = []
+
+    def stopped(*_: object) -> Problem:
+        tried.append(True)
+        raise LimitError(Deadline(0))
+
+    problem = foon_asp.load().problem("ice")
+    monkeypatch.setattr("foon_asp.questions.regret._without_units", stopped)
+    found = foon_asp.regret(problem)
+    assert found.outcome is not None
+    assert found.outcome.status is Status.OPTIMAL
+    assert {each.status for each in found.regrets} == {Status.UNKNOWN}
+    assert {each.part.value for each in found.regrets} == {"unit", "item"}
+    assert len(tried) == 1
+    assert "unknown" in found.text()

@@ -2,7 +2,9 @@
 
 import json
 import random
+from contextlib import nullcontext
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -11,15 +13,19 @@ import foon_asp
 from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
+from foon_asp.batch.answer_row import answer_row
+from foon_asp.batch.asked import Asked
+from foon_asp.cli.batch_data import BatchData
+from foon_asp.dataset import nearby_optimum
 from foon_asp.dataset.nearby import Nearby, NearbyProblem
 from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
-from foon_asp.deadline import Deadline
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.foon import Foon
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof import verify
-from foon_asp.questions import answer
-from foon_asp.questions.answer import answered_nearby
+from foon_asp.questions.answer import answered_nearby, answered_under
 from foon_asp.questions.certify import certified
+from foon_asp.questions.result import Ending
 from foon_asp.rules.constraint import RuleText
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles
@@ -95,12 +101,81 @@ def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: 
         found = solve(*asked)  # type: ignore[arg-type]
         return found._replace(status=Status.FEASIBLE, proof=None, stopped="the time limit of 1 s")
 
-    monkeypatch.setattr(answer, "find", stopped)
+    monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
     near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
     found = answered_nearby(near, [Objective.UNITS], Settings(deadline=Deadline(1)))
     assert (found.status, found.units, found.costs) == (Status.UNKNOWN, None, None)
     assert found.bounds[Objective.UNITS] == 1
+
+
+def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*asked: object) -> None:
+        raise LimitError(Deadline(0))
+
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=5))
+    monkeypatch.setattr(Nearby, "grow", stopped)
+    monkeypatch.setattr(Deadline, "watched", lambda *given, **late: nullcontext())
+    found = answered_nearby(near, [Objective.UNITS], Settings())
+    assert found.costs is not None
+    assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 3)
+    assert found.bounds[Objective.UNITS] == 2  # the last two units of the longer way
+    assert found.stopped is not None
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    found = answered_nearby(near, [Objective.UNITS], Settings())
+    assert (found.status, found.proof, found.units) == (Status.UNKNOWN, None, None)
+    assert found.bounds[Objective.UNITS] == 1
+
+
+def test_a_limit_while_all_is_read_gives_the_tree_in_hand(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*asked: object) -> None:
+        raise LimitError(Deadline(0))
+
+    monkeypatch.setattr("foon_asp.questions.answer.asked_with", stopped)
+    dataset, order = two_ways(tmp_path), (Objective.UNITS,)
+    how = Settings((RuleText(':- not 1 <= #count { U : use(U), motion(U,"cook 3") }.'),))
+    problem = dataset.problem(dataset.goals(["stew"]), "strict")
+    found = answered_under(problem, order, how)
+    assert found.costs is not None
+    assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 7)
+    assert found.bounds == {Objective.UNITS: 3}  # without the rule
+    assert found.ending is Ending.LIMIT
+
+
+def test_rows_of_a_batch_are_those_of_the_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store = BatchData(two_ways(tmp_path))
+    text = BatchData(foon_asp.load(tmp_path / "stew.txt", kitchen=tmp_path / "kitchen.txt")._dataset)
+    read_on: list[object] = []
+    whole: list[object] = []
+
+    class Counted(Nearby):
+        def grow(self, objects: object) -> None:
+            super().grow(objects)  # type: ignore[arg-type]
+            read_on.append(objects)
+
+        def whole(self) -> Problem:
+            whole.append(self)
+            return super().whole()
+
+    monkeypatch.setattr("foon_asp.dataset.stored_dataset.Nearby", Counted)
+    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (None, 1))
+    statuses = set()
+    for rule in (None, "serve, cook 3"):
+        for goals, objective in product((("stew",), ("stew", "stock 9")), ("units", "success")):
+            one = Asked(goals, objective)
+            forbidden = () if rule is None else rule.split(", ")
+            how = Settings(tuple(RuleText(f':- use(U), motion(U,"{each}").') for each in forbidden))
+            ours, theirs = (answer_row(asker, one, how=how) for asker in (text, store))
+            assert {**theirs, "seconds": 0} == {**ours, "seconds": 0}
+            statuses.add(ours["status"])
+    assert statuses == {"optimal", "infeasible", "failed"}  # there are no rates
+    assert len(read_on) > 5
+    assert whole != []
 
 
 @SERIES

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from foon_asp.bounds.whole_program import Relaxation, Solved, WholeProgram
+from foon_asp.bounds.whole_program import Relaxation, Solved, Stopped, WholeProgram
 
 NOTHING = Solved(None, -math.inf)  # neither a solution nor a proof that there is none
 NONE = Solved(None, math.inf)
@@ -213,3 +213,23 @@ def test_where_floats_prove_nothing_there_is_a_solution_that_fails_rows_by_a_lit
     before = narrow.solve({0: 1})
     assert narrow._nearly() == [pytest.approx(1.0)]
     assert narrow.solve({0: 1}) == before  # the rows are as they were
+
+
+def test_a_relaxation_ends_when_time_is_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[bool] = []
+
+    def expired() -> bool:
+        looks.append(True)
+        return len(looks) == 2
+
+    monkeypatch.setattr("foon_asp.bounds.whole_program._STEPS", 1)
+    rows = [{n: 1, n + 1: 2, (7 * n) % 30: 1} for n in range(29)]
+    made = [WholeProgram(30, asked) for asked in (lambda: False, expired)]
+    for one, (number, parts) in product(made, enumerate(rows)):
+        one.row(parts, 1 + number % 3)
+    costs = {n: 1 + n % 5 for n in range(30)}
+    bound = made[0].solve(costs).bound
+    with pytest.raises(Stopped):
+        made[1].solve(costs)
+    assert made[1].solve(costs).bound == bound  # goes on from where it was, until it ends
+    assert len(looks) > 2

@@ -16,7 +16,8 @@ from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Bounded, Settings
 from foon_asp.asp.solver import Reporter
 from foon_asp.asp.solver import solve as solve_lasting
-from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure, Stopped
+from foon_asp.bounds.counts import BetterError, CountBound, Counts, Flows, Level, Measure
+from foon_asp.bounds.whole_program import Stopped
 from foon_asp.encoding.exact_success import RateScale, rate_scale
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
@@ -296,9 +297,9 @@ class _Solver:
             if not self.program.own and counting.order({}) is None:
                 return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
             return self._outcome(Status.OPTIMAL if self._take(()) else Status.INFEASIBLE, Proof.CUTS)
-        self.deadline.doing = "counting executions"
         began = time.perf_counter()
-        counts = counting.bound.counts([counting.measure(objective) for objective in self.levels])
+        with self.deadline.watched("counting executions"):
+            counts = counting.bound.counts([counting.measure(objective) for objective in self.levels])
         self._spent("bound", began)
         plan = None
         if counts is not None:
@@ -316,7 +317,8 @@ class _Solver:
         while True:
             try:
                 began = time.perf_counter()
-                counting.prove()
+                with self.deadline.watched("counting executions"):
+                    counting.prove()
                 return self._outcome(Status.OPTIMAL, Proof.COUNTS)
             except BetterError:
                 continue

@@ -36,7 +36,7 @@ def answer_on_cluster(
     :class:`UserError` where there is no scheduler, or Dask is not installed.
     """
     try:
-        from distributed import Client, as_completed  # noqa: PLC0415 (an extra, and slow to import)
+        from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415 (an extra, slow to import)
     except ImportError:
         raise UserError("--scheduler needs Dask; install it with: pip install 'foon-asp[cluster]'") from None
     try:
@@ -46,27 +46,34 @@ def answer_on_cluster(
     with client:
         chunks = _Chunks(questions)
         asked_of: dict[str, Sequence[Asked]] = {}
+        alone: deque[Sequence[Asked]] = deque()  # asked again with nothing else on the cluster
+        is_alone = False
         running = as_completed()
 
-        def submit(most: int) -> None:
-            for chunk in islice(chunks, most):
+        def submit(some: Iterable[Sequence[Asked]]) -> None:
+            for chunk in some:
                 future = client.submit(_answer_some, opener, chunk, memory_limit, how, pure=False)
                 asked_of[future.key] = chunk
                 running.add(future)
 
         ahead = _AHEAD * max(1, _threads(client))
-        submit(ahead)
+        submit(islice(chunks, ahead))
         for future in running:
             chunk = asked_of.pop(future.key)
             rows: list[Row] = []
             if future.status == "finished":
                 rows, seconds = future.result()
                 chunks.took(chunk, len(rows), seconds)
-            elif len(chunk) == 1:
-                rows = [failed_row(chunk[0], f"on the cluster: {future.exception()}")]
-            else:  # one of them is at fault, and only that one fails
+            elif len(chunk) > 1:  # one of them is at fault, and only that one fails
                 chunks.again += ((asked,) for asked in chunk)
-            submit(ahead - len(asked_of))
+            elif isinstance(future.exception(), KilledWorker) and not is_alone:
+                alone.append(chunk)  # what was beside it on the worker may be at fault
+            else:
+                rows = [failed_row(chunk[0], f"on the cluster: {future.exception()}")]
+            submit(islice(chunks, ahead - len(asked_of)))
+            is_alone = not asked_of
+            if is_alone and alone:
+                submit([alone.popleft()])
             yield from zip(chunk, rows, strict=False)
 
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.whole_program import Solved, WholeProgram
+from foon_asp.bounds.whole_program import Solved, Stopped, WholeProgram
 
 Counts = dict[int, int]
 """How often each action is executed; those that are not are left out."""
@@ -116,10 +116,6 @@ class BetterError(Exception):
     def __init__(self, counts: Counts) -> None:
         super().__init__("a better plan was found")
         self.counts = counts
-
-
-class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
-    """Time is up, or floats led nowhere."""
 
 
 class CountBound:
@@ -478,7 +474,7 @@ class _Model:
     def __init__(self, bound: CountBound, measures: Sequence[Measure], far: bool = False) -> None:
         flows, size = bound._flows, bound._size
         self._flows = flows
-        self.program = program = WholeProgram(size)
+        self.program = program = WholeProgram(size, bound._expired)
         self._far, self._size, self._many = far, size, bound._many
         self.conditions: dict[int, Condition] = {}  # by row: what it says of every plan
         for _ in range(size):

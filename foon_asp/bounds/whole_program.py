@@ -1,13 +1,18 @@
 """A linear program over whole numbers: solved in floats by HiGHS, bounded in whole numbers."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 # What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
 _PARTS = (720720, 2**40)
 _GAP = 1e-6  # by which rows may fail, relatively, where floats find neither a solution nor a proof
+_STEPS = 4000  # of the simplex algorithm: at most about a second, with thousands of columns and rows
+
+
+class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
+    """Time is up, or floats led nowhere."""
 
 
 class Solved(NamedTuple):
@@ -37,16 +42,18 @@ class Relaxation(NamedTuple):
 class WholeProgram:
     """Columns between ``lower`` and ``upper`` (``None`` is no bound), and rows of whole numbers.
 
-    Each row says that its columns, times their parts, add up to at least a number.
+    Each row says that its columns, times their parts, add up to at least a number. ``expired`` is asked now
+    and then: when time is up, solving a relaxation raises :class:`Stopped`.
     """
 
-    def __init__(self, columns: int) -> None:
+    def __init__(self, columns: int, expired: Callable[[], bool] = lambda: False) -> None:
         # slow to import, so only when counts are asked for
         import highspy  # noqa: PLC0415
         import numpy as np  # noqa: PLC0415
 
         self._library, self._np = highspy, np
         self._highs: Any = None
+        self._expired = expired
         self.lower: list[int] = [0] * columns
         self.upper: list[int | None] = [None] * columns
         self._rows: list[tuple[dict[int, int], int]] = []
@@ -127,7 +134,7 @@ class WholeProgram:
         every, most = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
         least = self._np.array([float(least) for _, least in self._rows])
         highs.changeRowsBounds(count, every, least - _GAP * self._np.maximum(1.0, abs(least)), most)
-        highs.run()
+        self._run_to_the_end(highs)
         found = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
         x = list(highs.getSolution().col_value) if found else None
         self._highs = None
@@ -160,8 +167,9 @@ class WholeProgram:
             count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
         )
         highs.setOptionValue("presolve", "on")
+        highs.setOptionValue("simplex_iteration_limit", self._library.kHighsIInf)
         if seconds is not None:
-            highs.setOptionValue("time_limit", seconds)
+            highs.setOptionValue("time_limit", highs.getRunTime() + seconds)
         highs.run()
         found = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
         values = list(highs.getSolution().col_value) if found else None
@@ -171,12 +179,21 @@ class WholeProgram:
     def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Let HiGHS solve the relaxation; anew where it got lost on the way from the solution before."""
         highs = self._send(objective)
-        highs.run()
+        self._run_to_the_end(highs)
         if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal and not highs.getDualRay()[1]:
             self._highs = None
             highs = self._send(objective)
-            highs.run()
+            self._run_to_the_end(highs)
         return highs
+
+    def _run_to_the_end(self, highs: Any) -> None:
+        """Let HiGHS solve a relaxation, which has to end within the time that there is."""
+        highs.setOptionValue("simplex_iteration_limit", _STEPS)
+        highs.run()
+        while highs.getModelStatus() == self._library.HighsModelStatus.kIterationLimit:
+            if self._expired():
+                raise Stopped
+            highs.run()
 
     def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Tell HiGHS what has changed."""

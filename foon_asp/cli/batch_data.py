@@ -55,10 +55,10 @@ class BatchData:
         return [str(names.node(goal)) for goal in goals]
 
     def problem(self, asked: Asked) -> Problem:
-        """Pose a question."""
+        """Pose a question; what its goals can need of a large store is read when it is looked at."""
         dataset = self._with(asked.kitchen)
         items = items_of(dataset, asked.items, asked.stock, asked.stays)
-        return dataset.problem(dataset.goals(asked.goals), asked.containers, items=items)
+        return dataset.nearby(dataset.goals(asked.goals), asked.containers, items)
 
     def _with(self, kitchen: Path | None) -> Dataset:
         dataset = self._datasets.get(kitchen)

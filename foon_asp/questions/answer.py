@@ -1,22 +1,22 @@
 """The best tree for a problem, and what is proved of it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.assembly import ReachOfRules, hold_for_parts, reach_of_rules
+from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
-from foon_asp.asp.postconditions import Postconditions
+from foon_asp.dataset.nearby import Nearby
+from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
+from foon_asp.deadline import LimitError
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
 from foon_asp.questions.result import Ending, Result
-from foon_asp.reduce import ALL
 from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_text
 from foon_asp.text.json_value import Json, json_text
 
 if TYPE_CHECKING:  # what a command that prints an answer can do without
-    from foon_asp.dataset.nearby import Nearby
     from foon_asp.questions.tree import Tree
     from foon_asp.report.drawing import Drawing
     from foon_asp.report.page import Page
@@ -155,61 +155,36 @@ def answered_under(
     part = problem.network.object_numbers and problem.items is None and how.constraints
     if part and how.replaced is None and reach_of_rules(how) is ReachOfRules.TREE:
         free = find(problem, objectives, how._replace(constraints=(), constants=()), Reporter())
-        here = find(problem, objectives, how, Reporter()) if free.status is Status.OPTIMAL else free
-        if here.status is Status.OPTIMAL and free.costs and here.costs:
+        if free.status is Status.OPTIMAL and free.costs:
+            here = find(problem, objectives, how, Reporter())
             order = levels(tuple(objectives))
             least = list(free.costs.key(order))
             least[order.index(Objective.UNITS)] += 1
-            if here.costs.key(order) <= tuple(least):
+            if here.status is Status.OPTIMAL and here.costs and here.costs.key(order) <= tuple(least):
                 return _noted(here)
+            try:
+                with how.begun.watched("reading"):  # and not late, since there may be a tree already
+                    problem = asked_with(problem, how)
+            except LimitError as limit:
+                if here.units is None:
+                    raise
+                bounds = {order[0]: free.costs.measure(order[0])}
+                here = here._replace(status=Status.FEASIBLE, proof=None, stopped=limit.stopped)
+                return _noted(here._replace(bounds=bounds))
     return answered(asked_with(problem, how), objectives, how, reporter)
 
 
-def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings) -> "Nearby | None":
-    """Give what is near the goals of a large store, where the whole may not have to be read for an answer."""
-    near: Callable[[], Nearby | None] | None = getattr(problem, "near", None)
-    if near is None or how.reductions != ALL or how.clingo_options:
-        return None
-    only_units_add = all(each in Objective and not each.row.item for each in objectives)
-    return near() if only_units_add and hold_for_parts(how) else None
-
-
-def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settings) -> Answer:
+def answered_nearby(near: Nearby, objectives: Sequence[Objective], how: Settings) -> Answer:
     """Solve a question to a large store, of which no more is read than it takes to prove the answer.
 
-    What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
-    is a tree of the whole network, and none there costs less; else more is read of what leads to what it
-    takes. In the end everything is read. Rules of the user's have to hold for parts of trees.
+    Without a tree, everything is read, to say why.
     """
-    reporter = caller().reporter
-    heard, alone = _OnlyWarnings(reporter), how._replace(session=None)
-    while True:
-        found = find(near.relaxed, objectives, alone, heard)
-        if found.status is Status.INFEASIBLE:  # and why is a question about all that could lead to the goals
-            with reading():
-                problem = near.whole()
-            return answered_under(problem, objectives, how)
-        lacking = [] if found.units is None else near.lacking(found.units)
-        if lacking and found.status is Status.OPTIMAL:
-            with reading():
-                near.grow(lacking)
-            continue
-        found = found._replace(problem=near.problem)
-        if lacking:  # at a limit
-            found = found._replace(status=Status.UNKNOWN, units=None, costs=None)
-        elif found.units is not None:
-            Postconditions(near.problem, levels(tuple(objectives)), how).tree(found.units)
-            assert found.costs is not None
-            reporter.tree(found.costs)
+    found = solve_nearby(near, objectives, how, caller().reporter)
+    if found is not None:
         return _noted(found)
-
-
-class _OnlyWarnings(Reporter):
-    """Passes on what is true of the whole network when a part of it is asked about."""
-
-    def __init__(self, reporter: Reporter) -> None:
-        self.warning = reporter.warning  # type: ignore[method-assign]
-        self.bound = reporter.bound  # type: ignore[method-assign]
+    with reading():
+        problem = near.whole()
+    return answered_under(problem, objectives, how)
 
 
 def _noted(outcome: Outcome) -> Answer:

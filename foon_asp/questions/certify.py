@@ -21,6 +21,7 @@ from foon_asp.certificate import (
 )
 from foon_asp.certificate import certify as prove_best
 from foon_asp.dataset import Dataset
+from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
@@ -30,7 +31,7 @@ from foon_asp.problem.progress import OnProgress
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.verify import Subject
-from foon_asp.questions.answer import Answer, answered, answered_nearby, near_goals
+from foon_asp.questions.answer import Answer, answered, answered_nearby
 from foon_asp.questions.answer_and_more import AnswerAndMore
 from foon_asp.questions.arguments import (
     Constants,

@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 from foon_asp.asp import Outcome, Settings
 from foon_asp.asp import solve as find
 from foon_asp.dataset.nearby import NearbyProblem, shown
+from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.dataset.paths import File, Files
 from foon_asp.deadline import Cancel, Deadline
 from foon_asp.document.json_document import document
 from foon_asp.problem import Problem
 from foon_asp.problem.progress import OnProgress
-from foon_asp.questions.answer import Answer, answered_nearby, near_goals
+from foon_asp.questions.answer import Answer, answered_nearby
 from foon_asp.questions.arguments import (
     Constants,
     asked_with,

@@ -3,10 +3,11 @@
 Motions and pairs of items are asked about too, where somebody wants to know.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
+from functools import partial
 from itertools import combinations
 from typing import NamedTuple
 
@@ -196,7 +197,15 @@ def regret(
     own = how.constraints == () and how.replaced is None  # else rules may ask for what is missing
     holds = Postconditions(problem, levels(chosen), how)
 
-    def without(part: Part, id_: int, fewer: Problem, how: Settings, other: int | None = None) -> None:
+    def without(
+        part: Part, id_: int, leave_out: Callable[[], Problem], how: Settings, other: int | None = None
+    ) -> None:
+        try:
+            with how.begun.watched("leaving out a part"):  # which takes a while in a large network
+                fewer = leave_out()
+        except KeyboardInterrupt:
+            regrets.append(Regret(part, id_, Status.UNKNOWN, None, other))
+            return
         left = find(fewer, chosen, how, Reporter())
         # an item that is not at hand is not taken, so a tree that makes it has fewer by ``kitchen``
         if own and (part in {Part.UNIT, Part.MOTION} or Objective.KITCHEN not in chosen):
@@ -205,15 +214,15 @@ def regret(
 
     alone = how._replace(session=None)  # another network: a program kept for it would be of no use
     for unit in sorted(tree.union(unit for unit in found if unit is not None)):
-        without(Part.UNIT, unit, _without_units(problem, [unit]), alone)
+        without(Part.UNIT, unit, partial(_without_units, problem, [unit]), alone)
     for of_one in of_motion.values():
-        without(Part.MOTION, of_one[0], _without_units(problem, of_one), alone)
+        without(Part.MOTION, of_one[0], partial(_without_units, problem, of_one), alone)
     for o in taken:
-        without(Part.ITEM, o, _kitchen_without(problem, o), how)
+        without(Part.ITEM, o, partial(_kitchen_without, problem, o), how)
     if pairs:
         spared = [each.id for each in regrets if each.part is Part.ITEM and each.costs is not None]
         for o, other in combinations(spared, 2):
-            without(Part.PAIR, o, _kitchen_without(problem, o, other), how, other)
+            without(Part.PAIR, o, partial(_kitchen_without, problem, o, other), how, other)
     order = (*chosen, Objective.UNITS)
     regrets.sort(key=lambda each: _worst_first(each, order))
     return Regrets(Answer._make(outcome), tuple(regrets))

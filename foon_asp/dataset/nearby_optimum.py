@@ -1,0 +1,67 @@
+"""The best tree for a question to a large store, of which no more is read than it takes to prove it."""
+
+from collections.abc import Callable, Sequence
+
+from foon_asp.asp import Outcome, Reporter, Settings, Status
+from foon_asp.asp.assembly import hold_for_parts
+from foon_asp.asp.optimum import solve
+from foon_asp.asp.postconditions import Postconditions
+from foon_asp.dataset.nearby import Nearby
+from foon_asp.deadline import LimitError
+from foon_asp.problem import Objective, Problem, levels
+from foon_asp.reduce import ALL
+
+
+def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings) -> Nearby | None:
+    """Give what is near the goals of a large store, where the whole may not have to be read for an answer."""
+    near: Callable[[], Nearby | None] | None = getattr(problem, "near", None)
+    if near is None or how.reductions != ALL or how.clingo_options:
+        return None
+    only_units_add = all(each in Objective and not each.row.item for each in objectives)
+    return near() if only_units_add and hold_for_parts(how) else None
+
+
+def solve_nearby(
+    near: Nearby, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+) -> Outcome | None:
+    """Solve a question to a large store, of which no more is read than it takes to prove the answer.
+
+    What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
+    is a tree of the whole network, and none there costs less; else more is read of what leads to what it
+    takes. In the end everything is read. Rules of the user's have to hold for parts of trees. ``None`` where
+    there is no tree even so: why is a question about all that could lead to the goals.
+    """
+    reporter = reporter or Reporter()
+    deadline = how.begun
+    alone = how._replace(session=None, deadline=deadline)
+    while True:
+        problem = near.problem
+        found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter))
+        if found.status is Status.INFEASIBLE:
+            return None
+        lacking = [] if found.units is None else near.lacking(found.units)
+        if lacking and found.status is Status.OPTIMAL:
+            try:
+                with deadline.watched("reading"):  # and not late, so that there is time for a tree
+                    near.grow(lacking)
+                continue
+            except LimitError as limit:
+                found = found._replace(proof=None, stopped=limit.stopped)
+        found = found._replace(problem=problem)
+        if lacking:  # at a limit: the bound holds, and what was read may have a tree of its own
+            tree = solve(problem, objectives, alone, _OnlyWarnings(Reporter()))
+            status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
+            found = found._replace(status=status, units=tree.units, costs=tree.costs)
+        if found.units is not None:
+            Postconditions(problem, levels(tuple(objectives)), how).tree(found.units)
+            assert found.costs is not None
+            reporter.tree(found.costs)
+        return found
+
+
+class _OnlyWarnings(Reporter):
+    """Passes on what is true of the whole network when a part of it is asked about."""
+
+    def __init__(self, reporter: Reporter) -> None:
+        self.warning = reporter.warning  # type: ignore[method-assign]
+        self.bound = reporter.bound  # type: ignore[method-assign]
