@@ -62,7 +62,7 @@ def test_time_limit(objective: Objective, seconds: float) -> None:
 
 def test_a_limit_before_any_tree_is_unknown() -> None:
     settings = Settings(
-        constraints=(Path("at_most_units"),), constants=("max_units=200",), deadline=Deadline(0)
+        constraints=(Path("at_most_units"),), constants=("max_units=100",), deadline=Deadline(0)
     )
     outcome = solve(hard_problem(), (Objective.UNITS,), settings)
     assert outcome.status is Status.UNKNOWN
