@@ -122,6 +122,34 @@ def test_what_the_relaxation_leaves_open_is_closed_by_branching(price: int) -> N
     assert run.proof is not None
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_what_a_used_action_needs_is_asked_for_only_where_it_is_used(seed: int) -> None:
+    """A way to make each thing takes what one of two other actions makes, so cuts before that are found."""
+    size, rng = 5, random.Random(seed)
+    plain, targets, _ = corners(size)
+    of = plain.size  # what the making of the first thing takes
+    needs = [[of + a] for a in range(size)] + [*plain.needs[size:]] + [[]] * (2 * size)
+    gives = [*plain.gives, *([of + a // 2] for a in range(2 * size))]
+    first = {o: (o + size) % (plain.size + size) for o in range(plain.size + size)}  # cuts are of these first
+    graph = Hypergraph(
+        len(first), [[first[o] for o in n] for n in needs], [[first[o] for o in g] for g in gives], [first[0]]
+    )
+    costs = [rng.randint(1, 3) for _ in needs]
+    made = [
+        costs[a] + min(costs[len(plain.needs) + 2 * a : len(plain.needs) + 2 * a + 2]) for a in range(size)
+    ]
+    pairs = [(a, b) for a in range(size) for b in range(a)]
+    ways = {pair: costs[size + 2 * n : size + 2 * n + 2] for n, pair in enumerate(pairs)}
+    best = min(
+        sum(made[a] for a in things)
+        + sum(min(w for a, w in zip(p, ways[p], strict=True) if a in things) for p in pairs)
+        for things in (set(range(size)), *({*range(size)} - {a} for a in range(size)))
+    )
+    run = Run(graph, [first[o] for o in targets], costs)
+    run.require_right(best)
+    assert run.proof is not None
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_the_cheapest_derivation_is_found_and_proved(seed: int) -> None:
     question = asked(seed)
