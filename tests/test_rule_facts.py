@@ -188,6 +188,14 @@ def test_facts_that_a_question_has_not(
     assert said in ran.err
 
 
+def test_facts_that_a_check_of_a_tree_has_not(cli: Cli, tmp_path: Path) -> None:
+    tree = tmp_path / "tea.txt"
+    tree.write_text("O\twater\nM\tbrew\nO\ttea\n//\n")
+    ran = cli("check", tree, tree, "--goal", "tea", "--rule", ":- use(U), rate(U,N), N > 0.")
+    assert ran.code == 2
+    assert "a rule looks at rate/2, and no success rates are known" in ran.err
+
+
 def test_costs_that_a_question_has(cli: Cli, tmp_path: Path) -> None:
     network = tmp_path / "tea.jsonl"
     network.write_text('{"id": "brew", "inputs": ["water"], "outputs": ["tea"], "price": 5}\n')

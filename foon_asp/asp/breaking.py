@@ -43,6 +43,7 @@ class Breaking:
 
         Raises ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
         """
+        self._program.require_facts(problem, (Objective.UNITS,))
         ended = self._tree(problem, tree) if problem.items is None else self._plan(problem, tree)
         if not ended.exhausted:
             self._settings.begun.check()
