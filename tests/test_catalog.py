@@ -49,7 +49,7 @@ asp: assembly optimum outcome postconditions prepared program settings solver
 bounds: coprime_base hypergraph landmark_cuts lexicographic
 cli: asking click_option exit_code held main named_path options output output_file progress
     question_command verbs weighted_files whole_process
-dataset: dataset items names paths reading
+dataset: dataset items names nearby_optimum paths reading
 document: json_document
 encoding: own_encodings
 grounding: stated
@@ -59,7 +59,7 @@ problem: containers costs items number objective order problem progress relevanc
 proof: simulation
 questions: answer arguments caller contract docstring in_hand index options posing result solve
 reduce: derivation dominance exact_costs extension forced graph narrow near reduction reductions
-    upper_bound wide
+    support upper_bound wide
 report: answer
 rules: constraint
 text: assumed_goals bytes_read clean_line data_folder diagnostics exact_price goal_name grammar item_list

@@ -773,7 +773,7 @@ PARTS = {
         constraint,
     ),
     "things of one unit are counted each": Part(
-        "amounts.get(thing, Fraction(0)) + amount",
+        "amounts[thing] + amount if thing in amounts else amount",
         "amount",
         plain(
             rules=[{"rule": "at_most_utensils", "max_utensils": 1}],

@@ -1,18 +1,21 @@
 """The best tree for a question to a large store, of which no more is read than it takes to prove it."""
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.dataset.nearby import Nearby
 from foon_asp.deadline import LimitError
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.reduce import ALL
 
+if TYPE_CHECKING:  # plain answers do not need it
+    from foon_asp.dataset.nearby import Nearby
 
-def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings) -> Nearby | None:
+
+def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings) -> "Nearby | None":
     """Give what is near the goals of a large store, where the whole may not have to be read for an answer."""
     near: Callable[[], Nearby | None] | None = getattr(problem, "near", None)
     if near is None or how.reductions != ALL or how.clingo_options:
@@ -22,7 +25,7 @@ def near_goals(problem: Problem, objectives: Sequence[Objective], how: Settings)
 
 
 def solve_nearby(
-    near: Nearby, objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
+    near: "Nearby", objectives: Sequence[Objective], how: Settings, reporter: Reporter | None = None
 ) -> Outcome | None:
     """Solve a question to a large store, of which no more is read than it takes to prove the answer.
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
-from foon_asp.dataset.nearby import Nearby
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
 from foon_asp.deadline import LimitError
 from foon_asp.problem import Objective, Problem, levels
@@ -17,6 +16,7 @@ from foon_asp.report.answer import answer_json, headline, outcome_foon, outcome_
 from foon_asp.text.json_value import Json, json_text
 
 if TYPE_CHECKING:  # what a command that prints an answer can do without
+    from foon_asp.dataset.nearby import Nearby
     from foon_asp.questions.tree import Tree
     from foon_asp.report.drawing import Drawing
     from foon_asp.report.page import Page
@@ -174,7 +174,7 @@ def answered_under(
     return answered(asked_with(problem, how), objectives, how, reporter)
 
 
-def answered_nearby(near: Nearby, objectives: Sequence[Objective], how: Settings) -> Answer:
+def answered_nearby(near: "Nearby", objectives: Sequence[Objective], how: Settings) -> Answer:
     """Solve a question to a large store, of which no more is read than it takes to prove the answer.
 
     Without a tree, everything is read, to say why.
