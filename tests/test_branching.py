@@ -6,13 +6,14 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from fractions import Fraction
 from typing import ClassVar
 
+import numpy
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from foon_asp.asp import Proof, Settings, solve
+from foon_asp.asp import Proof, Reporter, Settings, solve
 from foon_asp.bounds import branching
-from foon_asp.bounds.branching import Branching
+from foon_asp.bounds.branching import Branching, _Place
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.landmark_cuts import Cuts
 from foon_asp.bounds.lower_bound import Branch, Hopeless, Packing
@@ -224,7 +225,7 @@ def test_time_that_is_up_leaves_a_bound_and_the_best_derivation(asks: int) -> No
 
 def test_guessed_derivations_count_and_those_of_other_actions_do_not() -> None:
     graph, targets, costs = corners(4)
-    best = {0, 1, 2, *range(4, 4 + 12, 2)}
+    best = {1, 2, 3, *range(4, 4 + 12, 2)}
     heard: list[set[int]] = []
     calls: list[frozenset[int]] = []
 
@@ -232,7 +233,7 @@ def test_guessed_derivations_count_and_those_of_other_actions_do_not() -> None:
         assert shares.keys() == set(range(len(costs)))
         calls.append(frozenset(without))
         reached = graph.reach(frozenset(range(len(costs))) - best)
-        return [{99}, best] if all(reached[o] for o in targets) else [{99}]
+        return [{99}, best, {*shares} - {3}] if all(reached[o] for o in targets) else [{99}]
 
     search = Branching(
         *(graph, targets, range(len(costs)), costs.__getitem__, (), sum(costs)),
@@ -242,6 +243,28 @@ def test_guessed_derivations_count_and_those_of_other_actions_do_not() -> None:
     assert calls[0] == frozenset()
     assert heard
     assert {99} not in heard
+    again = Branching(
+        *(graph, targets, range(len(costs)), costs.__getitem__, (), sum(costs)),
+        *(guess, heard.append, lambda bound: None),
+    )
+    heard.clear()
+    again._guessed(numpy.zeros(len(costs)), _Place(frozenset(), frozenset(), 0, []))
+    assert heard == [best]  # what came after costs more
+
+
+def test_a_place_that_reaches_no_target_is_closed_by_a_cut_that_nothing_crosses() -> None:
+    graph, targets, costs = corners(3)
+    search = Branching(
+        *(graph, targets, range(len(costs)), costs.__getitem__, (), sum(costs)),
+        *(lambda shares, without: (), lambda tree: None, lambda bound: None),
+    )
+    search.effort = 10**6
+    makers = frozenset(search._graph.makers[search._targets[0]])
+    place = _Place(frozenset(), makers, 0, [])
+    assert search._solve(place, 1, lambda: False)
+    proof, barred = search._proof(place)
+    assert isinstance(proof, Hopeless)
+    assert barred == makers
 
 
 class Noted(Branching):
@@ -325,3 +348,16 @@ def test_what_is_as_good_is_not_branched_away(ended: list[bool]) -> None:
     for seed in range(10):
         reduce(random_problem(seed, ContainerRule.STRICT, units=14), levels((Objective.UNITS,)), SAFE)
     assert not ended
+
+
+def test_what_branching_proves_is_told(ended: list[bool]) -> None:
+    told: list[object] = []
+
+    class Listening(Reporter):
+        def bound(self, objective: Objective, value: object) -> None:
+            told.append((objective, value))
+
+    outcome = solve(gap_problem(0), (Objective.UNITS,), Settings(), Listening())
+    assert outcome.costs is not None
+    assert ended == [True]
+    assert told[-1] == (Objective.UNITS, outcome.costs.units)
