@@ -333,6 +333,7 @@ def test_a_stop_leaves_rows_with_their_bounds(
     assert len(lengths) > 2
 
 
+@pytest.mark.slow
 def test_a_stop_while_trees_are_looked_at_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     class Late(Ranked):
         def __init__(

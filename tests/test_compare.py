@@ -257,6 +257,7 @@ def test_a_chart_is_written(cli: Cli, tmp_path: Path) -> None:
     assert "would be unreadable; name up to 60" in ran.err
 
 
+@pytest.mark.slow
 def test_trees_of_searches_are_told_which_rules_they_break(cli: Cli, tmp_path: Path) -> None:
     rules = ["--rule", ':- use(U), motion(U,"crush").', "--constraint", "at_most_units", "-c", "max_units=9"]
     given = [

@@ -415,6 +415,7 @@ def test_in_python(tmp_path: Path) -> None:
 # --- Random networks, where such units are frequent
 
 
+@pytest.mark.slow
 def test_it_matters_and_brute_force_agrees() -> None:
     """What the old rule gave away is counted, so that the networks are known to have it."""
     skipped = lost = 0

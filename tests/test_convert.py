@@ -419,6 +419,7 @@ def patterns(text: str, file: Path) -> list[object]:
     return [(p.label, p.states, p.ingredients, p.container, p.relations) for p, _ in read_object_list(file)]
 
 
+@pytest.mark.slow
 @steady
 @given(text=LISTS, target=st.sampled_from(Dialect))
 def test_kitchens_and_goals(tmp_path_factory: pytest.TempPathFactory, text: str, target: Dialect) -> None:

@@ -91,6 +91,7 @@ def test_goals_that_nobody_named_have_rows_in_one_table(cli: Cli, tmp_path: Path
     assert [row.split(",")[0] for row in table] == ["goals", "omelette", "pan; dirty"]
 
 
+@pytest.mark.slow
 def test_in_python_the_same(cli: Cli) -> None:
     front = foon_asp.pareto(foon_asp.load().problem("macaroni"))
     assert front.csv() == cli("pareto", "--goal", "macaroni", "--format", "csv").out

@@ -77,6 +77,7 @@ def test_any_bytes_are_read_or_refused(
         read(file, lenient)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lenient", [False, True])
 @pytest.mark.sampled(2)
 def test_a_small_file_with_any_byte_changed(tmp_path: Path, lenient: bool) -> None:

@@ -128,6 +128,7 @@ def test_one_program_serves_many_questions(monkeypatch: pytest.MonkeyPatch) -> N
     assert len(grounded) == 4
 
 
+@pytest.mark.slow
 def test_a_kitchen_that_changes_too_much_is_grounded_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """What was left open is forgotten when it is too much; and answers stay the same."""
     monkeypatch.setattr("foon_asp.asp.session._MOST_OPEN", 2)

@@ -619,6 +619,7 @@ def test_a_text_with_its_fixes_says_the_same_with_less_to_remark_on(text: str) -
     assert len(mended.diagnostics) <= len(reader.diagnostics)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("letter", ["O\t", "S\t", "M\t", "x"])
 def test_a_line_of_more_than_a_million_letters_is_refused(letter: str) -> None:
     longest = letter + "a" * (1_000_000 - len(letter))
