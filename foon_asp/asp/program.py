@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.encoding.own_encodings import question_encoding
+from foon_asp.errors import UserError
+from foon_asp.grounding.stated import Loaded
+from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
-
-from foon_asp.errors import UserError
-from foon_asp.grounding.stated import Loaded
-from foon_asp.problem import Objective, Problem
 
 
 class Program(NamedTuple):

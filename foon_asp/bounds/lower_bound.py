@@ -66,9 +66,8 @@ class Branch(NamedTuple):
 
 
 Proof = Packing | Hopeless | Broken | Branch
-Cases = (
-    tuple[int, "Cases", "Cases"] | None
-)  # an action, and the cases without it and with it, told apart further
+# An action, and the cases without it and with it, told apart further.
+Cases = tuple[int, "Cases", "Cases"] | None
 
 
 class Rules(Protocol):

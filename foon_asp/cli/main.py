@@ -134,8 +134,6 @@ def _usage(error: click.ClickException) -> str:
         if error.ctx.command.get_help_option(error.ctx) is not None:
             lines.append(f"Try '{error.ctx.command_path} {error.ctx.help_option_names[0]}' for help.\n")
     message = error.format_message()
-    if isinstance(
-        error, click.MissingParameter
-    ):  # its choices are listed in lines, and no word of the user is in it
+    if isinstance(error, click.MissingParameter):  # lists choices in lines, and quotes no word of the user
         message = " ".join(message.split())
     return "\n".join([*lines, f"Error: {escaped(message)}"])

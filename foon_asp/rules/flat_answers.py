@@ -68,14 +68,13 @@ class FlatAnswers:
             (way, way.unit, self._step(way.items, (way.unit,), _yes)) for way in ways if way.unit is not None
         ]
         values, together = self._values, set[int]()
+        in_memory = isinstance(self._problem.network.inputs, tuple)  # a store is read in pieces
         times = 0
 
         def is_removed(unit: int) -> bool:
             nonlocal times
             times += 1
-            if times == _OFTEN and isinstance(
-                self._problem.network.inputs, tuple
-            ):  # no store, read in pieces
+            if times == _OFTEN and in_memory:
                 for each in list(tests):
                     way, variable, _ = each
                     among = self._candidates(way, ())
