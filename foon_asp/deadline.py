@@ -23,6 +23,7 @@ _ADVICE = {
     "check them, or raise the limit",
 }
 _LATE = 0.5  # seconds, and half of it after a cancel
+_GRACE = 0.25  # seconds
 _CANCELLED = "a cancel"
 _STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
 _WAITS = 50  # looks until an interrupt is taken for lost
@@ -269,13 +270,14 @@ class Deadline:
         """Leave a process out again."""
         self._workers.discard(process)
 
-    def watched(self, doing: str, late: bool = False) -> "Watch":
+    def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
         """Stop what is in a ``with`` block at the limits: for work that does not look at them itself.
 
         Raises :class:`LimitError` in the middle of it. So there may be nothing to lose in the block, and
-        nothing that continues after ctrl-C. With ``late`` it is stopped only when overdue.
+        nothing that continues after ctrl-C. With ``late`` it is stopped only when overdue, and with ``grace``
+        never before a quarter of a second, to come to an end with what is known already.
         """
-        return Watch(self, doing, late)
+        return Watch(self, doing, late, grace)
 
 
 class Watch:
@@ -284,9 +286,9 @@ class Watch:
     An interrupt that strikes in the very moment in which the block ends leaves it as ``KeyboardInterrupt``.
     """
 
-    def __init__(self, deadline: Deadline, doing: str, late: bool) -> None:
+    def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
         self._deadline, self._doing = deadline, doing
-        self._striker = _Striker(deadline, late)
+        self._striker = _Striker(deadline, late, time.monotonic() + _GRACE if grace else -math.inf)
 
     def __enter__(self) -> Self:
         deadline = self._deadline
@@ -321,8 +323,8 @@ class Watch:
 class _Striker:
     """What watches, until its watch is over."""
 
-    def __init__(self, deadline: Deadline, late: bool) -> None:
-        self._deadline, self._late = deadline, late
+    def __init__(self, deadline: Deadline, late: bool, earliest: float) -> None:
+        self._deadline, self._late, self._earliest = deadline, late, earliest
         self._thread = threading.get_ident()
         self._lock = threading.Lock()
         self._struck = False
@@ -330,7 +332,8 @@ class _Striker:
 
     @property
     def due(self) -> bool:
-        return self._deadline.overdue if self._late else self._deadline.passed
+        due = self._deadline.overdue if self._late else self._deadline.passed
+        return due and time.monotonic() >= self._earliest
 
     def watch(self) -> None:
         """Interrupt the other thread when it is time; again and again, for one in a destructor is lost."""

@@ -1,5 +1,6 @@
 """A limit gives the best tree so far with its bound, and never a wrong claim."""
 
+import dataclasses
 import json
 import os
 import pty
@@ -14,17 +15,19 @@ from pathlib import Path
 import pytest
 
 import foon_asp
-from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.asp import Reporter, Settings, Status, optimum, solve
 from foon_asp.asp.used_up import solve_used_up
 from foon_asp.bounds.counts import CountBound
 from foon_asp.cli.main import cli as commands
+from foon_asp.cli.main import main
 from foon_asp.cli.options import begin
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.arguments import chosen_objectives
-from foon_asp.questions.caller import Caller, asked_by
+from foon_asp.questions.caller import Caller, asked_by, caller
+from foon_asp.rules.constraint import RuleText
 from foon_asp.text.writer import write_units
 from tests.hard_problem import hard_problem
 
@@ -247,3 +250,59 @@ def test_what_is_left_out_at_a_limit_is_unknown(monkeypatch: pytest.MonkeyPatch)
     assert {each.part.value for each in found.regrets} == {"unit", "item"}
     assert len(tried) == 1
     assert "unknown" in found.text()
+
+
+def test_a_stop_anywhere_in_the_search_leaves_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where nobody looks at the clock somebody else does, and a stop there is one like any other."""
+
+    def stopped(*_: object) -> None:
+        assert "foon-asp limits" in {thread.name for thread in threading.enumerate()}
+        raise KeyboardInterrupt
+
+    problem = hard_problem(3, 3, 2, 2)
+    monkeypatch.setattr("foon_asp.asp.solver._Solver._search", stopped)
+    monkeypatch.setattr("foon_asp.asp.postconditions.Postconditions.no_tree", stopped)
+    monkeypatch.setattr("foon_asp.rules.rules.Rules.applied", stopped)
+    monkeypatch.setattr("foon_asp.asp.used_up._Solver._cut", stopped)
+    used_up = foon_asp.load().problem("tea", items="used-up")
+    for asked, settings, status in (
+        (problem, Settings(reductions=frozenset()), Status.FEASIBLE),
+        (problem, Settings((RuleText(":- use(U), motion(U,none)."),)), Status.UNKNOWN),
+        (dataclasses.replace(problem, kitchen=frozenset()), Settings(), Status.UNKNOWN),
+        (used_up, Settings(), Status.UNKNOWN),
+    ):
+        outcome = optimum.solve(asked, (Objective.UNITS,), settings._replace(deadline=Deadline(600)))
+        assert outcome.status is status
+        assert outcome.proof is None
+        assert outcome.stopped == "ctrl-C while cutting the network"
+        assert (outcome.units is not None) is (status is Status.FEASIBLE)
+
+
+def test_what_is_known_already_is_given_a_moment() -> None:
+    long_over = Deadline(-9)
+    with pytest.raises(LimitError), long_over.watched("counting", late=True):
+        pytest.fail("it is late enough")
+    with long_over.watched("counting", late=True, grace=True):
+        pass
+    with pytest.raises(LimitError), long_over.watched("counting", late=True, grace=True):
+        time.sleep(60)
+
+
+def test_why_there_is_no_tree_is_looked_for_within_the_limit(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    limits = []
+
+    def stopped(_: Problem) -> None:
+        deadline = caller().deadline
+        assert deadline is not None
+        limits.append(deadline.seconds)
+        raise LimitError(deadline)
+
+    monkeypatch.setattr("foon_asp.report.answer.reach", stopped)
+    words = ["solve", "--goal", "tea", "--rule", ':- use(U), motion(U,"steep").', "--time-limit", "600"]
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 1
+    assert "why-not explains why; there was no time left" in capsys.readouterr().out
+    assert limits == [600]

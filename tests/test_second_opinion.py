@@ -400,6 +400,12 @@ def test_from_an_interruption_on_nothing_is_checked(monkeypatch: pytest.MonkeyPa
     assert {check.reason for check in checks} == {"interrupted"}
 
 
+def test_an_engine_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bare_clingo, "check_with_bare_clingo", lambda *_: time.sleep(60))
+    (check,) = cross_check(Asked(solve(gap_problem(2, 4))), 0.01, ())
+    assert (check.objectives, check.reason) == ((), "clingo did not finish within 0.01 s")
+
+
 def test_nothing_of_the_working_folder_is_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("clingo.py", "json.py", "cffi.py"):
         (tmp_path / name).write_text("raise SystemExit('run')\n")

@@ -404,11 +404,11 @@ def struck(monkeypatch: pytest.MonkeyPatch, what: str) -> None:
     """Have ctrl-C pressed the moment before something begins to be watched."""
     watched = Deadline.watched
 
-    def instead(deadline: Deadline, doing: str, late: bool = False) -> Any:
+    def instead(deadline: Deadline, doing: str, **how: bool) -> Any:
         deadline.doing = doing
         if doing == what:
             raise KeyboardInterrupt
-        return watched(deadline, doing, late)
+        return watched(deadline, doing, **how)
 
     monkeypatch.setattr(Deadline, "watched", instead)
 

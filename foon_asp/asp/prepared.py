@@ -183,7 +183,8 @@ def prepare(
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
         if program.added and settings.reductions and not for_sale:
-            first = _applied(first, program.added)
+            with deadline.watched("cutting the network"):
+                first = _applied(first, program.added)
         if first.contradicted:
             return first
         program, kept = first.program, first.kept or problem

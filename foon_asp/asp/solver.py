@@ -145,11 +145,26 @@ class _Solver:
         self._loose = False  # whether what is found may have loose ends
 
     def solve(self) -> Outcome:
+        """Solve it; where that is stopped anywhere, state what is known by then."""
+        deadline = self.deadline
         try:
-            return self._solve()
+            with deadline.watched(deadline.doing, late=True, grace=True):
+                return self._solve()
+        except KeyboardInterrupt:
+            deadline.interrupt()
+            if self.heard.best is None and self._at_hand is not None:
+                self.heard.tree(self._at_hand)
+            best = self.heard.best
+            return self._outcome(Status.UNKNOWN, None, {}) if best is None else self._limited(best[0], ())
         finally:
             if self._ground:
                 self._ground[1].close()
+
+    @property
+    def _at_hand(self) -> Units | None:
+        """The tree that the cut gave, if all there is to keep to is known to it."""
+        decided = self.program.own and not self.program.bounded
+        return self.first.tree if decided else None
 
     def _solve(self) -> Outcome:
         first = self.first
@@ -163,9 +178,8 @@ class _Solver:
             return self._outcome(Status.INFEASIBLE, None, {})
         if first.rest and first.reduced and first.reduced.wide:
             return self._under_rest(first.reduced, first.reduced.wide, first.tree)
-        if self.program.own and not self.program.bounded:
-            incumbent = first.tree
-        else:  # the user's rules or the bounds decide what a tree is: let them find the first one
+        incumbent = self._at_hand
+        if incumbent is None:  # the user's rules or the bounds decide what a tree is: let them find the first
             some = self._run(self.levels, opt_mode="ignore")
             if some.units is None:
                 return self._outcome(Status.INFEASIBLE if some.exhausted else Status.UNKNOWN, None, {})

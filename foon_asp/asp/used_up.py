@@ -235,20 +235,22 @@ class _Solver:
         self.bounds: dict[Objective, int | Fraction] = {}
 
     def solve(self) -> Outcome:
-        began = time.perf_counter()
         try:
-            if not self._apply_rules():
-                return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
             with self.deadline.watched("cutting the network", late=True):
-                units = self._cut()
-            self._spent("cut", began)
-            if units is None:
-                return self._outcome(Status.INFEASIBLE, Proof.CUTS)
-            return self._search(units)
+                return self._solve()
         except (Stopped, KeyboardInterrupt) as stop:
             if isinstance(stop, KeyboardInterrupt):
                 self.deadline.interrupt()
             return self._outcome(Status.UNKNOWN if self.best is None else Status.FEASIBLE, None)
+
+    def _solve(self) -> Outcome:
+        began = time.perf_counter()
+        if not self._apply_rules():
+            return self._outcome(Status.INFEASIBLE, Proof.SOLVER)
+        self.deadline.doing = "cutting the network"
+        units = self._cut()
+        self._spent("cut", began)
+        return self._outcome(Status.INFEASIBLE, Proof.CUTS) if units is None else self._search(units)
 
     def _apply_rules(self) -> bool:
         """Take what rules say of single units, and of sets of which one is needed; whether they allow a plan.

@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from foon_asp.asp import Reporter
 from foon_asp.cli import options
 from foon_asp.cli.asking import ask, find_question, parameters
 from foon_asp.cli.click_option import Command, click_option
@@ -21,6 +22,7 @@ from foon_asp.cli.whole_process import keep
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
+from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.contract import Part, Question, not_built
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.posing import no_data
@@ -101,10 +103,11 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
                 click.echo(f"wrote {chart}", err=True)
             except NothingToDrawError as nothing:
                 click.echo(f"{chart} is not written: {nothing}", err=True)
-        if output is None:
-            _show(found, form, parameters(question, given, Part.TEXT))
-        else:
-            _write(found, form, output)
+        with asked_by(Caller(Reporter(), deadline=deadline)):
+            if output is None:
+                _show(found, form, parameters(question, given, Part.TEXT))
+            else:
+                _write(found, form, output)
         return _CODES[found.ending]
 
     return answer

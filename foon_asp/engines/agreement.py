@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 
 from foon_asp.asp import Outcome, Status
 from foon_asp.certificate import Coverage, coverage
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.engines import bare_clingo, bare_plans, fast_downward, highs
 from foon_asp.engines.engine import (
     Asked,
@@ -25,6 +26,7 @@ from foon_asp.problem import Costs, Objective, levels, multiplies
 # Engines compute logarithms of rates in floats or in millionths: closer than this for each unit is equal.
 _CLOSE = 2e-6
 PATIENCE = 60.0  # seconds for each engine, where no time limit says otherwise
+_LATE = 0.1  # seconds, after which what an engine did not end by itself is ended
 _EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
 
 
@@ -88,9 +90,12 @@ def cross_check(
                 raise NotCheckedError("interrupted")
             if asked.outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                 raise NotCheckedError("nothing is proved, so there is nothing to check")
-            objectives = ask()
+            with Deadline(seconds + _LATE).watched("asking another engine"):
+                objectives = ask()
         except NotCheckedError as error:
             reason = str(error)
+        except LimitError:
+            reason = f"{name} did not finish within {seconds:g} s"
         except KeyboardInterrupt:
             interrupted, reason = True, "interrupted"
         except DisagreementError as error:

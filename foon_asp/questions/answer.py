@@ -74,7 +74,7 @@ class Answer(Result, Outcome):
 
     def text(self) -> str:
         """Give the answer as ``foon-asp solve`` does."""
-        return outcome_text(self)
+        return outcome_text(self, deadline=caller().deadline)
 
     def json_dict(self) -> Json:
         """Give the answer as ``foon-asp solve --format json`` does; docs/json.md describes it."""

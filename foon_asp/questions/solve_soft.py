@@ -58,7 +58,7 @@ class SoftAnswer(WithOutcome):
 
     def text(self) -> str:
         """Give the answer with what its tree breaks."""
-        return outcome_text(self.outcome, self._lines())
+        return outcome_text(self.outcome, self._lines(), caller().deadline)
 
     def _lines(self) -> Iterator[str]:
         """Say what the tree breaks and what that costs."""

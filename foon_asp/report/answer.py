@@ -6,6 +6,7 @@ from decimal import Context, Decimal
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
+from foon_asp.deadline import Deadline
 from foon_asp.document.json_document import (
     approximate,
     costs_json,
@@ -71,10 +72,10 @@ def outcome_foon(outcome: Outcome) -> str:
     return write_units(map(outcome.problem.network.unit, outcome.units), comments)
 
 
-def outcome_text(outcome: Outcome, remarks: Iterable[str] = ()) -> str:
+def outcome_text(outcome: Outcome, remarks: Iterable[str] = (), deadline: Deadline | None = None) -> str:
     """Give an outcome for people: what was proved, remarks, the steps with where each input comes from.
 
-    Where there is no tree it is said why.
+    Where there is no tree it is said why, if that is found by the deadline.
     """
     problem = outcome.problem
     lines = [*goal_lines(problem), headline(outcome), *remarks]
@@ -87,7 +88,11 @@ def outcome_text(outcome: Outcome, remarks: Iterable[str] = ()) -> str:
         else:
             lines.append("the kitchen already holds it: nothing to do")
     if outcome.status is Status.INFEASIBLE:
-        lines += _why_infeasible(problem)
+        try:
+            with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
+                lines += list(_why_infeasible(problem))
+        except KeyboardInterrupt:
+            lines.append("foon-asp why-not explains why; there was no time left for it here")
     return "\n".join(lines) + "\n"
 
 
