@@ -1,5 +1,7 @@
 """Which cuts are found: their objects and members, worked out by hand."""
 
+import random
+
 import pytest
 
 from foon_asp.bounds.cut import Cut, Cutter
@@ -140,3 +142,42 @@ def test_targets_that_are_kept_within_reach_are_not_cut_again() -> None:
     cutter = Cutter(Hypergraph(3, [[], []], [[1], [2]], [0]), [1, 2])
     assert cutter.cut([0], [1]) == Cut((2,), (1,))
     assert cutter.cut([0], [0, 1]) == Cut((2,), (1,))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_actions_are_refused_one_by_one_as_the_definition_says(seed: int) -> None:
+    chance = random.Random(seed)
+    size, count = 9, 24
+    graph = Hypergraph(
+        size,
+        [sorted(chance.sample(range(size), chance.choice((0, 1, 1, 2, 3)))) for _ in range(count)],
+        [sorted(chance.sample(range(1, size), chance.choice((1, 1, 2, 3)))) for _ in range(count)],
+        [0],
+    )
+    cutter = Cutter(graph, chance.sample(range(1, size), chance.choice((1, 2, 3))))
+    keep = chance.sample(range(count), chance.choice((0, 2)))
+    order = chance.sample(cutter.actions, len(cutter.actions))
+    admitted, refused = {*keep}, set[int]()
+
+    def reached(actions: set[int]) -> bytearray:
+        return graph.reach(frozenset(range(count)) - actions)
+
+    def all_reached(actions: set[int]) -> bool:
+        return all(reached(actions)[o] for o in cutter.targets)
+
+    found = cutter.cut(keep, order)
+    if all_reached(admitted):
+        assert found is None
+        return
+    for action in order:
+        if all_reached({*admitted, action}):
+            refused.add(action)
+        else:
+            admitted.add(action)
+    assert found is not None
+    assert set(found.members) <= refused
+    inside = set(found.objects)
+    assert not inside.intersection(o for o in range(size) if reached(admitted)[o])
+    for action in range(count):
+        crosses = not inside.isdisjoint(graph.gives[action]) and inside.isdisjoint(graph.needs[action])
+        assert crosses == (action in found.members)

@@ -153,6 +153,7 @@ class _Growth:
         self._missing = list(missing)
         self._waiting = bytearray(len(missing))  # admitted, and not run so far
         self.reached = bytearray(len(self._takers))
+        self._decisive = bytearray(len(self._takers))  # with any of these alone the targets would be reached
         self._left = len(cutter.targets)  # targets are the first objects by number
         self._targets = len(cutter.targets)
 
@@ -163,37 +164,65 @@ class _Growth:
     def refuse(self, places: Iterable[int], most: int = sys.maxsize) -> list[int]:
         """Admit actions one after the other, but not those with which the targets are reached.
 
-        Gives these, and ends where there are ``most`` of them.
+        Gives these, and ends where there are ``most`` of them. What an object leads to is followed once:
+        where it is to the targets, the next action that gives it is refused at once.
         """
-        waiting, missing, reached = self._waiting, self._missing, self.reached
-        gives, takers, targets, left = self._gives, self._takers, self._targets, self._left
+        waiting, missing, gives = self._waiting, self._missing, self._gives
+        reached, decisive = self.reached, self._decisive
         refused: list[int] = []
         for place in places:
             if missing[place]:
                 waiting[place] = True
                 continue
-            new: list[int] = []
-            stack = [place]
-            while stack and left:
-                for o in gives[stack.pop()]:
-                    if not reached[o]:
-                        reached[o] = True
-                        new.append(o)
-                        if o < targets:
-                            left -= 1
-                        for taker in takers[o]:
-                            missing[taker] -= 1
-                            if not missing[taker] and waiting[taker]:
-                                stack.append(taker)
-            if not left:
+            new = [o for o in gives[place] if not reached[o]]
+            decided = any(decisive[o] for o in new)
+            if decided or self._spread(new) is None:
                 refused.append(place)
                 if len(refused) == most:
                     break
-                for o in new:
-                    reached[o] = False
-                    if o < targets:
-                        left += 1
-                    for taker in takers[o]:
-                        missing[taker] += 1
-        self._left = left
+                if not decided:
+                    self._learn(new)
         return refused
+
+    def _learn(self, refused: list[int]) -> None:
+        """Note which of some objects that together reach the targets does so alone, if one does."""
+        for o in refused:
+            new = None if len(refused) == 1 else self._spread([o])
+            if new is None:
+                self._decisive[o] = True
+                return
+            self._take_back(new)
+
+    def _spread(self, objects: list[int]) -> list[int] | None:
+        """Reach objects, and what admitted actions make of them; gives all that are new.
+
+        ``None``, and nothing changes, where the targets are reached.
+        """
+        waiting, missing, reached = self._waiting, self._missing, self.reached
+        takers, targets = self._takers, self._targets
+        new: list[int] = []
+        for given in (stack := [objects]):  # grows while it is walked through
+            for o in given:
+                if reached[o]:
+                    continue
+                reached[o] = True
+                new.append(o)
+                if o < targets:
+                    self._left -= 1
+                for taker in takers[o]:
+                    missing[taker] -= 1
+                    if not missing[taker] and waiting[taker]:
+                        stack.append(self._gives[taker])
+                if not self._left or self._decisive[o]:
+                    self._take_back(new)
+                    return None
+        return new
+
+    def _take_back(self, new: list[int]) -> None:
+        missing, reached = self._missing, self.reached
+        for o in new:
+            reached[o] = False
+            if o < self._targets:
+                self._left += 1
+            for taker in self._takers[o]:
+                missing[taker] += 1
