@@ -163,7 +163,7 @@ def _garbage(seed: int, monkeypatch: pytest.MonkeyPatch, *, weights: bool) -> No
     """Let HiGHS say anything of what is taken, and of weights."""
     drawn, told, solve = random.Random(seed), Covering.weights, Covering.solve
 
-    def taken(self: Covering, expired: Callable[[], bool] | None = None) -> Relaxed:
+    def taken(self: Covering, expired: Callable[[], bool] = lambda: False) -> Relaxed:
         relaxed = solve(self, expired)
         return relaxed._replace(
             value=drawn.uniform(-9, 9), x=[drawn.choice([0, 0.5, 1, 7, math.nan, x]) for x in relaxed.x]

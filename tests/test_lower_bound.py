@@ -168,7 +168,7 @@ class Watched(Covering):
         self.rows.append(list(row))
         super().add(row)
 
-    def solve(self, expired: Callable[[], bool] | None = None) -> Relaxed:
+    def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:
         self.solutions.append(super().solve(expired))
         return self.solutions[-1]
 
@@ -239,7 +239,7 @@ def test_no_more_cuts_are_looked_for_than_rounding_up_asks_for(monkeypatch: pyte
     asked: list[float] = []
     solve, separate = Covering.solve, _Node._separate
 
-    def solved(relaxation: Covering) -> Relaxed:
+    def solved(relaxation: Covering, _: object) -> Relaxed:
         asked.append(solve(relaxation).value)
         return solve(relaxation)
 
@@ -536,7 +536,7 @@ def test_the_relaxation_gives_shares_and_its_basis() -> None:
 
 
 def test_a_relaxation_is_stopped_on_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("foon_asp.bounds.relaxation._STEPS", 1)
+    monkeypatch.setattr("foon_asp.bounds.highs_run._STEPS", 1)
     asked: list[int] = []
 
     def at(last: int) -> Callable[[], bool]:

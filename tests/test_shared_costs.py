@@ -79,8 +79,8 @@ def test_no_derivation_costs_less_than_the_bound(
     if wrong:  # nothing that HiGHS says of weights makes a bound too great
         drawn, told, amid = random.Random(seed), Covering.weights, Covering.inside
 
-        def inside(relaxation: Covering) -> Weighed | None:
-            found = amid(relaxation)
+        def inside(relaxation: Covering, expired: Callable[[], bool]) -> Weighed | None:
+            found = amid(relaxation, expired)
             return found and found._replace(weights=[drawn.uniform(-1, 3) for _ in found.weights])
 
         monkeypatch.setattr(Covering, "inside", inside)
@@ -129,10 +129,10 @@ class Told:
     def add(self, row: tuple[int, ...]) -> None:
         self.rows.append(row)
 
-    def inside(self) -> Weighed | None:
+    def inside(self, expired: Callable[[], bool]) -> Weighed | None:
         if not self.amid:
             return None
-        solved = self.solve(bool)
+        solved = self.solve(expired)
         return Weighed(solved.value, solved.x, self.weights())
 
     def solve(self, expired: Callable[[], bool]) -> Relaxed:
@@ -295,8 +295,8 @@ def test_a_solution_amid_others_is_enough_where_its_weights_are(monkeypatch: pyt
 
 def test_where_time_is_up_the_last_solution_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     class Ended(Told):
-        def inside(self) -> Weighed | None:
-            return None if self.solved else super().inside()
+        def inside(self, expired: Callable[[], bool]) -> Weighed | None:
+            return None if self.solved else super().inside(expired)
 
     relaxation = Ended([1.0], [0.0] * 5, [0.5])
     relaxation.amid = True

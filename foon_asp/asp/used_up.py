@@ -419,7 +419,6 @@ class _Counting:
                 if places.keys() >= each.keys()
             ],
             expired=lambda: solver.deadline.passed,
-            left=lambda: solver.deadline.left,
         )
 
     def measure(self, objective: Objective) -> Measure:

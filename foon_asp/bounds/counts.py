@@ -138,9 +138,8 @@ class CountBound:
         within: Sequence[Level] = (),
         beside: Sequence[Counts] = (),
         expired: Callable[[], bool] = lambda: False,
-        left: Callable[[], float | None] = lambda: None,
     ) -> None:
-        self._flows, self._limits, self._expired, self._left = flows, limits, expired, left
+        self._flows, self._limits, self._expired = flows, limits, expired
         self._size = len(flows.asks)
         self._within, self._beside = tuple(within), tuple(beside)
         self.derivation = derivation
@@ -171,7 +170,7 @@ class CountBound:
             x: list[float] = []
             for measure in measures:
                 relaxed = self._relaxed(model, model.objective(measure))
-                whole = relaxed or model.program.whole_optimum(model.objective(measure), self._left())
+                whole = relaxed or model.program.whole_optimum(model.objective(measure))
                 if whole is None:
                     return None
                 x = whole

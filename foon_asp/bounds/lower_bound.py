@@ -354,9 +354,9 @@ class _Node:
         if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
             wanted -= _STEP * self._prover.scaled((self._prover._multiples[0],))
         while True:
-            if self._prover._expired():
-                raise _TimeUpError
-            relaxed = self._covering.solve()
+            self._check()
+            relaxed = self._covering.solve(self._prover._expired)
+            self._check()
             self._share(relaxed.x)
             if relaxed.value < wanted * 0.9999999 and self._separate():
                 continue
@@ -367,6 +367,10 @@ class _Node:
                 self._share([float(exact.x.get(place, 0)) for place in range(len(self._actions))])
             if not self._separate():
                 return exact
+
+    def _check(self) -> None:
+        if self._prover._expired():
+            raise _TimeUpError
 
     def _share(self, x: Sequence[float]) -> None:
         """Note a solution, with all that costs nothing and is in no limit or rule taken as a whole."""

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Final, NamedTuple
 
+from foon_asp.bounds.highs_run import run
 from foon_asp.errors import BugError
 
 _OPTIONS: Final[dict[str, bool | str | float]] = {
@@ -25,7 +26,6 @@ _INSIDE: Final[dict[str, bool | str | float]] = {
 }
 _CORNER: Final[dict[str, bool | str | float]] = _INSIDE | _OPTIONS | {"solver": "ipm", "run_crossover": "on"}
 _SOON = 2.0  # seconds: steps of the interior point method cannot be continued
-_STEPS = 4000  # of the simplex algorithm: at most about a second, with thousands of columns and rows
 
 
 class UnsolvedError(BugError):
@@ -97,40 +97,36 @@ class Covering:
         for option, value in options.items():
             self._highs.setOptionValue(option, value)
 
-    def inside(self) -> Weighed | None:
+    def inside(self, expired: Callable[[], bool] = lambda: False) -> Weighed | None:
         """Find an optimum amid all others: of many rows sooner than a corner, and less exact.
 
-        ``None`` where nothing near enough to an optimum is found soon. It cannot be stopped on the way.
+        ``None`` where nothing near enough to an optimum is found soon, or by the time that is up.
         """
         self._cornered = False
-        self._run(_INSIDE)
+        self._run(_INSIDE, expired)
         if self._highs.getModelStatus() != self._library.HighsModelStatus.kOptimal:
             return None
         solution = self._highs.getSolution()
         value = float(self._highs.getObjectiveValue())
         return Weighed(value, list(solution.col_value), list(solution.row_dual))
 
-    def _run(self, options: dict[str, bool | str | float]) -> None:
+    def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
         self._set(options | {"time_limit": self._highs.getRunTime() + _SOON})
-        self._highs.run()
+        run(self._highs, expired)
 
-    def solve(self, expired: Callable[[], bool] | None = None) -> Relaxed:
+    def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:
         """Find a basic optimum of the rows so far; or, where time is up by then, what there is by then.
 
         ``expired`` is asked now and then.
         """
         highs = self._highs
-        if expired is not None:
-            highs.setOptionValue("simplex_iteration_limit", _STEPS)
         if not self._cornered:  # steps of the simplex algorithm would start from nothing
             self._cornered = True
-            self._run(_CORNER)
+            self._run(_CORNER, expired)
             self._set(_OPTIONS)
-        highs.run()
+        ended = run(highs, expired)
         status = self._library.HighsModelStatus
-        while highs.getModelStatus() == status.kIterationLimit and not (expired and expired()):
-            highs.run()
-        if highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty, status.kIterationLimit}:
+        if ended and highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty}:
             raise UnsolvedError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
         basis, solution = highs.getBasis(), highs.getSolution()
         basic = self._library.HighsBasisStatus.kBasic

@@ -109,7 +109,7 @@ class _Sharing:
         last: Weighed | None = None
         inside = True  # which is found sooner, until it is not exact enough
         while last is None or not expired():
-            found = self._covering.inside() if inside else None
+            found = self._covering.inside(expired) if inside else None
             if found is None:
                 if last is not None and expired():
                     break

@@ -5,10 +5,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from foon_asp.bounds.highs_run import run
+
 # What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
 _PARTS = (720720, 2**40)
 _GAP = 1e-6  # by which rows may fail, relatively, where floats find neither a solution nor a proof
-_STEPS = 4000  # of the simplex algorithm: at most about a second, with thousands of columns and rows
 
 
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
@@ -158,8 +159,8 @@ class WholeProgram:
         """Give a row: its parts, and what they add up to at least."""
         return self._rows[row]
 
-    def whole_optimum(self, objective: Mapping[int, int], seconds: float | None = None) -> list[float] | None:
-        """Give the best whole solution by HiGHS' word; ``None`` if it finds none, in some seconds at most."""
+    def whole_optimum(self, objective: Mapping[int, int]) -> list[float] | None:
+        """Give the best whole solution by HiGHS' word; ``None`` if it finds none, or when time is up."""
         highs = self._send(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
@@ -167,11 +168,8 @@ class WholeProgram:
             count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
         )
         highs.setOptionValue("presolve", "on")
-        highs.setOptionValue("simplex_iteration_limit", self._library.kHighsIInf)
-        if seconds is not None:
-            highs.setOptionValue("time_limit", highs.getRunTime() + seconds)
-        highs.run()
-        found = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        ended = not self._expired() and run(highs, self._expired, whole=True)
+        found = ended and highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
         values = list(highs.getSolution().col_value) if found else None
         self._highs = None
         return values
@@ -188,12 +186,8 @@ class WholeProgram:
 
     def _run_to_the_end(self, highs: Any) -> None:
         """Let HiGHS solve a relaxation, which has to end within the time that there is."""
-        highs.setOptionValue("simplex_iteration_limit", _STEPS)
-        highs.run()
-        while highs.getModelStatus() == self._library.HighsModelStatus.kIterationLimit:
-            if self._expired():
-                raise Stopped
-            highs.run()
+        if not run(highs, self._expired):
+            raise Stopped
 
     def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Tell HiGHS what has changed."""
