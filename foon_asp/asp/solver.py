@@ -193,13 +193,24 @@ class _Solver:
     def _under_rest(self, reduced: Reduced, wide: Wide, tree: Units) -> Outcome:
         """Find the best tree that keeps to rules that the reductions did not know of.
 
-        If the best tree without them keeps to them, it is the one. Else one is looked for that has units
-        without what they need, and then one near the goals.
+        If the best tree without them keeps to them, it is the one.
         """
-        if self.first.keeps(tree):
+        keeps = self.first.keeps(tree)
+        if keeps:
             self.heard.tree(tree)
-            return self._optimal(tree) if reduced.settled else self._up_to(wide, tree, None)
+            if reduced.settled:
+                return self._optimal(tree)
         self.first = replace(self.first, reduced=reduced._replace(settled=False))
+        found = self._by_cases(reduced, wide)
+        if found is None and keeps:
+            found = self._up_to(wide, tree, None)
+        return found or self._beside(wide, tree)
+
+    def _beside(self, wide: Wide, tree: Units) -> Outcome:
+        """Find the best tree that keeps to rules which this one breaks.
+
+        One is looked for that has units without what they need, and then one near the goals.
+        """
         if not wide.spare and (found := self._within_limits(wide, tree)) is not None:
             return found
         ended = None if wide.spare else self._with_loose_ends(wide, tree)
@@ -214,6 +225,30 @@ class _Solver:
         if not ended.exhausted:
             return self._limited(ended.units, ())
         return self._up_to(wide, self._in_hand(ended.units), ended)
+
+    def _by_cases(self, reduced: Reduced, wide: Wide) -> Outcome | None:
+        """Find the best tree that keeps to ready-made constraints, where few cases tell; else ``None``."""
+        rules, settings = self.program.ready_made, self.first.settings
+        if rules is None or Reduction.BOUNDS not in settings.reductions:
+            return None
+        from foon_asp.reduce.cases import best_kept  # noqa: PLC0415 (of use with few rules)
+
+        try:
+            with self.deadline.watched("cutting the network", late=True):
+                found = best_kept(
+                    self.problem, self.levels, wide, reduced, rules, lambda: self.deadline.passed
+                )
+        except KeyboardInterrupt:
+            self.deadline.interrupt()
+            if self.heard.best is None:
+                return self._outcome(Status.UNKNOWN, None, {})
+            return self._limited(self.heard.best[0], ())
+        if found is None:
+            return None
+        if found.tree is None:
+            return self._outcome(Status.INFEASIBLE, None, {})
+        self.heard.tree(found.tree)
+        return self._optimal(self._in_hand(found.tree))
 
     def _within_limits(self, wide: Wide, tree: Units) -> Outcome | None:
         """Find the best tree by a price on what a rule limits; ``None`` where no price tells."""

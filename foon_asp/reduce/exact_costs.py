@@ -52,14 +52,14 @@ class ExactCosts:
         self._price: Callable[[int], int] | None = None
         self._limit: int | None = None
 
-    def priced(self, counts: Callable[[int], bool], price: int, limit: int | None = None) -> "ExactCosts":
-        """Give the same costs with a price on each unit that counts.
+    def priced(self, counts: Callable[[int], int], price: int, limit: int | None = None) -> "ExactCosts":
+        """Give the same costs with a price on each unit, as many times as it counts.
 
         With a ``limit``, they are met as soon as a bound reaches it, or a tree stays below it.
         """
         units, costs = self._units, copy(self)
         costs._known, costs._limit = {}, limit
-        costs._price = lambda action: price if action < units and counts(action) else 0
+        costs._price = lambda action: price * counts(action) if action < units else 0
         return costs
 
     @property

@@ -1,4 +1,4 @@
-"""The best tree under a limit on how many of some units it has, by a price on each of these."""
+"""The best tree under a limit on how many of some units it has, or what these come to, by a price on each."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -29,14 +29,14 @@ def limited(
     wide: Wide,
     objectives: Sequence[Objective],
     tree: Units,
-    counts: Callable[[int], bool],
+    counts: Callable[[int], int],
     most: int,
     expired: Callable[[], bool],
 ) -> Limited | None:
-    """Look for the best tree of which a limit counts at most so many units; ``tree`` has more of them.
+    """Look for the best tree of units that count at most so much together; those of ``tree`` count more.
 
-    First any tree within the limit is looked for, by a price on each unit that counts, so high that nothing
-    else matters; or a bound says that there is none. Then the price is the ratio at which that tree and the
+    First any tree within the limit is looked for, by a price so high that nothing else matters on what each
+    unit counts; or a bound says that there is none. Then the price is the ratio at which that tree and the
     one beyond the limit cost the same. With a price, a tree within the limit costs at most ``most`` times the
     price more, and all bounds hold for that. ``None`` where nothing is known at the end.
     """
@@ -44,14 +44,10 @@ def limited(
     def taken(units: Units) -> int:
         return sum(map(counts, units))
 
-    few = ExactCosts(wide.problem, (Objective.UNITS,), wide.left)
-    most_of_all = few.beyond * (most + 1)
-    found = _asked(wide, few.priced(counts, few.beyond, most_of_all), (Objective.UNITS,), expired)
-    if found.bound >= most_of_all:
-        return Limited(None)
-    if found.tree is None or taken(found.tree) > most:
-        return None
-    best, over = found.tree, tree
+    first = least(wide, counts, most, expired)
+    if first is None or first.tree is None:
+        return first
+    best, over = first.tree, tree
     left: Units | None = None
     for _ in range(_PRICES):
         ratio = -(-(wide.total(best) - wide.total(over)) // (taken(over) - taken(best)))
@@ -72,6 +68,21 @@ def limited(
         if len(left) <= _FEW:
             break
     return Limited(best, left)
+
+
+def least(wide: Wide, counts: Callable[[int], int], most: int, expired: Callable[[], bool]) -> Limited | None:
+    """Look for any tree of units that count at most so much together, among those that count least.
+
+    Or a bound says that there is none. ``None`` where nothing is known at the end.
+    """
+    few = ExactCosts(wide.problem, (Objective.UNITS,), wide.left)
+    most_of_all = few.beyond * (most + 1)
+    found = _asked(wide, few.priced(counts, few.beyond, most_of_all), (Objective.UNITS,), expired)
+    if found.bound >= most_of_all:
+        return Limited(None)
+    if found.tree is None or sum(map(counts, found.tree)) > most:
+        return None
+    return Limited(found.tree)
 
 
 def _asked(

@@ -7,6 +7,8 @@ question. What these constraints say is known: it is what certificates are check
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
+from fractions import Fraction
+from itertools import accumulate
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,8 +17,8 @@ from foon_asp.encoding.facts import hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.grounding.exact import LARGEST
-from foon_asp.problem import Contradiction, Problem, Restriction
-from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, meaning
+from foon_asp.problem import Contradiction, Problem, Restriction, follow
+from foon_asp.proof.constraint import LIBRARY, Meaning, Question, Rule, Units, meaning
 from foon_asp.proof.ruled import Ruled
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
@@ -69,12 +71,34 @@ class ReadyMade:
         removed: frozenset[int] = frozenset().union(*(each.removed for each in meanings))
         return Restriction(removed.__contains__, required)
 
-    def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], bool], int]]:
-        """Give which units are counted, one each, and how many of them a tree has at most."""
+    def counted(self, problem: Problem) -> Iterator[tuple[Callable[[int], int], int]]:
+        """Give how much each unit counts, a whole number, and what those of a tree come to at most."""
         for each in self._said(problem)[0]:
-            if each.most is not None and all(len(units) == 1 == amount for units, amount in each.things):
-                units = frozenset().union(*(units for units, _ in each.things))
-                yield units.__contains__, int(each.most)
+            if each.most is not None and all(len(units) == 1 for units, _ in each.things):
+                amounts = {unit: int(amount) for units, amount in each.things for unit in units}
+                yield lambda unit, amounts=amounts: amounts.get(unit, 0), int(each.most)  # type: ignore[misc]
+
+    def conflict(self, problem: Problem, units: Units) -> Sequence[Units] | None:
+        """Give sets of units of each of which a tree has one, and no tree that keeps to the rest does.
+
+        ``None`` where it keeps to it; the tree keeps to what is not of the rest.
+        """
+        for rule, each in zip(self.rules, self._said(problem)[0], strict=True):
+            if each.most is not None:
+                used = [thing for thing in each.things if not units.isdisjoint(thing[0])]
+                used.sort(key=lambda thing: -thing[1])
+                sums = accumulate((amount for _, amount in used), initial=Fraction())
+                over = next((place for place, total in enumerate(sums) if total > each.most), None)
+                if over is not None:
+                    return [members for members, _ in used[:over]]
+            if each.barred is not None and (early := _too_early(problem, rule, units)):
+                return [Units({unit}) for unit in sorted(early)]
+        return None
+
+    def barred(self, problem: Problem, without: Units) -> Units:
+        """Give units that no tree has that keeps to them all and has none of some others."""
+        meanings, _ = self._said(problem)
+        return Units().union(*(each.barred(Units(), without) for each in meanings if each.barred))
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
         """Whether a tree keeps to all of them."""
@@ -150,6 +174,27 @@ def _values(
             (value, sorted(facts[value])) for value, k in LIBRARY[rule["rule"]].values.items() if k is list
         )
     return (rules, constants) if shared.keys() <= taken else None
+
+
+def _too_early(problem: Problem, rule: Rule, units: Units) -> Units:
+    """Give a unit of a tree with the later motion that runs without the earlier one, and all it builds upon.
+
+    None where there is no such unit.
+    """
+    motions, needs, gives, kitchen = problem.network.motions, problem.needs, problem.gives, problem.kitchen
+    maker: dict[int, int] = {}
+    waiting = [unit for unit in sorted(units) if motions[unit] != rule["earlier_motion"]]
+    while ready := [unit for unit in waiting if all(o in maker or o in kitchen for o in needs[unit])]:
+        for unit in ready:
+            if motions[unit] == rule["later_motion"]:
+                found = follow(needs[unit], maker, needs, kitchen)
+                assert found is not None
+                return Units(found | {unit})
+        for unit in ready:
+            for o in gives[unit]:
+                maker.setdefault(o, unit)
+        waiting = [unit for unit in waiting if unit not in ready]
+    return Units()
 
 
 def question_of(problem: Problem) -> Question:
