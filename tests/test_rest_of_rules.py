@@ -201,7 +201,7 @@ def test_of_a_part_of_a_network_units_keep_their_numbers() -> None:
         *("steam: s > z", "dry: start > s", "air: start > s", "pour: start > w", "fill: never > w"),
     )
     part = replace(whole, network=whole.network.without((0,)))
-    assert says(asked(part)) == (Status.OPTIMAL, {2, 4, 9})
+    assert says(asked(part)) in ((Status.OPTIMAL, {2, 4, 9}), (Status.OPTIMAL, {2, 4, 10}))
     whole = small("junk: start > o", "cut: start > a", "mix: start, a > end", "fry: start, a, end > w")
     part = replace(whole, network=whole.network.without((0,)))
     found = solve(part, (Objective.INPUTS,), Settings(reductions=NONE))
@@ -301,12 +301,13 @@ def test_what_rounding_hides_is_looked_for_among_loose_ends(monkeypatch: pytest.
     problem = replace(LOOSE, rates=dict.fromkeys(LOOSE.network.motions, Fraction(1, 2)))
     heard = _Heard(problem, by, Reporter())
     solver = _Solver(prepare(problem, by, settings, assemble(settings, print), heard), by, heard, {}, "own. ")
-    before, files = solver.program, (Path("other.lp"),)
+    before = solver.program
+    loose = before._replace(files=(Path("other.lp"),))
     rounded: list[Objective | None] = [Objective.SUCCESS]
     best = frozenset({2, 4}), True
 
     def settle(_: _Solver, units: frozenset[int]) -> tuple[frozenset[int], bool]:
-        assert (solver.program.files, solver.rules, solver._loose) == (files, "own. more.", True)
+        assert (solver.program, solver.rules, solver._loose) == (loose, "own. more.", True)
         assert units == {1}
         return best
 
@@ -316,7 +317,7 @@ def test_what_rounding_hides_is_looked_for_among_loose_ends(monkeypatch: pytest.
     monkeypatch.setattr(_Solver, "_scaled", lambda _: SimpleNamespace(rounded=rounded[0]))
 
     def settled(known: set[int]) -> set[int] | None:
-        ended = solver._settled_with_loose_ends(Run(frozenset({1})), files, "more.", known)
+        ended = solver._settled_with_loose_ends(Run(frozenset({1})), loose, "more.", known)
         assert (solver.program, solver.rules, solver._loose) == (before, "own. ", False)
         return None if ended is None or ended.units is None else {*ended.units}
 
@@ -329,10 +330,10 @@ def test_what_rounding_hides_is_looked_for_among_loose_ends(monkeypatch: pytest.
     assert measured == [{1}] * 4
     monkeypatch.undo()
     solver._look_at(range(17))
-    for loose in (True, False):  # nobody hears of trees with loose ends
-        solver._loose = loose
+    for has_loose in (True, False):  # nobody hears of trees with loose ends
+        solver._loose = has_loose
         assert solver._run(solver.levels).units is not None
-        assert (heard.best is None) == loose
+        assert (heard.best is None) == has_loose
 
 
 def test_that_there_is_no_tree_is_looked_at_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,7 +21,8 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.rules.rules import Rules
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
-CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
+SHRINKING = "--opt-usc-shrink=min"
+CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", SHRINKING)
 
 _SMALL = 10_000  # units, to look through which takes less time than to import clingo
 

@@ -7,9 +7,10 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.assembly import assemble, ready_made
+from foon_asp.asp.assembly import SHRINKING, assemble, ready_made
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.prepared import Prepared, prepare
+from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
@@ -21,7 +22,6 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
     from foon_asp.encoding.scales import Scales
     from foon_asp.grounding.grounded import Grounded
     from foon_asp.grounding.run import Run
-    from foon_asp.grounding.stated import Loaded
 
 _NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
 _LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer of these
@@ -316,6 +316,9 @@ class _Solver:
         self._ask_clingo()
         program, number = self.program, self.problem.network.unit_number
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
+        # to make cores small takes longer than it saves here
+        arguments = tuple(each for each in program.arguments if each != SHRINKING)
+        program = program._replace(files=files, arguments=arguments)
         sets = wide.landmarks()
         required = write_required([map(number, sorted(each)) for each in sets])
         first = tree.union(*(each for each in sets if len(each) <= _NEAR))
@@ -323,7 +326,7 @@ class _Solver:
         by: tuple[Objective, ...] = (Objective.UNITS,)  # quick to ask, and enough to see that there is none
         for _ in range(_LOOSE):
             self._look_at(known.union(wide.makers(known), *sets))
-            asked = replace(self.first, program=program._replace(files=files))
+            asked = replace(self.first, program=program)
             text = required + write_known(map(number, sorted(known)))
             ended = asked.run(text + write_objectives(by))
             if by != self.levels and ended.units is not None and self._ids(ended.units) <= known:
@@ -333,7 +336,7 @@ class _Solver:
                 return ended if ended.exhausted else None
             ended.units = self._ids(ended.units)
             if ended.units <= known:
-                return self._settled_with_loose_ends(ended, files, text, known)
+                return self._settled_with_loose_ends(ended, program, text, known)
             if len(known) > _MANY:
                 return None
             fresh = wide.beside(ended.units - known)
@@ -344,7 +347,7 @@ class _Solver:
         return None
 
     def _settled_with_loose_ends(
-        self, ended: "Run", files: tuple["Loaded", ...], text: str, known: Collection[int]
+        self, ended: "Run", program: Program, text: str, known: Collection[int]
     ) -> "Run | None":
         """Examine what rounding may have hidden among trees with loose ends, too.
 
@@ -354,12 +357,12 @@ class _Solver:
         self._measures_agree(ended.units, ended.cost, self.levels)
         if self._scaled().rounded is None:
             return ended
-        program, rules = self.program, self.rules
-        self.program, self.rules, self._loose = program._replace(files=files), rules + text, True
+        before, rules = self.program, self.rules
+        self.program, self.rules, self._loose = program, rules + text, True
         try:
             best, proved = self._settle(ended.units)
         finally:
-            self.program, self.rules, self._loose = program, rules, False
+            self.program, self.rules, self._loose = before, rules, False
         ended.units = best
         return ended if proved and best <= set(known) else None
 
