@@ -2,5 +2,6 @@
 
 import gc
 
-# Modules and networks are many small objects that stay to the end: looking for garbage among them finds none.
-gc.set_threshold(100_000, 50, 50)
+# Modules and networks are many small objects that stay to the end: looking for garbage among them finds none,
+# and takes as long as to import clingo where they are as many as those of a network of some thousand units.
+gc.set_threshold(500_000, 50, 50)
