@@ -5,6 +5,7 @@ import math
 import os
 import re
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -278,6 +279,28 @@ class Deadline:
         never before a quarter of a second, to come to an end with what is known already.
         """
         return Watch(self, doing, late, grace)
+
+
+@contextlib.contextmanager
+def none_lost() -> Iterator[None]:
+    """Let no interrupt be lost in a ``with`` block of the main thread, nor a word said of it.
+
+    Nothing comes out of a destructor, so what strikes in one strikes again a moment later.
+    """
+    before = sys.unraisablehook
+
+    def again(lost: "sys.UnraisableHookArgs") -> None:
+        if not issubclass(lost.exc_type, KeyboardInterrupt):
+            before(lost)
+        elif hasattr(signal, "pthread_kill"):
+            main = threading.main_thread().ident
+            threading.Timer(_LOOKS, signal.pthread_kill, (main, signal.SIGINT)).start()
+
+    sys.unraisablehook = again
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
 
 
 class Watch:

@@ -21,7 +21,7 @@ from foon_asp.bounds.counts import CountBound
 from foon_asp.cli.main import cli as commands
 from foon_asp.cli.main import main
 from foon_asp.cli.options import begin
-from foon_asp.deadline import Deadline, LimitError
+from foon_asp.deadline import Deadline, LimitError, none_lost
 from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.simulation import Verdict, simulate_for
@@ -306,3 +306,42 @@ def test_why_there_is_no_tree_is_looked_for_within_the_limit(
     assert ended.value.code == 1
     assert "why-not explains why; there was no time left" in capsys.readouterr().out
     assert limits == [600]
+
+
+def test_an_interrupt_in_a_destructor_comes_again(capfd: pytest.CaptureFixture[str]) -> None:
+    class Struck:
+        def __init__(self, error: type[BaseException]) -> None:
+            self.error = error
+
+        def __del__(self) -> None:
+            raise self.error
+
+    def wait() -> None:
+        Struck(KeyboardInterrupt)
+        time.sleep(60)
+
+    with none_lost(), pytest.raises(KeyboardInterrupt):
+        wait()
+    assert capfd.readouterr().err == ""
+    heard: list[object] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "unraisablehook", heard.append)
+        with none_lost():
+            Struck(ValueError)
+    assert len(heard) == 1
+
+
+def test_a_search_without_memory_for_a_thread_is_stopped_by_the_memory_limit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(worker_process, "_idle", [])  # one that has had a thread has a stack to spare
+    rules, deadline = "{use(1..3)}.", Deadline(memory=2**40)
+    program = worker_process.WorkerProgram([], rules, [], 0, deadline)
+    status = Path(f"/proc/{program._worker._process.pid}/status").read_text()
+    program.close()
+    in_use = int(status.partition("VmData:")[2].split()[0]) * 1024
+    monkeypatch.setattr(worker_process, "_memory", lambda _: in_use + 2**21)
+    program = worker_process.WorkerProgram([], rules, [], 0, deadline)
+    with pytest.raises(LimitError):
+        program.search("opt", [("use", 1)], lambda _: None, lambda _: None)
+    assert str(deadline.stopped).startswith("the memory limit of 1T")

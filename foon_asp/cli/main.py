@@ -12,7 +12,7 @@ from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.output import drop_output, safe_streams, say_remarks
 from foon_asp.cli.verbs import GROUPS, VERBS, verb_command
 from foon_asp.cli.whole_process import BEGAN, keep, leave
-from foon_asp.deadline import LimitError
+from foon_asp.deadline import LimitError, none_lost
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped, note_line_end
 
@@ -56,7 +56,7 @@ def cli() -> None:
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with the documented code."""
     words = sys.argv[1:] if arguments is None else arguments
-    with safe_streams():
+    with safe_streams(), none_lost():
         for word in words:
             note_line_end(word)
             note_line_end(word.partition("=")[2])

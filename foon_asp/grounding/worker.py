@@ -5,6 +5,7 @@ ends with it.
 """
 
 import contextlib
+import errno
 import os
 import queue
 import signal
@@ -63,7 +64,9 @@ def serve() -> None:
             answer = "fault", str(error)
         except MemoryError:
             os._exit(OUT_OF_MEMORY)
-        except Exception:
+        except Exception as error:
+            if str(error) == os.strerror(errno.EAGAIN):  # no memory for the stack of a thread of clingo's
+                os._exit(OUT_OF_MEMORY)
             answer = "bug", traceback.format_exc()
         try:
             send(answers, answer)
