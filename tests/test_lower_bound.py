@@ -1,5 +1,6 @@
 """Proofs and bounds on small graphs: what is proved, by which cuts, and what is asked for it."""
 
+import math
 import random
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -405,6 +406,62 @@ def test_known_cuts_whose_greedy_weights_fall_short_are_where_the_relaxation_beg
     assert {cut.objects: int(weight) for cut, (weight,) in proof.weights} == {(1,): 1, (3,): 1}
     prover = Prover(graph, [1, 2, 3], costs(1, 1, 2), COUNT)
     assert prover.prove([0, 1]) is None  # nothing else would have been found
+
+
+@pytest.mark.parametrize("step", [1, 3])
+def test_of_many_actions_rounded_weights_of_floats_come_before_exact_ones(
+    monkeypatch: pytest.MonkeyPatch, step: int
+) -> None:
+    # of three actions each pair is a landmark: half of each adds up to one and a half steps, rounded up
+    graph = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0])
+    monkeypatch.setattr(lower_bound, "_MANY", 2)
+    monkeypatch.setattr(lower_bound, "_Node", None)
+    each = costs(step, step, step)
+    for known in ([], [[2]]):
+        prover = Prover(graph, [1, 2, 3], each, COUNT, known=known, multiples=[Fraction(step)])
+        proof = prover.prove([0, 1])
+        assert isinstance(proof, Packing)
+        assert check(graph, [1, 2, 3], each, proof) == Fraction(3 * step, 2)
+        assert {weight for _, (weight,) in proof.weights} == {Fraction(step, 2)}
+        assert (proof.limits, proof.rounded) == ((), 0)
+    for several in (
+        [Fraction(0)],
+        [],
+        [Fraction(1), Fraction(1)],
+    ):  # nothing is rounded up, or costs have parts
+        with pytest.raises(TypeError, match="NoneType"):
+            Prover(graph, [1, 2, 3], each, COUNT, multiples=several).prove([0, 1])
+    limited = Prover(
+        graph, [1, 2, 3], each, COUNT, limits=[({0: Fraction(1)}, Fraction(9))], multiples=[Fraction(1)]
+    )
+    with pytest.raises(TypeError, match="NoneType"):
+        limited.prove([0, 1])
+    monkeypatch.setattr(lower_bound, "_MANY", 3)
+    with pytest.raises(TypeError, match="NoneType"):
+        Prover(graph, [1, 2, 3], each, COUNT, multiples=[Fraction(step)]).prove([0, 1])
+
+
+def test_rounded_weights_prove_each_of_the_cases_that_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lower_bound, "_MANY", 0)
+    branched = 0
+    for seed in range(12):
+        chance = random.Random(seed)
+        sets = [chance.sample(range(7), 2) for _ in range(9)]
+        sets += [[e] for e in range(7) if not any(e in members for members in sets)]
+        graph, targets = covering(sets, 7)
+        prices = costs(*[int(action < len(sets)) for action in range(len(graph.needs))])
+        best = least_cover(sets, 7)
+        derivation = [*best, *_deliveries(sets, best, 7)]
+        cases = (chance.randrange(9), (chance.randrange(9), None, None), (chance.randrange(9), None, None))
+        for told, known in ((None, [[9], targets[:1]]), (cases, [])):
+            prover = Prover(graph, targets, prices, COUNT, known=known, multiples=[Fraction(1)])
+            proof = prover.prove(derivation, told)
+            assert proof is not None
+            proved = check(graph, targets, prices, proof)
+            assert proved is not None
+            assert math.ceil(proved) == len(best)
+            branched += isinstance(proof, Branch)
+    assert branched > 8
 
 
 def test_known_cuts_before_no_target_are_not_weighed() -> None:

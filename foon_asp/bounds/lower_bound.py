@@ -22,13 +22,14 @@ from foon_asp.bounds.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.bounds.relaxation import Covering
+from foon_asp.bounds.shared_costs import PARTS, share_costs
 
 _HIT = 0.999999  # a landmark of a greater share is taken to be hit
 _STEP = 0.99  # of what costs are multiples of: bounds are rounded up
 _BESIDE = 40  # cuts that are grown beside each other for one solution
 _ORDERS = 3  # in how many orders cuts are grown before the relaxation counts as the best there is
 _FINER = 1e-4  # how much less a level counts than the one before, in floats
-
+_MANY = 1000  # actions from which on rounded weights are looked for before exact ones
 
 _DEAR = 1000  # times what is to be proved: what it costs a relaxed solution to go beyond a limit
 
@@ -196,18 +197,14 @@ class Prover:
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
         left = None if goal is None else minus(goal, self._total(used))
-        widened: Sequence[Cut] = ()
-        if left is not None:
-            before = set(cutter.targets)
-            widened = [cutter.widened(cut) for cut in known if not before.isdisjoint(cut)]
-            widened = [cut for cut in widened if used.isdisjoint(cut.members)]
-            packing = self._share_out(widened)
-            value, rounded = self.rounded(self._order.total(weight for _, weight in packing.weights))
-            if self._order.compare(value, left) >= 0:
-                return packing._replace(rounded=rounded)
         undecided = set(cutter.actions) - used if cases else ()
         while cases is not None and cases[0] not in undecided:
             cases = cases[2] if cases[0] in used else cases[1]
+        widened: Sequence[Cut] = ()
+        if left is not None:
+            packing, widened = self._packed(cutter, used, left, known, alone=cases is not None)
+            if packing is not None:
+                return packing
         if cases is not None:
             return self._branch(derivation, goal, used, forbidden, known, cases[0], cases[1:])
         while True:
@@ -276,17 +273,59 @@ class Prover:
         reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
         return [action for action in actions if all(reached[o] for o in graph.needs[action])]
 
-    def _share_out(self, cuts: Iterable[Cut]) -> Packing:
-        """Give each cut in turn the weight that its members have left of their costs."""
+    def _packed(
+        self,
+        cutter: Cutter,
+        used: frozenset[int],
+        goal: Vector,
+        known: Iterable[Iterable[int]],
+        alone: bool,
+    ) -> tuple[Packing | None, Sequence[Cut]]:
+        """Give weights that add up to ``goal``, if they are found without exact arithmetic, and all cuts.
+
+        Those of the ``known`` cuts are tried first, and ``alone`` that is all. Of many actions, and where all
+        costs are one number and multiples of one, so that bounds are rounded up, the weights of a relaxed
+        solution in floats are rounded.
+        """
+        targets = set(cutter.targets)
+        cuts = [cutter.widened(cut) for cut in known if not targets.isdisjoint(cut)]
+        cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
+        packing = self._share_out((cut, None) for cut in cuts)
+        step = self._multiples[0] if len(self._multiples) == len(goal) == 1 else Fraction(0)
+        told = self._limits or self._rules is not None or alone
+        if self._reaches(packing, goal) or told or not step or len(cutter.actions) <= _MANY:
+            return packing if self._reaches(packing, goal) else None, cuts
+
+        def steps(action: int) -> int:
+            return 0 if action in used else int(self._costs[action][0] / step)
+
+        enough = math.ceil(goal[0] / step)
+        shared = share_costs(self._graph, targets, cutter.actions, steps, cuts, enough, self._expired)
+        found = (
+            [(cutter.widened(cut), (weight * step / PARTS,)) for cut, weight in shared.cuts] if shared else []
+        )
+        found = [(cut, weight) for cut, weight in found if used.isdisjoint(cut.members)]
+        packing = self._share_out(found)
+        return packing if self._reaches(packing, goal) else None, [*cuts, *(cut for cut, _ in found)]
+
+    def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> Packing:
+        """Give each cut in turn the weight that its members have left of their costs, or at most another."""
         left: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []
-        for cut in cuts:
+        for cut, most in cuts:
             rests = {a: left.get(a, self._costs[a]) for a in cut.members}
-            weight = min(rests.values(), key=cmp_to_key(self._order.compare))
+            limits = [*rests.values()] if most is None else [*rests.values(), most]
+            weight = min(limits, key=cmp_to_key(self._order.compare))
             if self._order.sign(weight) > 0:
                 weights.append((cut, weight))
                 left.update((a, minus(rest, weight)) for a, rest in rests.items())
-        return Packing(tuple(weights))
+        _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+        return Packing(tuple(weights), rounded=rounded)
+
+    def _reaches(self, packing: Packing, goal: Vector) -> bool:
+        """Whether weights add up to a goal, rounded up."""
+        value, _ = self.rounded(self._order.total(weight for _, weight in packing.weights))
+        return self._order.compare(value, goal) >= 0
 
     def _total(self, actions: Iterable[int]) -> Vector:
         return self._order.total(self._costs[a] for a in actions)

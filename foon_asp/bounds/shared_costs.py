@@ -50,8 +50,9 @@ def share_costs(
 ) -> SharedCosts | None:
     """Find cuts before the targets, and the weights of the greatest sum that the costs allow.
 
-    All of the actions can run, and each costs more than 0. ``known`` are cuts to begin with, their objects
-    and their landmarks. A bound of ``enough`` is good enough. ``None`` where nothing can be shared out.
+    All of the actions can run, and those that cost nothing are taken as a whole. ``known`` are cuts to begin
+    with, their objects and their landmarks. A bound of ``enough`` is good enough. ``None`` where nothing can
+    be shared out.
     """
     return _Sharing(graph, targets, actions, cost).share(known, enough, expired)
 
@@ -137,7 +138,8 @@ class _Sharing:
         """Add cuts that a relaxed solution misses, each beside those before; whether there are any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
-        shares, relative, chance = np.array(x), np.array(self._relative), self._random.random
+        relative, chance = np.array(self._relative), self._random.random
+        shares = np.where(relative > 0, x, 1.0)
         found = False
         effort = _CUTS * len(self._actions)
         self._random.shuffle(self._alone)
