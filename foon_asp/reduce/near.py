@@ -14,6 +14,7 @@ def near(
     before: Mapping[int, int] | None = None,
     most: int | None = None,
     least: int = 0,
+    within: Callable[[int, float], bool] | None = None,
 ) -> set[int]:
     """Give the allowed actions that a derivation without spare actions, of rests up to ``limit``, can have.
 
@@ -22,7 +23,8 @@ def near(
     that ``a`` builds upon is among them). With ``before``, the least rests of an action with all that it
     needs, those count instead of its own. Dijkstra's algorithm from the goals, which goes no farther than the
     limit lets it, and only until it has ``most`` actions, if given; ``limit`` is
-    ``math.inf`` where there is none. No rest is below ``least``.
+    ``math.inf`` where there is none. No rest is below ``least``. ``within`` says of an object and what
+    is left of the limit whether that can make it, where there is no ``before``.
     """
     needs, makers, start = graph.needs, graph.makers, graph.start
     buckets: dict[int, list[int]] = {0: list(graph.goals)}
@@ -45,6 +47,8 @@ def near(
                     taken = before.get(action)
                     if taken is None or figure + taken > limit:
                         continue
+                if within is not None and not all(within(o, limit - total) for o in needs[action]):
+                    continue
                 kept.add(action)
                 if total not in buckets:
                     buckets[total] = []

@@ -10,6 +10,7 @@ from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.exact_costs import ExactCosts
 from foon_asp.reduce.graph import Graph
 from foon_asp.reduce.near import near
+from foon_asp.reduce.within_reach import within_reach
 
 _ROUNDS = 6  # of cuts and what they leave
 
@@ -160,7 +161,7 @@ def dear_left_out(
     expired: Callable[[], bool],
 ) -> set[int]:
     """Give the allowed actions that trees without spare units, of rests up to a limit, can have."""
-    left = near(graph, allowed, rest, limit)
+    left = near(graph, allowed, rest, limit, within=within_reach(graph, allowed, rest))
     while not expired():
         made = derive(graph, left, rest, added=False)
         nearer = near(graph, left, rest, limit, made.before)
