@@ -149,7 +149,7 @@ def test_what_is_left_has_the_best_tree_with_a_unit_of_each_required_set(
     def counted(*given: object) -> dict[int, int] | None:
         nonlocal began
         found = by_extending(*given)  # type: ignore[arg-type]
-        began += found is not None
+        began += found is not None or vars(given[0])["proved"]
         return found
 
     monkeypatch.setattr(reduction_module._Reducer, "_by_extending", counted)
@@ -255,6 +255,55 @@ def test_what_is_found_for_the_goals_alone_is_no_tree_but_its_bound_holds(
     assert reduce(EITHER, UNITS).tree == BEST
     [(tree, _, most)] = asked
     assert (tree, most, len(EITHER.network)) == ({0}, 6, 27)
+
+
+def test_a_tree_as_cheap_as_the_best_for_the_goals_alone_is_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
+    asking = Asking(monkeypatch)
+    for objectives, posed in ((UNITS, EITHER), (SUCCESS, RATED)):
+        heard = Heard() if objectives == UNITS else None
+        plain = replace(posed, restriction=Restriction(never_removed))
+        best = reduce(plain, objectives)
+        assert best.settled
+        assert best.tree is not None
+        asked = replace(posed, restriction=Restriction(never_removed, (best.tree,)))
+        found = reduce(asked, objectives, listener=heard)
+        assert (found.tree, found.settled, found.units) == (best.tree, True, tuple(best.tree))
+        assert found.costs is not None
+        assert found.cuts is not None
+        assert best.cuts is not None
+        assert found.costs.first(found.bound) == found.costs.first(sum(map(found.costs, best.tree)))
+        assert [cut.objects for cut in found.cuts.cuts] == [cut.objects for cut in best.cuts.cuts]
+        assert heard is None or heard.trees == [set(best.tree)]
+        assert not asking.asked
+        # not where what is as good counts, or what is left out may be in such a tree
+        assert not reduce(asked, objectives, ALL - {Reduction.BOUNDS}).settled
+        assert asking.asked
+        asking.asked.clear()
+
+
+def test_where_rounding_may_decide_the_tree_has_to_be_the_one_for_the_goals_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    problem = small("cut: start > end", "fry: start > end", "mix: end > bowl")
+    rates = dict.fromkeys(("cut", "fry", "mix"), Fraction(1, 2))
+    asked = replace(problem, rates=rates, restriction=Restriction(never_removed, (frozenset({0, 1}),)))
+    alone = reduce(replace(asked, restriction=None), SUCCESS).tree
+    assert alone is not None
+    asking = Asking(monkeypatch)
+    assert (reduce(asked, SUCCESS).tree, asking.asked) == (alone, [])
+    monkeypatch.setattr(reduction_module, "extended", lambda *_: {0, 1} - alone)
+    assert reduce(asked, UNITS).tree == frozenset({0, 1}) - alone
+    assert not asking.asked
+    assert reduce(asked, SUCCESS).settled
+    assert len(asking.asked) == 1
+    monkeypatch.setattr(reduction_module, "extended", lambda *_: {*alone})
+    monkeypatch.setattr(ExactCosts, "met", lambda *_: False)
+    assert not reduce(asked, SUCCESS).settled
+    assert len(asking.asked) == 2
+
+
+def never_removed(_: int) -> bool:
+    return False
 
 
 def test_cuts_are_guided_by_what_is_left_with_extensions(monkeypatch: pytest.MonkeyPatch) -> None:

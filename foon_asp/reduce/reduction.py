@@ -185,11 +185,14 @@ class _Reducer:
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
         self.cases: Cases = None
+        self.proved = False  # whether the tree is the best, as there is none better for the goals alone
 
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
         ended = settled = hopeless = False
         try:
             guide = self._by_extending(guard)
+            if self.proved:
+                return self._result(settled=True)
             with guard():
                 guide = guide or self._near_goals() or self._whole()
                 hopeless = guide is None
@@ -214,8 +217,8 @@ class _Reducer:
         """Leave what cheap trees for the goals alone can have, and what else leads to required sets.
 
         Of a tree, some units are one for the goals alone. These cost no more than it does, and the others no
-        more than what is then left of its cost. Gives how dear objects are, or ``None`` where nothing is
-        required, or that does not help.
+        more than what is then left of its cost. A tree as cheap as the best one for the goals alone is the
+        best. Gives how dear objects are, or ``None`` where nothing is required, or that does not help.
         """
         graph, restriction, limits = self.graph, self.problem.restriction, Reduction.DEAR in self.reductions
         if self.rest or restriction is None or not restriction.required or not limits:
@@ -242,7 +245,13 @@ class _Reducer:
             self._take(without_spare(graph, tree, costs))
             if found.interrupted:
                 raise KeyboardInterrupt
-            limit = self._total(costs) - (Reduction.BOUNDS in self.reductions)
+            only_better, total = Reduction.BOUNDS in self.reductions, self._total(costs)
+            as_good = found.settled and self.tree == alone.tree if costs.doubt else total == found.bound
+            if only_better and as_good:
+                self.costs, self.bound, self.cuts = costs, found.bound, found.cuts
+                self.shared, self.cases, self.proved = found.shared, found.cases, True
+                return None
+            limit = total - only_better
             among = {*wide.actions_within(limit, self.expired), *self.tree}
             among |= extensions(graph, among, costs, limit - found.bound + costs.doubt, self.expired)
             if self.expired():
