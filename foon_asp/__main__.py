@@ -1,6 +1,6 @@
 """``python -m foon_asp``."""
 
-from foon_asp.cli.main import main
+from foon_asp.cli.start import main
 
 if __name__ == "__main__":  # worker processes import this module too
     main()

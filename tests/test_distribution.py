@@ -101,7 +101,7 @@ def test_wheel_has_encodings_data_and_grammar(wheel: Path) -> None:
     packed = {name for name in names if not name.split("/")[0].endswith(".dist-info")}
     assert sorted(packed - {f"foon_asp/{name}" for name in beside} - files_in("foon_asp")) == []
     (entry_points,) = (name for name in names if name.endswith("entry_points.txt"))
-    assert "foon-asp = foon_asp.cli.main:main" in contents[entry_points].decode()
+    assert "foon-asp = foon_asp.cli.start:main" in contents[entry_points].decode()
 
 
 def test_installed_wheel_finds_its_own_files(installed: Path, tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import threading
 import time
 from fractions import Fraction
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -18,6 +19,7 @@ import foon_asp
 from foon_asp.asp import Reporter, Settings, Status, optimum, solve
 from foon_asp.asp.used_up import solve_used_up
 from foon_asp.bounds.counts import CountBound
+from foon_asp.cli import start
 from foon_asp.cli.main import cli as commands
 from foon_asp.cli.main import main
 from foon_asp.cli.options import begin
@@ -345,3 +347,17 @@ def test_a_search_without_memory_for_a_thread_is_stopped_by_the_memory_limit(
     with pytest.raises(LimitError):
         program.search("opt", [("use", 1)], lambda _: None, lambda _: None)
     assert str(deadline.stopped).startswith("the memory limit of 1T")
+
+
+def test_ctrl_c_while_the_program_is_imported_ends_it_quietly(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Pressed(ModuleType):
+        def __getattr__(self, name: str) -> object:
+            raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "foon_asp.cli.main", Pressed("foon_asp.cli.main"))
+    with pytest.raises(SystemExit) as ended:
+        start.main()
+    assert ended.value.code == 3
+    assert capsys.readouterr() == ("", "interrupted before there was an answer\n")
