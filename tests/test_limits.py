@@ -267,16 +267,24 @@ def test_a_stop_anywhere_in_the_search_leaves_what_is_known(monkeypatch: pytest.
     monkeypatch.setattr("foon_asp.rules.rules.Rules.applied", stopped)
     monkeypatch.setattr("foon_asp.asp.used_up._Solver._cut", stopped)
     used_up = foon_asp.load().problem("tea", items="used-up")
-    for asked, settings, status in (
-        (problem, Settings(reductions=frozenset()), Status.FEASIBLE),
-        (problem, Settings((RuleText(":- use(U), motion(U,none)."),)), Status.UNKNOWN),
-        (dataclasses.replace(problem, kitchen=frozenset()), Settings(), Status.UNKNOWN),
-        (used_up, Settings(), Status.UNKNOWN),
+    rule, ready_made = RuleText(":- use(U), motion(U,none)."), Path("at_most_units")
+    monkeypatch.setattr("foon_asp.rules.ready_made.ReadyMade.applied", stopped)
+    for asked, settings, status, doing in (
+        (problem, Settings(reductions=frozenset()), Status.FEASIBLE, "cutting the network"),
+        (problem, Settings((rule,)), Status.UNKNOWN, "grounding"),
+        (problem, Settings((ready_made,), constants=("max_units=9",)), Status.UNKNOWN, "cutting the network"),
+        (
+            dataclasses.replace(problem, kitchen=frozenset()),
+            Settings(),
+            Status.UNKNOWN,
+            "cutting the network",
+        ),
+        (used_up, Settings(), Status.UNKNOWN, "cutting the network"),
     ):
         outcome = optimum.solve(asked, (Objective.UNITS,), settings._replace(deadline=Deadline(600)))
         assert outcome.status is status
         assert outcome.proof is None
-        assert outcome.stopped == "ctrl-C while cutting the network"
+        assert outcome.stopped == f"ctrl-C while {doing}"
         assert (outcome.units is not None) is (status is Status.FEASIBLE)
 
 

@@ -183,8 +183,9 @@ def prepare(
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
         if program.added and settings.reductions and not for_sale:
-            with deadline.watched("cutting the network"):
+            with deadline.watched("cutting the network" if program.ready_made else "grounding"):
                 first = _applied(first, program.added)
+            deadline.doing = "cutting the network"
         if first.contradicted:
             return first
         program, kept = first.program, first.kept or problem
