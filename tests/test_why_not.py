@@ -1,11 +1,14 @@
 """``foon-asp why-not``: dead ends, what is at their root, and names one edit away."""
 
+import threading
 from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
 
+import foon_asp
 from foon_asp import why_not
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.network import NetworkBuilder, NodePattern, ObjectNode, Source
 from foon_asp.network.near_nodes import slip_between
 from foon_asp.problem import ContainerRule, Problem
@@ -247,3 +250,31 @@ def test_several_goals_share_what_is_shown(cli: Cli) -> None:
     assert "1 object node is missing and 1 cycle feeds only itself" in ran.out
     lines = ran.out.split("\n")
     assert sum("whisk    [" in line and "see above" not in line for line in lines) == 1
+
+
+def test_at_a_limit_the_causes_are_given_without_what_would_help(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object) -> None:
+        assert "foon-asp limits" in {thread.name for thread in threading.enumerate()}
+        raise KeyboardInterrupt
+
+    problem = foon_asp.load().problem("apple pie")
+    whole = foon_asp.why_not(problem)
+    assert whole.fix is not None
+    monkeypatch.setattr("foon_asp.questions.why_not._fix", stopped)
+    found = foon_asp.why_not(problem, time_limit=600)
+    assert (found.goals, found.roots, found.fix) == (whole.goals, whole.roots, None)
+    monkeypatch.setattr("foon_asp.questions.why_not._Spellings", stopped)
+    found = foon_asp.why_not(problem, time_limit=600)
+    assert [root.object for root in found.roots] == [root.object for root in whole.roots]
+
+
+def test_without_time_for_the_causes_there_is_no_answer(monkeypatch: pytest.MonkeyPatch, cli: Cli) -> None:
+    def stopped(_: object) -> None:
+        raise LimitError(Deadline(0))
+
+    monkeypatch.setattr("foon_asp.questions.why_not.dead_ends", stopped)
+    with pytest.raises(foon_asp.StoppedError):
+        foon_asp.why_not(foon_asp.load().problem("apple pie"), time_limit=600)
+    ran = cli("why-not", "--goal", "apple pie", "--time-limit", "600")
+    assert ran.code == 3
+    assert "before there was an answer" in ran.err

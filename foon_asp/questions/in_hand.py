@@ -2,6 +2,7 @@
 
 import functools
 from collections.abc import Callable
+from contextlib import nullcontext
 from fractions import Fraction
 from typing import Any, ParamSpec, TypeVar
 
@@ -67,7 +68,8 @@ def in_hand(takes_time: bool) -> Callable[[Callable[P, T]], Callable[P, T]]:
             tell: Any = named.pop("on_progress", None)
             limit = None if takes_time else named.pop("time_limit", None)
             if token is None and tell is None and limit is None:
-                return ask(*about, **named)
+                with stoppable(None, None, f"asking {name}") if is_python() else nullcontext():
+                    return ask(*about, **named)
             within = None if limit is None else seconds(limit)  # type: ignore[arg-type]
             who = caller()
             reporter = who.reporter if tell is None else _Listener(tell, who.reporter)

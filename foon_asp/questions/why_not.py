@@ -1,5 +1,6 @@
 """Why there is no tree: what cannot be made, the causes, and names one edit away."""
 
+import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -157,7 +158,8 @@ def why_not(
     """Explain why there is no task tree: what is missing, and which cycles feed only themselves.
 
     The time grows about linearly with the network, and all of a store is read. If every goal can be made and
-    there are ``constraints`` or ``encodings``, those that clash are found, as by :func:`foon_asp.clash`.
+    there are ``constraints`` or ``encodings``, those that clash are found, as by :func:`foon_asp.clash`. At a
+    limit, or when interrupted, names that are near and what would help are left out.
 
     Returns:
         The ``goals`` that cannot be made, the ``roots`` of that, and the ``clash``.
@@ -170,16 +172,19 @@ def why_not(
         <Explanation: no task tree exists (strict containers): 1 cycle feeds only itself>
     """
     how = settings(constraints, constants, encodings, time_limit, memory_limit)
-    problem = whole(problem)
-    found = dead_ends(problem)
+    problem, deadline = whole(problem), how.begun
+    with deadline.watched("looking for the reason", late=True):
+        found = dead_ends(problem)
     clash = None
     if not found.goals and (how.constraints or how.replaced is not None):
         from foon_asp.questions.clash import find_clash  # noqa: PLC0415
 
         clash = find_clash(problem, (Objective.UNITS,), how)
-    spellings = _Spellings(problem, Foon.of(problem).dataset.data.kitchen_items, found.available)
-    roots = tuple(map(spellings.look_up, found.roots))
-    fix = _fix(problem, time_limit) if found.goals else None
+    roots, fix = found.roots, None
+    with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for what would help"):
+        spellings = _Spellings(problem, Foon.of(problem).dataset.data.kitchen_items, found.available)
+        roots = tuple(map(spellings.look_up, found.roots))
+        fix = _fix(problem, time_limit) if found.goals else None
     return Explanation(problem, found.goals, found.makers, roots, found.available, clash, fix)
 
 
