@@ -313,16 +313,18 @@ def test_chance_leads_where_no_estimate_does() -> None:
     price, single = SET_COSTS.__getitem__, set(range(9))
     for added in (True, False):
         assert derive(SETS, range(12), price, added).tree(SETS, SETS.goals) == single
-    assert varied(SETS, range(12), single, price, never) == {9, 10, 11}
-    assert varied(SETS, range(12), single, price, lambda: True) is single
-    assert varied(SETS, range(9), single, price, never) is single
+    assert varied(SETS, range(12), single, price, 0, never) == {9, 10, 11}
+    assert varied(SETS, range(12), single, price, 0, lambda: True) is single
+    assert varied(SETS, range(9), single, price, 0, never) is single
+    assert varied(SETS, range(12), single, price, 9, never) is single
+    assert 6 < sum(map(price, varied(SETS, range(12), single, price, 8, never))) <= 8
 
 
 def test_what_chance_leads_to_is_a_tree_and_no_dearer() -> None:
     cheaper = 0
     for graph, price, able in (*solvable(range(60)), *sharing(range(20))):
         tree = without_spare(graph, able, lambda _: 1)  # not by what they cost
-        better = varied(graph, able, tree, price.__getitem__, never)
+        better = varied(graph, able, tree, price.__getitem__, 0, never)
         total, least = (sum(map(price.__getitem__, some)) for some in (tree, better))
         assert executes(graph, better)
         assert better <= set(able)

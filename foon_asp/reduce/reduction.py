@@ -392,8 +392,9 @@ class _Reducer:
                 break
             known = []
             tree = following(self.graph, self.left, self.tree, costs, shared)
-            if -(-shared.bound // PARTS) < sum(map(costs, tree)):
-                tree = varied(self.graph, self.left, tree, costs, self.expired)
+            least = -(-shared.bound // PARTS)
+            if least < sum(map(costs, tree)):
+                tree = varied(self.graph, self.left, tree, costs, least, self.expired)
             if tree is not self.tree:
                 self._take(tree)
             settled = self._shared(costs, shared)

@@ -13,7 +13,8 @@ if TYPE_CHECKING:  # few questions need it
     from foon_asp.bounds.shared_costs import SharedCosts
 
 _FINE = 1000  # steps of shares, and of costs that vary, that the estimates tell apart
-_TRIES = 40  # trees that chance leads to
+_TRIES = 40  # times all actions, which are looked at by chance after the last better tree
+_MOST = 160  # trees that chance leads to
 
 
 def without_spare(graph: Graph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
@@ -87,28 +88,34 @@ def varied(
     actions: Collection[int],
     tree: set[int],
     cost: Callable[[int], int],
+    enough: int,
     expired: Callable[[], bool],
 ) -> set[int]:
-    """Look for a cheaper tree by chance; gives the same tree if none is found.
+    """Look for a cheaper tree by chance, down to a cost that is ``enough``; gives the same if none is found.
 
     Some of the actions of a tree cost nothing, any number of them, and each other one costs half as much more
-    or less than it does. A tree that costs the same is the next to start from.
+    or less than it does; half of the times, only some of the others are there, which takes less time. A tree
+    that costs the same is the next to start from.
     """
     chance = random.Random(0).random
     best = last = tree
     total = sum(map(cost, tree))
     ordered = sorted(actions)
-    for _ in range(_TRIES):
-        if expired():
+    effort = _TRIES * len(ordered)
+    for _ in range(_MOST):
+        if effort <= 0 or total <= enough or expired():
             break
-        share = chance()
-        price = {a: int(cost(a) * _FINE * (0.5 + chance())) for a in ordered}
+        share, part = chance(), 1.0 if chance() < 0.5 else chance() ** 2
+        some = [a for a in ordered if chance() < part or a in last]
+        effort -= len(some)
+        price = {a: int(cost(a) * _FINE * (0.5 + chance())) for a in some}
         price |= {a: 0 for a in sorted(last) if chance() < share}
-        found = derive(graph, ordered, price, added=chance() < 0.5).tree(graph, graph.goals)
+        found = derive(graph, some, price, added=chance() < 0.5).tree(graph, graph.goals)
         slim = without_spare(graph, found or last, cost)
         slim_total = sum(map(cost, slim))
+        if slim_total < total:
+            best, effort = slim, _TRIES * len(ordered)
         if slim_total <= total:
-            best = slim if slim_total < total else best
             last, total = slim, slim_total
     return best
 
