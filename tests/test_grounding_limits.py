@@ -99,9 +99,9 @@ def within(least: float, most: float) -> Iterator[None]:
 def test_the_command_line_stops(rules: str, tmp_path: Path) -> None:
     file = tmp_path / "rules.lp"
     file.write_text(rules)
-    with nothing_left(), within(1, 1 + LATE + START):
+    with nothing_left(), within(2, 2 + LATE + START):
         ran = subprocess.run(
-            command("solve", "--goal", "ice", "--constraint", file, "--time-limit", "1", "--format", "json"),
+            command("solve", "--goal", "ice", "--constraint", file, "--time-limit", "2", "--format", "json"),
             capture_output=True,
             check=False,
             timeout=60,
@@ -109,7 +109,7 @@ def test_the_command_line_stops(rules: str, tmp_path: Path) -> None:
     assert ran.returncode == 3, ran.stderr
     answer = json.loads(ran.stdout)
     assert answer["status"] == "unknown"
-    assert answer["stopped"] == "the time limit of 1 s while grounding"
+    assert answer["stopped"] == "the time limit of 2 s while grounding"
     assert b"check them" in ran.stderr
 
 
