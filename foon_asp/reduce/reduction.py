@@ -139,6 +139,8 @@ def at_costs(
             reducer.known = {action for action in wide.left if action < len(reducer.graph.needs)}
         reducer.in_hand, reducer.below = wide.actions(in_hand), below
         reducer.rounds = _FEW
+        if below:  # what is left goes to clingo with a tree in hand
+            reducer.small = _EASY
         return reducer.reduce(nullcontext)
 
 
@@ -169,7 +171,7 @@ class _Reducer:
         self.problem, self.objectives, self.reductions = problem, objectives, reductions
         self.expired, self.listener, self.spare, self.rest = expired, listener, spare, rest
         self.extended = extended  # so costs of all actions are asked for later
-        self.rounds, self.effort = _ROUNDS, _EFFORT
+        self.rounds, self.effort, self.small = _ROUNDS, _EFFORT, _SMALL
         self.extending = False  # some trees were left out before there were cuts
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse: Callable[[int], int] = CoarseCosts(problem, objectives[0])
@@ -382,7 +384,7 @@ class _Reducer:
         """Share costs out among all cuts at once, and leave out more; whether the tree is proved optimal."""
         known = [(cut.objects, cut.members) for cut in self.cuts.cuts] if self.cuts else []
         before, settled = math.inf, False
-        while not settled and _SMALL < len(self.left) < _WORTH * before and not self.expired():
+        while not settled and self.small < len(self.left) < _WORTH * before and not self.expired():
             from foon_asp.bounds.shared_costs import PARTS, share_costs  # noqa: PLC0415 (few questions need it)
 
             before = len(self.left)
