@@ -6,7 +6,9 @@
 Prints a table in Markdown, a row for each network, objective and constraint, over all goals. One that deletes
 units is held against the same network written without these units, another against the question without a
 rule. Values of constants are chosen from the network and from the best tree without the rule, so that they
-matter: a motion that many units have, one use fewer than the best tree makes, and so on. What is allowed is
+matter: a motion that many units have, one use fewer than the best tree makes, and so on. For those that look
+at where units were read, a network without videos has one unit of 32 from another file, and one of 32 from a
+single video. What is allowed is
 1.2 times the other time for a rule that deletes, and 5 times for others, plus 0.1 s; *within* counts the
 goals that took no more, and *of allowed* is the median of what they took of that. Times are seconds of
 processors, after reading, those of clingo's own process included. ``--plain SECONDS`` solves each question
@@ -24,7 +26,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
@@ -33,7 +35,7 @@ from typing import NamedTuple
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.deadline import Deadline
-from foon_asp.network import NetworkBuilder
+from foon_asp.network import Network, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
 from foon_asp.python_process import _end_all
 from foon_asp.reduce import NONE
@@ -57,8 +59,10 @@ COLUMNS = (
 )
 DELETING = {
     *("forbid_motion", "forbid_object", "forbid_ingredient", "never_heated"),
-    *("motion_only_with", "least_rate"),
+    *("motion_only_with", "least_rate", "only_sources", "at_least_videos"),
 }
+_OFTEN, _VIDEOS = "often.txt", ("https://foon.example/1", "https://foon.example/2")
+_SELDOM = 1 / 32  # of the units are from elsewhere
 _TRIED = 8  # values of a constant, the most frequent ones, of which the one that leaves most trees is taken
 
 
@@ -120,18 +124,19 @@ def main() -> int:
 
 def _folder(folder: Path, arguments: argparse.Namespace) -> int:
     data = read_data(find_data(folder, (), None, None, None, None), lenient=True)
+    network, kitchen = data.network, data.kitchen
+    if not any(source.videos for sources in network.sources for source in sources):
+        network = _with_sources(network, random.Random(arguments.seed))
+        kitchen = _same(kitchen, data.network, network)
 
     def posed(goal: int) -> Problem:
-        network, kitchen = data.network, data.kitchen
         return Problem(network, kitchen, (goal,), data.rates, data.utensils, arguments.containers)
 
     if arguments.any:
         made = sorted(reach(posed(0)).makers)
         goals = random.Random(arguments.seed).sample(made, min(arguments.goals, len(made)))
     else:
-        goals = list(
-            dict.fromkeys(node for entry in data.goals for node in listed_nodes(entry, data.network))
-        )
+        goals = list(dict.fromkeys(node for entry in data.goals for node in listed_nodes(entry, network)))
         goals = goals[-arguments.goals :]
     problems = [posed(goal) for goal in goals]
     _ = problems[0].needs, problems[0].makers  # indexes of the network
@@ -163,6 +168,22 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
     return different
 
 
+def _with_sources(network: Network, chance: random.Random) -> Network:
+    """Give the same network with files and videos for the units."""
+    builder = NetworkBuilder()
+    for line, unit in enumerate(network, 1):
+        file = "seldom.txt" if chance.random() < _SELDOM else _OFTEN
+        videos = _VIDEOS[: 1 if chance.random() < _SELDOM else 2]
+        builder.add(unit.motion, list(unit.inputs), list(unit.outputs), Source(file, line, videos=videos))
+    return builder.build()
+
+
+def _same(nodes: Iterable[int], before: Network, after: Network) -> frozenset[int]:
+    """Give the ids of nodes in another network, of those that it has."""
+    found = (after.object_id(before.objects[o]) for o in nodes)
+    return frozenset(o for o in found if o is not None)
+
+
 def _constraints(trees: list[Outcome], only: list[str]) -> Iterator[tuple[Asked, list[Outcome]]]:
     """Give constraints with constants that matter, and the trees of whose goals they are asked."""
     problem = trees[0].problem
@@ -173,6 +194,7 @@ def _constraints(trees: list[Outcome], only: list[str]) -> Iterator[tuple[Asked,
         nodes = [network.objects[o] for side in sides for o in side]
         labels.update({node.label for node in nodes})
         ingredients.update({item for node in nodes for item in node.ingredients})
+    files = Counter(source.file for sources in network.sources for source in sources)
     rates = sorted(set((problem.rates or {}).values()))
     for name, constant, values in (
         ("forbid_motion", "forbidden_motion", [f'"{m}"' for m, _ in motions.most_common(_TRIED)]),
@@ -185,6 +207,8 @@ def _constraints(trees: list[Outcome], only: list[str]) -> Iterator[tuple[Asked,
         ),
         ("motion_only_with", "tied_motion", [f'"{m}"' for m, _ in motions.most_common(_TRIED)]),
         ("least_rate", "least_rate", [str(int(rate * 10**6)) for rate in rates[1 : 1 + _TRIED]][::-1]),
+        ("only_sources", "allowed_source", [f'"{m}"' for m, _ in files.most_common(1)]),
+        ("at_least_videos", "least_videos", ["2"]),
     ):
         tied = ('tied_utensil="knife"',) if name == "motion_only_with" else ()
         asked = [Asked(name, (f"{constant}={value}", *tied)) for value in values]
@@ -270,7 +294,7 @@ def _without_units(
             builder.add(kept.motion, list(kept.inputs), list(kept.outputs), whole.network.sources[unit][0])
     network = builder.build()
     ids = [network.object_id(node) for node in whole.network.objects]
-    kitchen = frozenset(new for o in whole.kitchen if (new := ids[o]) is not None)
+    kitchen = _same(whole.kitchen, whole.network, network)
     for measured in row:
         goal = ids[measured.outcome.problem.goals[0]]
         if goal is None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import PurePath
 
 from foon_asp.encoding.scales import Scales
@@ -521,8 +521,16 @@ def quote(text: str) -> str:
 
 def source_names(sources: Iterable[Source]) -> dict[str, None]:
     """Give the names of a unit's places for constraints: files, with folders and without, and videos."""
-    names = (name for s in sources for name in (s.file, PurePath(s.file).name, *s.videos))
-    return dict.fromkeys(map(encodable, names))
+    names: dict[str, None] = {}
+    for source in sources:
+        names.update(_file_names(source.file))
+        names.update(dict.fromkeys(map(encodable, source.videos)))
+    return names
+
+
+@lru_cache(maxsize=1000)  # most units are from the file of the one before
+def _file_names(file: str) -> dict[str, None]:
+    return dict.fromkeys(map(encodable, (file, PurePath(file).name)))
 
 
 def millionths(rate: Fraction) -> int:
