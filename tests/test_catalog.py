@@ -59,7 +59,7 @@ problem: containers costs items number objective order problem progress relevanc
 proof: simulation
 questions: answer arguments caller contract docstring in_hand index options posing result solve
 reduce: derivation dominance exact_costs extension forced graph narrow near reduction reductions
-    support upper_bound wide
+    support upper_bound wide within_reach
 report: answer
 rules: constraint
 text: assumed_goals bytes_read clean_line data_folder diagnostics exact_price goal_name grammar item_list
