@@ -148,6 +148,7 @@ def test_clingo_and_we_remove_and_require_the_same(seeds: range) -> None:
         ":- not use(U) : unit(U), gives(U,O), not goal(O).",
         ":- use(U), #count { L : input(U,O), not goal(O), label(O,L) } > 1.",
         ":- use(U), not #count { L,O : input(U,O), label(O,L) ; O : output(U,O) } < 3.",
+        ":- use(U), inputs(U,N), #count { O : output(U,O) } >= N.",
     ],
 )
 def test_conditions_with_variables_of_their_own(text: str) -> None:

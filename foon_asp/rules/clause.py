@@ -1,6 +1,7 @@
 """One rule of an encoding taken apart: its head, and the parts of its body."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from operator import eq, ge, gt, le, lt, ne
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,6 +29,14 @@ _FLIPPED = {
     ComparisonOperator.GreaterThan: ComparisonOperator.LessThan,
     ComparisonOperator.LessEqual: ComparisonOperator.GreaterEqual,
     ComparisonOperator.GreaterEqual: ComparisonOperator.LessEqual,
+}
+_COMPARING = {
+    ComparisonOperator.GreaterThan: gt,
+    ComparisonOperator.LessThan: lt,
+    ComparisonOperator.LessEqual: le,
+    ComparisonOperator.GreaterEqual: ge,
+    ComparisonOperator.NotEqual: ne,
+    ComparisonOperator.Equal: eq,
 }
 _NUMBERS = {AggregateFunction.Count, AggregateFunction.Sum, AggregateFunction.SumPlus}
 
@@ -345,13 +354,6 @@ class _Reader:
                     yield atom._replace(negations=0), self.parts(conditional.condition)
 
 
-def compared(left: Symbol, operator: int, right: Symbol) -> bool:
+def compared(left: Symbol, comparison: int, right: Symbol) -> bool:
     """Compare two values as clingo does: numbers before words before texts, and so on."""
-    return {
-        ComparisonOperator.GreaterThan: left > right,
-        ComparisonOperator.LessThan: left < right,
-        ComparisonOperator.LessEqual: left <= right,
-        ComparisonOperator.GreaterEqual: left >= right,
-        ComparisonOperator.NotEqual: left != right,
-        ComparisonOperator.Equal: left == right,
-    }[ComparisonOperator(operator)]
+    return bool(_COMPARING[ComparisonOperator(comparison)](left, right))

@@ -1,6 +1,7 @@
 """Flat bodies, answered for the units of one problem: only those units are looked at that are asked about."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from operator import itemgetter
 from typing import Any, NamedTuple
 
@@ -211,13 +212,19 @@ class FlatAnswers:
         seen: set[_Row] = set()
         steps = [self._step(way.items, item.given, self._noting(terms, seen)) for way, terms in item.rows]
         guards = [(operator, self._read(term)) for operator, term in item.guards]
+        fixed = all(isinstance(term, Constant) for _, term in item.guards)
+        known: dict[int, bool] = {}  # of counts, where nothing else decides
 
         def step(values: _Values) -> bool:
             seen.clear()
             for each in steps:
                 each(values)
-            number = Number(len(seen))
-            holds = all(compared(number, operator, _symbol(read(values))) for operator, read in guards)
+            holds = known.get(len(seen))
+            if holds is None:
+                number = Number(len(seen))
+                holds = all(compared(number, operator, _symbol(read(values))) for operator, read in guards)
+                if fixed:
+                    known[len(seen)] = holds
             return holds is not item.negated and then(values)
 
         return step
@@ -330,6 +337,7 @@ def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
     network, kitchen, utensils = problem.network, problem.kitchen, problem.utensils
     objects, inputs = network.objects, network.inputs
     seen = problem.as_seen or problem
+    written = lru_cache(maxsize=1000)(encodable)  # many units are of one video
     once: dict[str, Callable[[int], Any]] = {
         "motion": network.motions.__getitem__,
         "label": lambda o: objects[o].label,
@@ -345,7 +353,7 @@ def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
         "ingredient": lambda o: [item for each in objects[o].contents for item in each.ingredients],
         "located": lambda o: [tuple(each) for each in objects[o].relations],
         "source": lambda unit: source_names(network.sources[unit]),
-        "video": lambda unit: [encodable(each) for s in network.sources[unit] for each in s.videos],
+        "video": lambda unit: [written(each) for s in network.sources[unit] for each in s.videos],
         "rate": lambda _: (),
         "price": lambda unit: (prices[unit],) if unit in prices else (),
     }
