@@ -24,8 +24,10 @@ _ADVICE = {
     "check them, or raise the limit",
 }
 _LATE = 0.5  # seconds, and half of it after a cancel
+_MEMORY_LATE = 0.1  # seconds
 _GRACE = 0.25  # seconds
 _CANCELLED = "a cancel"
+_PROVED, _INTERRUPTED = "a proof", "ctrl-C"
 _STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
 _WAITS = 50  # looks until an interrupt is taken for lost
 _LOOKS = 0.02  # seconds between two looks at the memory
@@ -163,6 +165,7 @@ class Deadline:
         self._by: str | None = None
         self._token = _CANCEL.get()
         self._late = _LATE
+        self._noticed: float | None = None  # when somebody saw that it was over
 
     @property
     def doing(self) -> str:
@@ -200,7 +203,7 @@ class Deadline:
     @property
     def interrupted(self) -> bool:
         """Whether ctrl-C was pressed."""
-        return self._by == "ctrl-C"
+        return self._by == _INTERRUPTED
 
     @property
     def left(self) -> float | None:
@@ -219,18 +222,23 @@ class Deadline:
             return False
         if self._by == _CANCELLED:
             return self._token is None or self._token.since(self._late / 2)
-        return self._end is None or time.monotonic() >= self._end + self._late or self._by != self._time_words
+        now = time.monotonic()
+        if self._end is not None and self._by == self._time_words:
+            return now >= self._end + self._late
+        if self._noticed is None:
+            self._noticed = now
+        return now >= self._noticed + (self._late if self._by in {_PROVED, _INTERRUPTED} else _MEMORY_LATE)
 
     def interrupt(self) -> None:
         """Note that ctrl-C was pressed, unless a limit came before."""
         if self._by is None:
-            self._by = "ctrl-C"
+            self._by = _INTERRUPTED
             if self._within is not None:
                 self._within.interrupt()
 
     def enough(self) -> None:
         """Note that all that was asked for is known; what this is within goes on."""
-        self._by = self._by or "a proof"
+        self._by = self._by or _PROVED
 
     def out_of_memory(self) -> None:
         """Note that there is no more memory."""

@@ -288,6 +288,22 @@ def test_a_stop_anywhere_in_the_search_leaves_what_is_known(monkeypatch: pytest.
         assert (outcome.units is not None) is (status is Status.FEASIBLE)
 
 
+def test_what_was_enough_or_interrupted_comes_to_an_end_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search sees that it is over and says what it knows; it is interrupted only if it does not."""
+    proved, pressed, full = Deadline(60), Deadline(), Deadline(memory=1)
+    proved.enough()
+    pressed.interrupt()
+    for deadline in (proved, pressed, full):
+        assert deadline.passed
+        assert not deadline.overdue
+    monkeypatch.setattr("foon_asp.deadline._MEMORY_LATE", 0)
+    assert full.overdue
+    for deadline in (proved, pressed):
+        assert not deadline.overdue
+        deadline._late = 0
+        assert deadline.overdue
+
+
 def test_what_is_known_already_is_given_a_moment() -> None:
     long_over = Deadline(-9)
     with pytest.raises(LimitError), long_over.watched("counting", late=True):
