@@ -12,12 +12,15 @@ from foon_asp.reduce.within_reach import within_reach
 from tests.plain_graphs import plain, random_graph
 
 
-@pytest.mark.parametrize(("least", "deep"), [(1, 100), (0, 100), (1, 1)])
+@pytest.mark.parametrize(
+    ("least", "deep", "looks"), [(1, 100, 1000), (0, 100, 1000), (1, 1, 1000), (1, 100, 20)]
+)
 def test_what_is_asked_for_by_and_by_is_what_is_derived_at_once(
-    least: int, deep: int, monkeypatch: pytest.MonkeyPatch
+    least: int, deep: int, looks: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(module, "_DEEP", deep)
-    exact = least == 1 and deep > 1  # else it may be too deep to tell, as in circles that cost nothing
+    monkeypatch.setattr(module, "_LOOKS", looks)
+    exact = (least, deep, looks) == (1, 100, 1000)  # else it may be too deep, as in circles that cost nothing
     told = untold = 0
     for seed in range(40):
         rng = random.Random(seed)
@@ -70,3 +73,21 @@ def test_in_a_circle_it_comes_to_an_end() -> None:
     assert within_reach(circle, range(2), lambda _: 0)(1, 5)  # too deep to tell
     assert not within_reach(circle, range(2), lambda _: 1)(1, 5)
     assert not within_reach(circle, {0}, lambda _: 0)(1, 5)
+
+
+def test_circles_are_not_gone_round_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each of ten objects makes each other one, at a rest of its own: 67,869 looks, if nothing ends them."""
+    actions = [([one], [other]) for one in range(1, 11) for other in range(1, 11) if one != other]
+    rng = random.Random(2)
+    rests = [1 << rng.randrange(20) for _ in actions]
+    asked: list[int] = []
+
+    def rest(action: int) -> int:
+        asked.append(action)
+        return rests[action]
+
+    monkeypatch.setattr(module, "_LOOKS", 500)
+    reach = within_reach(plain(actions, [1]), range(len(actions)), rest)
+    assert reach(1, 10**7)
+    assert reach(2, 10**7)
+    assert 500 < len(asked) < 700

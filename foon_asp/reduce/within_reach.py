@@ -6,6 +6,7 @@ from collections.abc import Callable, Container
 from foon_asp.reduce.graph import Graph
 
 _DEEP = 100  # actions that build upon each other, beyond which nothing is looked at
+_LOOKS = 200_000  # at actions, in all: in circles each object can be asked about at very many limits
 
 
 def within_reach(
@@ -16,21 +17,24 @@ def within_reach(
     It takes as much as the dearest that its maker needs, and the maker (h_max): what ``derive`` finds of all
     objects at once. Here it is found from the object that is asked about downwards, and what a limit rules
     out is not looked at, which is most of a large network where the limit is low. ``True`` where it would be
-    too deep to tell. ``rest(a)`` is what the cuts leave of the cost of action ``a``.
+    too deep, or take too long, to tell. ``rest(a)`` is what the cuts leave of the cost of action ``a``.
     """
     needs, makers, start = graph.needs, graph.makers, graph.start
     least: dict[int, float] = {}  # what objects take at least, as far as known
     enough: dict[int, float] = {}  # limits that were enough
+    looks = _LOOKS
 
     def reached(o: int, limit: float, deep: int = _DEEP) -> bool:
+        nonlocal looks
         if least.get(o, 0) > limit:
             return False
-        if o in start or enough.get(o, math.inf) <= limit:
+        if o in start or enough.get(o, math.inf) <= limit or looks < 0:
             return True
         lowest = math.inf
         for action in makers[o]:
             if action not in allowed:
                 continue
+            looks -= 1
             own: float = rest(action)
             if own <= limit:
                 left = limit - own
