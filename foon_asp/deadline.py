@@ -227,7 +227,17 @@ class Deadline:
             return now >= self._end + self._late
         if self._noticed is None:
             self._noticed = now
-        return now >= self._noticed + (self._late if self._by in {_PROVED, _INTERRUPTED} else _MEMORY_LATE)
+        return now >= self._noticed + (_MEMORY_LATE if self.full else self._late)
+
+    @property
+    def full(self) -> bool:
+        """Whether there was no more memory: what comes to an end may, but nothing else is begun."""
+        return self._by is not None and self._by not in {
+            self._time_words,
+            _CANCELLED,
+            _PROVED,
+            _INTERRUPTED,
+        }
 
     def interrupt(self) -> None:
         """Note that ctrl-C was pressed, unless a limit came before."""
@@ -320,11 +330,12 @@ class Watch:
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
         self._deadline, self._doing = deadline, doing
         self._striker = _Striker(deadline, late, time.monotonic() + _GRACE if grace else -math.inf)
+        self._begins = grace  # whatever has passed
 
     def __enter__(self) -> Self:
         deadline = self._deadline
         deadline.doing = self._doing
-        if self._striker.due:
+        if self._striker.due or (deadline.passed and deadline.full and not self._begins):
             raise LimitError(deadline)
         if deadline.limited:
             threading.Thread(target=self._striker.watch, daemon=True, name="foon-asp limits").start()

@@ -304,6 +304,14 @@ def test_what_was_enough_or_interrupted_comes_to_an_end_by_itself(monkeypatch: p
         assert deadline.overdue
 
 
+def test_without_memory_nothing_is_begun() -> None:
+    """But what knows something already, and tells it."""
+    with pytest.raises(LimitError), Deadline(memory=1).watched("reading", late=True):
+        pytest.fail("it was begun")
+    with Deadline(memory=1).watched("searching", late=True, grace=True):
+        pass
+
+
 def test_what_is_known_already_is_given_a_moment() -> None:
     long_over = Deadline(-9)
     with pytest.raises(LimitError), long_over.watched("counting", late=True):

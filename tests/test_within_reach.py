@@ -75,6 +75,14 @@ def test_in_a_circle_it_comes_to_an_end() -> None:
     assert not within_reach(circle, {0}, lambda _: 0)(1, 5)
 
 
+def test_costs_may_be_larger_than_any_float() -> None:
+    """Of an object that nothing makes, nothing is said, however much the action costs that needs it."""
+    reach = within_reach(plain([([], [2]), ([2, 3], [1])], [1]), range(2), lambda _: 10**400)
+    assert not reach(1, 2 * 10**400)
+    assert not reach(1, 10**500)
+    assert reach(2, 10**400)
+
+
 def test_circles_are_not_gone_round_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each of ten objects makes each other one, at a rest of its own: 67,869 looks, if nothing ends them."""
     actions = [([one], [other]) for one in range(1, 11) for other in range(1, 11) if one != other]

@@ -40,7 +40,8 @@ def within_reach(
                 left = limit - own
                 for needed in needs[action]:
                     if needed not in start and deep and not reached(needed, left, deep - 1):
-                        own += least[needed]
+                        missing = least[needed]
+                        own = missing if missing == math.inf else own + missing  # whole numbers may be huge
                         break
                 else:
                     enough[o] = limit
