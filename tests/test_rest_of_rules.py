@@ -19,6 +19,7 @@ from foon_asp.asp.prepared import prepare
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.solver import Reporter, _Heard, _Solver
 from foon_asp.deadline import Deadline
+from foon_asp.encoding import exact_success
 from foon_asp.errors import BugError
 from foon_asp.grounding.grounded import Grounded
 from foon_asp.grounding.run import Run
@@ -279,6 +280,57 @@ def test_rates_that_are_too_fine_for_the_reductions_are_left_to_the_search() -> 
     assert says(asked(fine, rule, Objective.SUCCESS)) == (Status.OPTIMAL, {0, 2})
 
 
+@pytest.mark.slow
+def test_rounding_hides_nothing_among_loose_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With weights so coarse that most trees weigh the same."""
+    monkeypatch.setattr(exact_success, "_scale", lambda _: 2)
+    met: Counter[bool] = Counter()
+    settle = _Solver._settled_with_loose_ends
+
+    def settling(solver: _Solver, *given: Any) -> Run | None:
+        found = settle(solver, *given)
+        assert found is not None
+        assert found.units is not None
+        met[given[-1] == len(found.units)] += 1
+        return found
+
+    monkeypatch.setattr(_Solver, "_settled_with_loose_ends", settling)
+    for seed in range(240):
+        rng = random.Random(seed)
+        problem = random_problem(seed, list(ContainerRule)[seed % 2], units=14)
+        both, names = {*rng.sample(MOTIONS, 2)}, ["success", "units"][: 1 + seed % 2]
+        kept = [tree for tree in oracle.trees(problem) if not both <= {unit.motion for unit in tree}]
+        kept += [()] if oracle.makes(problem, ()) else []
+        best = oracle.best(kept, problem, names)
+        rule = ':- use(U), motion(U,"{}"), use(V), motion(V,"{}").'.format(*both)
+        outcome = asked(problem, rule, *map(Objective, names))
+        assert outcome.status is (Status.INFEASIBLE if best is None else Status.OPTIMAL), seed
+        if outcome.units is not None:
+            tree = tuple(map(problem.network.unit, outcome.units))
+            assert oracle.key(problem, tree, names) == best, seed
+    assert met[True]
+    assert met[False]
+
+
+def test_a_tree_of_the_fewest_units_is_not_held_against_those_that_are_as_good(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    searches = Searches(monkeypatch)
+    few = replace(LOOSE, rates=dict.fromkeys(LOOSE.network.motions, Fraction(1, 2)))
+    outcome = asked(few, APART, Objective.SUCCESS)
+    assert outcome.costs is not None
+    assert (outcome.costs.success, outcome.costs.units) == (Fraction(1, 64), 6)
+    ran = len(searches.modes)
+    searches.modes.clear()
+    many = replace(
+        few, rates={**(few.rates or {}), **dict.fromkeys(("cut", "dry", "hang", "soak"), Fraction(1))}
+    )
+    outcome = asked(many, APART, Objective.SUCCESS)
+    assert outcome.costs is not None
+    assert (outcome.costs.success, outcome.costs.units) == (Fraction(1, 8), 7)
+    assert len(searches.modes) == ran + 1
+
+
 def test_rules_that_were_applied_wrongly_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The tree that is given is held against the rules as the user wrote them."""
     monkeypatch.setattr(Rules, "applied", lambda *_: Restriction(lambda _: False))
@@ -306,9 +358,10 @@ def test_what_rounding_hides_is_looked_for_among_loose_ends(monkeypatch: pytest.
     rounded: list[Objective | None] = [Objective.SUCCESS]
     best = frozenset({2, 4}), True
 
-    def settle(_: _Solver, units: frozenset[int]) -> tuple[frozenset[int], bool]:
+    def settle(_: _Solver, units: frozenset[int], fewest: int) -> tuple[frozenset[int], bool]:
         assert (solver.program, solver.rules, solver._loose) == (loose, "own. more.", True)
         assert units == {1}
+        assert fewest == 1
         return best
 
     monkeypatch.setattr(_Solver, "_settle", settle)
@@ -317,7 +370,7 @@ def test_what_rounding_hides_is_looked_for_among_loose_ends(monkeypatch: pytest.
     monkeypatch.setattr(_Solver, "_scaled", lambda _: SimpleNamespace(rounded=rounded[0]))
 
     def settled(known: set[int]) -> set[int] | None:
-        ended = solver._settled_with_loose_ends(Run(frozenset({1})), loose, "more.", known)
+        ended = solver._settled_with_loose_ends(Run(frozenset({1})), loose, "more.", known, 1)
         assert (solver.program, solver.rules, solver._loose) == (before, "own. ", False)
         return None if ended is None or ended.units is None else {*ended.units}
 

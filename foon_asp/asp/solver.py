@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
 
 _NEAR = 200  # units nearest to the goals, among which a tree that keeps to all rules is looked for first
 _LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer of these
+_FEWEST: tuple[Objective, ...] = (Objective.UNITS,)
 _GROWN = 1.5  # times as many of them are known each time, if that is what leads to what they need
 _MANY = 5000  # units that are known then, at most about
 _MORE = 4  # times as many, where there is none
@@ -323,20 +324,23 @@ class _Solver:
         required = write_required([map(number, sorted(each)) for each in sets])
         first = tree.union(*(each for each in sets if len(each) <= _NEAR))
         known = wide.with_only_makers(first, _MANY)
-        by: tuple[Objective, ...] = (Objective.UNITS,)  # quick to ask, and enough to see that there is none
+        by, fewest = _FEWEST, 0  # quick to ask, and enough to see that there is none
         for _ in range(_LOOSE):
             self._look_at(known.union(wide.makers(known), *sets))
             asked = replace(self.first, program=program)
             text = required + write_known(map(number, sorted(known)))
             ended = asked.run(text + write_objectives(by))
-            if by != self.levels and ended.units is not None and self._ids(ended.units) <= known:
-                by = self.levels
-                ended = asked.run(text + write_objectives(by)) if ended.exhausted else ended
+            if by != self.levels and ended.exhausted and ended.units is not None:
+                tree = self._ids(ended.units)
+                if tree <= known:  # one that keeps to all rules: what is best is no worse
+                    by, fewest = self.levels, len(tree)
+                    worst = self._scaled().weight(by[0], tree)
+                    ended = asked.run(text + write_objectives(by), f"opt,{worst}")
             if not ended.exhausted or ended.units is None:
                 return ended if ended.exhausted else None
             ended.units = self._ids(ended.units)
             if ended.units <= known:
-                return self._settled_with_loose_ends(ended, program, text, known)
+                return self._settled_with_loose_ends(ended, program, text, known, fewest)
             if len(known) > _MANY:
                 return None
             fresh = wide.beside(ended.units - known)
@@ -347,11 +351,11 @@ class _Solver:
         return None
 
     def _settled_with_loose_ends(
-        self, ended: "Run", program: Program, text: str, known: Collection[int]
+        self, ended: "Run", program: Program, text: str, known: Collection[int], fewest: int
     ) -> "Run | None":
         """Examine what rounding may have hidden among trees with loose ends, too.
 
-        ``None`` where the best has loose ends.
+        None of them has fewer units than ``fewest``. ``None`` where the best has loose ends.
         """
         assert ended.units is not None
         self._measures_agree(ended.units, ended.cost, self.levels)
@@ -360,7 +364,7 @@ class _Solver:
         before, rules = self.program, self.rules
         self.program, self.rules, self._loose = program, rules + text, True
         try:
-            best, proved = self._settle(ended.units)
+            best, proved = self._settle(ended.units, fewest)
         finally:
             self.program, self.rules, self._loose = before, rules, False
         ended.units = best
@@ -571,10 +575,11 @@ class _Solver:
             units.add(unit)
         return Units(units)
 
-    def _settle(self, best: Units) -> tuple[Units, bool]:
+    def _settle(self, best: Units, fewest: int = 0) -> tuple[Units, bool]:
         """Examine every total that rounding may have hidden; see docs/exact-success.md.
 
-        Returns the tree that is best exactly, and whether the search came to its end.
+        No tree has fewer units than ``fewest``. Returns the tree that is best exactly, and whether the search
+        came to its end.
         """
         scales = self._scaled()
         if scales.rounded not in self.levels:  # a program that is kept knows others, too
@@ -605,7 +610,7 @@ class _Solver:
                 chosen, wanted = rival, []
             if theirs <= ours:
                 wanted.append(len(totals))
-        if not after:
+        if not after or (after == _FEWEST and len(chosen) == fewest):
             return chosen, True
         for number in wanted:
             limits = (scales.weight(objective, chosen) for objective in after)

@@ -117,23 +117,26 @@ def write_facts_read(
     prices = hundredths(problem, units, read) if _OF_RULES & {*read} else None
     of_objects = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
 
-    def add(subject: str, atoms: Iterable[_Atom]) -> None:
+    def add(atoms: Iterable[_Atom]) -> None:
         wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
-        lines.append(". ".join([subject, *wanted]) + ".")
+        if wanted:
+            lines.append(". ".join(wanted) + ".")
 
     for unit in units:
-        atoms = _unit_atoms(problem, unit, scales, prices)
+        atoms = [("unit", f"{_check(problem.network.unit_number(unit))}")]
+        atoms += _unit_atoms(problem, unit, scales, prices)
         if problem.rates is not None and not (scales and scales.rates):
             number = problem.network.unit_number(unit)
             atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
-        add(_unit_atom(problem, unit), atoms)
+        add(atoms)
     for o in nodes:
-        atoms = [
+        atoms = [("object", f"{_check(name(o))}")]
+        atoms += [
             (each, f"{name(o)},{said}") for each, said in object_facts(problem.network.objects[o], of_objects)
         ]
         if o in problem.kitchen:
             atoms.append(("kitchen", f"{name(o)}"))
-        add(_object_atom(problem, o), atoms)
+        add(atoms)
     labels = {problem.network.objects[o].label for o in nodes}
     lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
     lines += [f"goal({name(o)})." for o in problem.goals]
