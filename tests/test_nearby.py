@@ -175,7 +175,7 @@ def test_rows_of_a_batch_are_those_of_the_text(tmp_path: Path, monkeypatch: pyte
             statuses.add(ours["status"])
     assert statuses == {"optimal", "infeasible", "failed"}  # there are no rates
     assert len(read_on) > 5
-    assert whole != []
+    assert not whole  # rules are all that there is to it where there is no tree
 
 
 @SERIES
@@ -227,6 +227,27 @@ def test_the_command_reads_near_the_goal(tmp_path: Path, cli: Cli, monkeypatch: 
     assert {name: value for name, value in near.items() if name != "seconds"} == {
         name: value for name, value in whole.items() if name != "seconds"
     }
+
+
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_what_rules_rule_out_needs_no_more_than_a_tree_without_them(
+    form: str, tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of two ways to a stew, one breaks the rule far from the goal, and the other one where it begins."""
+    two_ways(tmp_path).close()
+    words = ("solve", "--goal", "stew", "--format", form)
+    rules = [word for each in ("boil", "cook 11") for word in ("--rule", f':- use(U), motion(U,"{each}").')]
+    text = cli(*words, *rules, "--network", tmp_path / "stew.txt", "--kitchen", tmp_path / "kitchen.txt")
+    monkeypatch.setattr(StoredDataset.nearby, "__defaults__", (None, 1))
+    monkeypatch.setattr(Nearby, "whole", None)
+    near = cli(*words, *rules, "--network", tmp_path / "stew.foon")
+    assert near.code == text.code == 1
+    if form == "text":
+        assert near.out == text.out
+        assert "without the constraints there is one" in near.out
+    else:
+        ours, theirs = (json.loads(said.out) for said in (near, text))
+        assert {**ours, "seconds": 0, "network": 0} == {**theirs, "seconds": 0, "network": 0}
 
 
 @pytest.mark.parametrize(

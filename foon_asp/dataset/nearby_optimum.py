@@ -32,7 +32,8 @@ def solve_nearby(
     What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
     is a tree of the whole network, and none there costs less; else more is read of what leads to what it
     takes. In the end everything is read. Rules of the user's have to hold for parts of trees. ``None`` where
-    there is no tree even so: why is a question about all that could lead to the goals.
+    there is no tree even so, and rules are not all that there is to it: why is then a question about all that
+    could lead to the goals.
     """
     reporter = reporter or Reporter()
     deadline = how.begun
@@ -41,7 +42,9 @@ def solve_nearby(
         problem = near.problem
         found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter))
         if found.status is Status.INFEASIBLE:
-            return None
+            free = alone._replace(constraints=(), constants=())
+            ruled_out = how.constraints and solve_nearby(near, objectives, free)
+            return found._replace(problem=near.problem) if ruled_out else None
         lacking = [] if found.units is None else near.lacking(found.units)
         if lacking and found.status is Status.OPTIMAL:
             try:
