@@ -7,6 +7,7 @@ from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
 from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
+from foon_asp.reduce.within_reach import within_reach
 
 _FIRST = 500  # actions nearest to the required sets, among which an extension is looked for
 
@@ -31,10 +32,12 @@ def extensions(
 ) -> set[int]:
     """Give the actions that an extension of costs up to a limit can have, as if ``free`` ones cost nothing.
 
-    All on a way from an action of it to a required set is of the extension, too, so that counts in full.
+    All on a way from an action of it to a required set is of the extension, too, so that counts in full, and
+    what the action builds upon does besides, but for free ones.
     """
     towards, price = _towards_required(graph), _free(free, cost)
-    left = near(towards, range(len(graph.needs)), cost, limit, least=1)
+    every = range(len(graph.needs))
+    left = near(towards, every, cost, limit, least=1, within=within_reach(graph, every, price))
     while not expired():
         made = derive(graph, left.union(free), price, added=False)
         nearer = near(towards, left, cost, limit, made.before, least=1)
