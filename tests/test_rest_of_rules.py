@@ -2,7 +2,7 @@
 
 import random
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -194,6 +194,22 @@ def test_loose_ends_are_tied_until_none_is_left(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(solver_module, "_NEAR", 3)
     assert asked(LOOSE).costs == outcome.costs
     assert looks.units[0] == first
+
+
+def test_options_of_the_users_are_those_of_loose_ends_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[Sequence[str]] = []
+
+    def grounded(program: Grounded, files: object, text: str, arguments: Sequence[str], *rest: Any) -> None:
+        given.append(arguments)
+        ground(program, files, text, arguments, *rest)
+
+    ground: Any = Grounded.__init__
+    monkeypatch.setattr(Grounded, "__init__", grounded)
+    plain = asked(LOOSE)
+    assert "--configuration=frumpy" in given[-1]
+    handy = asked(LOOSE, clingo_options=("--configuration=handy",))
+    assert "--configuration=handy" in given[-1]
+    assert plain.costs == handy.costs
 
 
 def test_of_a_part_of_a_network_units_keep_their_numbers() -> None:

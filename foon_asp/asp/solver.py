@@ -28,6 +28,7 @@ _LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer 
 _FEWEST: tuple[Objective, ...] = (Objective.UNITS,)
 _GROWN = 1.5  # times as many of them are known each time, if that is what leads to what they need
 _MANY = 5000  # units that are known then, at most about
+_QUICK = "--configuration=frumpy"  # takes half the time of what clingo chooses by itself
 _MORE = 4  # times as many, where there is none
 
 Units = frozenset[int]
@@ -319,6 +320,8 @@ class _Solver:
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
         # to make cores small takes longer than it saves here
         arguments = tuple(each for each in program.arguments if each != SHRINKING)
+        if not self.first.settings.clingo_options:
+            arguments = (*arguments, _QUICK)
         program = program._replace(files=files, arguments=arguments)
         sets = wide.landmarks()
         required = write_required([map(number, sorted(each)) for each in sets])
