@@ -31,6 +31,7 @@ _PROVED, _INTERRUPTED = "a proof", "ctrl-C"
 _STRIKES, _BETWEEN = 5, 3.0  # interrupts, and seconds between them
 _WAITS = 50  # looks until an interrupt is taken for lost
 _LOOKS = 0.02  # seconds between two looks at the memory
+_STRIKE = threading.Lock()  # of who strikes, or cannot be struck
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 
@@ -321,6 +322,27 @@ def none_lost() -> Iterator[None]:
         sys.unraisablehook = before
 
 
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let neither ctrl-C nor a watch of any thread strike in a ``with`` block, but right after it.
+
+    C libraries make an ``ImportError`` of one that strikes while they are imported, and stay broken.
+    """
+    came: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+    here = threading.current_thread() is threading.main_thread() and callable(before)
+    with _STRIKE:
+        if here:
+            signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+        try:
+            yield
+        finally:
+            if here:
+                signal.signal(signal.SIGINT, before)
+    if came:
+        signal.raise_signal(signal.SIGINT)
+
+
 class Watch:
     """A thread that looks at a deadline while another one works, and interrupts it as ctrl-C does.
 
@@ -383,7 +405,7 @@ class _Striker:
             if self.due:
                 break
         for _ in range(_STRIKES):
-            with self._lock:
+            with _STRIKE, self._lock:
                 if self.over.is_set():
                     return
                 self._struck = True

@@ -23,7 +23,7 @@ from foon_asp.cli import start
 from foon_asp.cli.main import cli as commands
 from foon_asp.cli.main import main
 from foon_asp.cli.options import begin
-from foon_asp.deadline import Deadline, LimitError, none_lost
+from foon_asp.deadline import Deadline, LimitError, none_lost, uninterrupted
 from foon_asp.grounding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.simulation import Verdict, simulate_for
@@ -135,8 +135,8 @@ def test_ctrl_c_gives_the_best_tree_and_exits_with_3(hard_folder: Path, tmp_path
         process.send_signal(signal.SIGINT)
         errors = read_terminal(terminal, b"there are no such words")
     os.close(terminal)
-    result = json.loads(answer.read_bytes())
     assert process.returncode == 3, errors
+    result = json.loads(answer.read_bytes())
     assert result["status"] == "feasible"
     assert 0 < result["lower_bound"]["units"] <= result["costs"]["units"] == len(result["units"])
 
@@ -393,3 +393,34 @@ def test_ctrl_c_while_the_program_is_imported_ends_it_quietly(
         start.main()
     assert ended.value.code == 3
     assert capsys.readouterr() == ("", "interrupted before there was an answer\n")
+
+
+def test_nothing_strikes_while_a_library_is_imported_but_right_after() -> None:
+    whole: list[str] = []
+
+    def interrupted() -> None:
+        with uninterrupted():
+            signal.raise_signal(signal.SIGINT)
+            whole.append("ctrl-C")
+        whole.append("went on")
+
+    def late() -> None:
+        with Deadline(0.01).watched("importing"):
+            with uninterrupted():
+                time.sleep(0.1)
+                whole.append("watch")
+            time.sleep(5)
+            whole.append("went on")
+
+    def elsewhere() -> None:
+        with pytest.raises(LimitError):
+            late()
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    thread = threading.Thread(target=elsewhere)
+    thread.start()
+    thread.join()
+    elsewhere()
+    assert whole == ["ctrl-C", "watch", "watch"]

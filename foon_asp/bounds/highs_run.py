@@ -4,10 +4,21 @@ import threading
 from collections.abc import Callable
 from typing import Any, Final
 
+from foon_asp.deadline import uninterrupted
+
 _SMALL: Final = 6000  # columns and rows, with which so many steps take at most about a second
 _STEPS: Final = 4000  # of the simplex algorithm
 _LOOKS = 0.05  # seconds between two looks at the time
 _LATE = 0.3  # seconds that HiGHS has to end; a step of the interior point method may take longer
+
+
+def libraries() -> tuple[Any, Any]:
+    """Import HiGHS and numpy, which takes ten times as long as all else here: only when needed."""
+    with uninterrupted():
+        import highspy  # noqa: PLC0415
+        import numpy as np  # noqa: PLC0415
+
+    return highspy, np
 
 
 def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:

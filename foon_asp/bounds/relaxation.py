@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Final, NamedTuple
 
-from foon_asp.bounds.highs_run import run
+from foon_asp.bounds.highs_run import libraries, run
 from foon_asp.errors import BugError
 
 _OPTIONS: Final[dict[str, bool | str | float]] = {
@@ -61,12 +61,9 @@ class Covering:
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
-        # ten times as long to import as all else here, so only when a bound is asked for
-        import highspy  # noqa: PLC0415
-        import numpy as np  # noqa: PLC0415
-
+        highspy, np = libraries()
         self._library, self._array = highspy, np.array
-        self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
+        self._highs = highspy.Highs()
         self._set(_OPTIONS)
         self._cornered = True  # the last solution, if any
         count = len(costs)

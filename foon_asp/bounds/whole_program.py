@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from foon_asp.bounds.highs_run import run
+from foon_asp.bounds.highs_run import libraries, run
 
 # What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
 _PARTS = (720720, 2**40)
@@ -48,11 +48,7 @@ class WholeProgram:
     """
 
     def __init__(self, columns: int, expired: Callable[[], bool] = lambda: False) -> None:
-        # slow to import, so only when counts are asked for
-        import highspy  # noqa: PLC0415
-        import numpy as np  # noqa: PLC0415
-
-        self._library, self._np = highspy, np
+        self._library, self._np = libraries()
         self._highs: Any = None
         self._expired = expired
         self.lower: list[int] = [0] * columns
@@ -194,7 +190,7 @@ class WholeProgram:
         np, inf = self._np, self._library.kHighsInf
         count = self.columns
         if self._highs is None:
-            self._highs = self._library.Highs()  # type: ignore[no-untyped-call]
+            self._highs = self._library.Highs()
             for option, value in _OPTIONS.items():
                 self._highs.setOptionValue(option, value)
             self._highs.addVars(count, np.zeros(count), np.full(count, inf))

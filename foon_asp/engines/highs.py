@@ -8,6 +8,7 @@ each node it needs, and a made node stands above the nodes that its maker needs,
 import time
 from collections.abc import Iterable
 
+from foon_asp.bounds.highs_run import libraries
 from foon_asp.engines.engine import EngineAnswer, cost, scope_of, taken
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
@@ -39,13 +40,10 @@ class _Program:
     """The mixed integer program of a problem."""
 
     def __init__(self, problem: Problem, forbidden: frozenset[int]) -> None:
-        import highspy  # noqa: PLC0415 (slow to import, needed for cross-checks only)
-        import numpy as np  # noqa: PLC0415
-
-        self._library, self._numpy = highspy, np
+        self._library, self._numpy = highspy, _ = libraries()
         self._problem = problem
         scope = scope_of(problem, forbidden)
-        self._highs = highs = highspy.Highs()  # type: ignore[no-untyped-call]
+        self._highs = highs = highspy.Highs()
         for option, value in (
             ("output_flag", False),
             ("threads", 1),

@@ -9,6 +9,8 @@ as numpy is the same.
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from foon_asp.deadline import uninterrupted
+
 if TYPE_CHECKING:
     import numpy
     from numpy.typing import NDArray
@@ -32,7 +34,8 @@ def spread(nodes: int, arrows: Sequence[tuple[int, int]], order: Sequence[int]) 
     ``order`` lists nodes of which neighbours belong together, such as the units of a file; all others start
     where those are that have arrows with them.
     """
-    import numpy as np  # noqa: PLC0415 - slow to import
+    with uninterrupted():
+        import numpy as np  # noqa: PLC0415 - slow to import
 
     if not nodes:
         return []
