@@ -18,17 +18,14 @@ from typing import Any
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lower_bound import Branch, Cases, Hopeless, Packing, Proof
+from foon_asp.bounds.missed_cuts import missed_cuts
 from foon_asp.bounds.relaxation import Covering, UnsolvedError
-from foon_asp.bounds.shared_costs import PARTS, renumbered
+from foon_asp.bounds.shared_costs import PARTS, in_parts, renumbered, shared_out, stalled
 
-_HIT = 0.999  # a landmark of a greater share is taken to be hit
 _WHOLE = 1e-6  # a share that is so near to a whole number is one
 _CUTS = 40  # before the targets that one relaxed solution is asked for
 _ROUNDS = 3  # of cuts, at each place but the first
-_STALLED = 8  # solutions of the first, after which a bound that hardly grows is left to branching
-_GROWS = 0.01  # of what lacks, how much these have to bring
 _OFTEN = 10  # places, from one at which derivations are guessed to the next
-_LARGE = 2**62  # sums that machine numbers do not hold
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 
@@ -83,7 +80,7 @@ class Branching:
         self._unit = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
         self._dearest = max(self._costs, default=1)
         self._relative = np.array([c / self._dearest for c in self._costs])
-        self._whole: Any = np.int64 if sum(self._costs) * PARTS < _LARGE else object
+        self._parts = in_parts(self._costs)
         self._total, self._guess, self._better, self._bounded = total, guess, better, bounded
         self._random = random.Random(0)
         self._covering = Covering(self._relative.tolist())
@@ -204,8 +201,7 @@ class Branching:
             if number:
                 ends = len(values) > _ROUNDS
             else:
-                lacks = self._total / self._dearest - relaxed.value
-                ends = len(values) > _STALLED and values[-1] - values[-1 - _STALLED] < _GROWS * lacks
+                ends = stalled(values, self._total / self._dearest - relaxed.value)
             if ends or not self._separate(cutter, shares, place, expired):
                 break
         if number % _OFTEN == 0:
@@ -252,44 +248,25 @@ class Branching:
 
     def _separate(self, cutter: Cutter, shares: Any, place: _Place, expired: Callable[[], bool]) -> bool:
         """Add cuts that a relaxed solution misses, each beside those before; whether there are any."""
-        np, chance = self._np, self._random.random
-        shares = shares.copy()
-        places = np.array(cutter.actions)
-        costs = self._relative[places]
+        cuts = missed_cuts(cutter, place.used, shares.copy(), self._relative, self._random.random)
         found = 0
         while found < _CUTS and not self._stopped(expired):
-            self.effort -= len(places)
-            dear = costs * [0.5 + chance() for _ in costs]
-            cut = cutter.cut(place.used, places[np.lexsort((dear, -shares[places]))].tolist())
-            if cut is None or shares[list(cut.members)].sum() >= _HIT:
+            self.effort -= len(cutter.actions)
+            cut = next(cuts, None)
+            if cut is None:
                 break
             found += 1
             self._add(frozenset(cut.objects))
-            shares[list(cut.members)] = 1.0
         return found > 0
 
     def _weigh(self, place: _Place) -> None:
         """Note what the weights of all rows prove, if it is more than is known."""
-        left = self._np.array(self._costs, dtype=self._whole) * PARTS
+        left = self._parts.copy()
         paid = sum(self._costs[a] for a in place.used) * PARTS
         left[list(place.used)] = 0
         left[list(place.forbidden)] = sum(self._costs) * PARTS  # more than they can come to carry
-        of_1 = self._dearest * PARTS
-        told = self._covering.weights()
-        wanted = {
-            row: round(Fraction(weight) * of_1) if 0 < weight < math.inf else 0
-            for row, weight in enumerate(told)
-            if self._asked[row]
-        }
-        weights = dict.fromkeys(wanted, 0)
-        dearest_first = sorted(wanted, key=lambda row: -wanted[row])
-        for limited in (True, False):  # what is left by rounding goes to whom it helps
-            for row in dearest_first:
-                most = wanted[row] if limited else math.inf
-                weight = int(min(most, left[self._rows[row]].min())) if most else 0
-                if weight:
-                    weights[row] += weight
-                    left[self._rows[row]] -= weight
+        told = ((row, w) for row, w in enumerate(self._covering.weights()) if self._asked[row])
+        weights = shared_out(told, self._dearest * PARTS, self._rows, left)
         bound = paid + sum(weights.values())
         if bound > place.bound or not place.weights:
             place.bound = max(bound, place.bound)
@@ -297,7 +274,7 @@ class Branching:
 
     def _left(self, place: _Place) -> Any:
         """Give what the weights at a place leave of the cost of each action, in parts."""
-        left = self._np.array(self._costs, dtype=self._whole) * PARTS
+        left = self._parts.copy()
         for row, weight in self._carrying(place):
             left[self._rows[row]] -= weight
         return left

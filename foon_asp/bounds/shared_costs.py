@@ -10,19 +10,20 @@ import math
 import random
 from collections.abc import Callable, Collection, Iterable, Sequence
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
+from foon_asp.bounds.missed_cuts import missed_cuts
 from foon_asp.bounds.relaxation import Covering, Weighed
 
 PARTS = 720720  # of 1: most weights are simple fractions
-_HIT = 0.999  # a landmark of a greater share is taken to be hit
 _CUTS = 40  # before all targets that one relaxed solution is asked for; of smaller ones there are more
 _ALONE = 8  # times as many actions as there are, at most, for targets looked at by themselves
 _SMALL = 0.5  # of the actions, at most, that a target may need for this
-_STALLED = 8  # solutions after which a bound that hardly grows counts as the best there is
+_STALLED = 8  # solutions, after which a bound that hardly grows counts as the best there is
 _GROWS = 0.01  # of what lacks, how much these have to bring
+_LARGE = 2**62  # sums that machine numbers do not hold
 _LOST = Fraction(1, 100)  # how much less than the solution the weights may add up to
 
 
@@ -73,6 +74,39 @@ def renumbered(
     return small, objects, [number[o] for o in targets]
 
 
+def in_parts(costs: Sequence[int]) -> Any:
+    """Give an array of costs in parts: machine numbers where their sum is one, else of any size."""
+    import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
+
+    return np.array(costs, dtype=np.int64 if sum(costs) * PARTS < _LARGE else object) * PARTS
+
+
+def shared_out(
+    told: Iterable[tuple[int, float]], of_1: int, rows: Sequence[Any], left: Any
+) -> dict[int, int]:
+    """Give rows the weights that they are told to have, rounded to parts, which ``left`` is able to carry.
+
+    What rounding leaves goes to whom it helps. ``of_1`` are the parts of a weight of 1, ``rows`` the members
+    of each row, and ``left`` what each of these can carry, from which the weights are taken away.
+    """
+    wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in told}
+    weights = dict.fromkeys(wanted, 0)
+    dearest_first = sorted(wanted, key=lambda row: -wanted[row])
+    for limited in (True, False):
+        for row in dearest_first:
+            most = wanted[row] if limited else math.inf
+            weight = int(min(most, left[rows[row]].min())) if most else 0
+            if weight:
+                weights[row] += weight
+                left[rows[row]] -= weight
+    return weights
+
+
+def stalled(values: Sequence[float], lacks: float) -> bool:
+    """Whether the last solutions brought hardly any of what still lacks."""
+    return len(values) > _STALLED and values[-1] - values[-1 - _STALLED] < _GROWS * lacks
+
+
 class _Sharing:
     def __init__(
         self,
@@ -103,8 +137,7 @@ class _Sharing:
             return None
         place = {a: n for n, a in enumerate(self._actions)}
         for objects, members in known:
-            row = tuple(place[a] for a in members if a in place)
-            self._add(frozenset(objects), row)
+            self._add(frozenset(objects), tuple(place[a] for a in members if a in place))
         wanted = (100 * enough - 99) / (100 * self._dearest)  # costs are whole, and so are bounds
         values: list[float] = []
         last: Weighed | None = None
@@ -120,8 +153,7 @@ class _Sharing:
             last = found
             values.append(found.value)
             lacks = wanted - found.value
-            grown = values[-1] - values[-1 - _STALLED] if len(values) > _STALLED else math.inf
-            if lacks <= 0 or grown < _GROWS * lacks or not self._separate(found.x, expired):
+            if lacks <= 0 or stalled(values, lacks) or not self._separate(found.x, expired):
                 shared = self._shared(found)
                 lost = Fraction(found.value) * self._dearest - Fraction(shared.bound, PARTS)
                 if not inside or lost < _LOST:
@@ -144,21 +176,16 @@ class _Sharing:
         effort = _CUTS * len(self._actions)
         self._random.shuffle(self._alone)
         for cutter in (*self._alone, *self._together):
-            places = np.array(cutter.actions)
-            costs = relative[places]
+            cuts = missed_cuts(cutter, (), shares, relative, chance)
             while effort > 0:
                 if expired():
                     return False
-                effort -= len(places)
-                dear = costs * [0.5 + chance() for _ in costs]
-                order = places[np.lexsort((dear, -shares[places]))]
-                cut = cutter.cut((), order.tolist())
-                assert cut is not None  # without actions no target is reached
-                if shares[list(cut.members)].sum() >= _HIT:
+                effort -= len(cutter.actions)
+                cut = next(cuts, None)
+                if cut is None:
                     break
                 found = True
                 self._add(frozenset(self._objects[o] for o in cut.objects), cut.members)
-                shares[list(cut.members)] = 1.0
         return found
 
     def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
@@ -180,24 +207,12 @@ class _Sharing:
         return alone, together
 
     def _shared(self, solved: Weighed) -> SharedCosts:
-        left = [c * PARTS for c in self._costs]
-        weights = [0] * len(self._rows)
-        of_1 = self._dearest * PARTS
-        wanted = [max(0, round(Fraction(w) * of_1)) for w in solved.weights]
-        wanted += [0] * (len(self._rows) - len(wanted))  # of rows that came later
-        dearest_first = sorted(range(len(wanted)), key=lambda row: -wanted[row])
-        for limit in (wanted, None):  # what is left by rounding goes to whom it helps
-            for row in dearest_first:
-                members = self._rows[row]
-                weight = min(left[a] for a in members)
-                if limit is not None:
-                    weight = min(weight, limit[row])
-                weights[row] += weight
-                for a in members:
-                    left[a] -= weight
+        left = in_parts(self._costs)
+        told = [*solved.weights] + [0.0] * (len(self._rows) - len(solved.weights))  # of rows that came later
+        weights = shared_out(enumerate(told), self._dearest * PARTS, [*map(list, self._rows)], left)
         return SharedCosts(
-            sum(weights),
-            {a: left[n] for n, a in enumerate(self._actions)},
+            sum(weights.values()),
+            dict(zip(self._actions, left.tolist(), strict=True)),
             [(cut, weights[row]) for row, cut in enumerate(self._cuts) if weights[row]],
             {a: solved.x[n] for n, a in enumerate(self._actions)},
         )
