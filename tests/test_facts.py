@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from foon_asp.asp import Settings
+from foon_asp.asp import Settings, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.encoding.encoding import read_encoding
 from foon_asp.encoding.facts import (
@@ -23,7 +23,9 @@ from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.reduce import ALL, NONE
 from foon_asp.resources import encodings_folder
+from foon_asp.rules.constraint import RuleText
 from tests.conftest import Cli
 from tests.random_problems import random_problem
 
@@ -88,6 +90,26 @@ def test_the_facts_say_what_the_table_says() -> None:
     other = replace(problem, rates={**rates, "stir\\in": Fraction(1, 2)}, as_seen=problem)
     text = bare_program(other, (Objective.SUCCESS,), Settings(), {}).facts
     assert ("rate(0,1000000)" in text, "risk(0,0)" in text) == (True, False)  # the first is for rules to see
+
+
+@pytest.mark.parametrize("rules", [(), (RuleText(":- use(U), needs(U,1), kitchen(1)."),)])
+def test_what_is_taken_to_be_at_hand_is_in_no_kitchen_for_rules(
+    rules: tuple[RuleText, ...],
+) -> None:
+    builder = NetworkBuilder()
+    water, broth, soup = map(ObjectNode.of, ("water", "broth", "soup"))
+    builder.add("boil", [water], [broth], Source("x", 1))
+    builder.add("thin", [broth, water], [soup], Source("x", 2))
+    problem = Problem(builder.build(), frozenset({0}), (2,), None, frozenset())
+    more = replace(problem, kitchen=frozenset({0, 1}), as_seen=problem)
+    assert (more.kitchen_seen, replace(problem, as_seen=more).kitchen_seen) == ({0}, {0})
+    facts = bare_program(more, (Objective.UNITS,), Settings(rules), {}).facts.splitlines()
+    assert [line for line in facts if "available" in line] == ["available(1)."]
+    assert [f"kitchen({o})." in "\n".join(facts) for o in range(3)] == [True, False, False]
+    for reductions in (ALL, NONE):
+        found = solve(more, settings=Settings(rules, reductions=reductions))
+        assert found.units == (1,)
+    assert solve(replace(more, as_seen=None), settings=Settings(rules)).units == (None if rules else (1,))
 
 
 def test_numbers_too_large_for_clingo_are_refused() -> None:

@@ -18,10 +18,11 @@ from foon_asp.batch.asked import Asked
 from foon_asp.cli.batch_data import BatchData
 from foon_asp.dataset import nearby_optimum
 from foon_asp.dataset.nearby import Nearby, NearbyProblem
+from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.foon import Foon
-from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from foon_asp.proof import verify
 from foon_asp.questions.answer import answered_nearby, answered_under
 from foon_asp.questions.certify import certified
@@ -31,7 +32,7 @@ from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles
 from tests.conftest import Cli
 from tests.constraint_oracle import random_rule, settings_of
-from tests.random_problems import SERIES, random_problem
+from tests.random_problems import MOTIONS, SERIES, random_problem
 from tests.test_store import import_problem
 
 LISTS = (
@@ -256,6 +257,7 @@ def test_what_rules_rule_out_needs_no_more_than_a_tree_without_them(
         ("--objective", "kitchen"),
         ("--reduce", "none"),
         ("--rule", ":- not 1 <= #count { U : use(U) }."),
+        ("--rule", ":- #count { O : available(O) } > 7."),
         ("--items", "used-up"),
         ("--cross-check",),
         ("--", "--opt-strategy=bb"),
@@ -301,14 +303,98 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
     assert mattered > compared // 10
 
 
+def random_look(rng: random.Random, one: str) -> Settings:
+    """Draw rules about a motion that look at the kitchen; each is asked of clingo, or not, in its own way."""
+    texts = (
+        f':- use(U), motion(U,"{one}"), needs(U,O), not kitchen(O).',
+        f':- use(U), motion(U,"{one}"), needs(U,O), kitchen(O).',
+        f':- use(U), motion(U,"{one}"), #sum {{ 1,O : needs(U,O), kitchen(O) }} > 1.',  # not flat
+        f":- #count {{ O : use(U), needs(U,O), kitchen(O) }} > {rng.randrange(1, 4)}.",
+        f":- #count {{ O : use(U), needs(U,O), not kitchen(O) }} > {rng.randrange(1, 4)}.",
+        f":- #count {{ U : use(U), needs(U,O), kitchen(O) }} > {rng.randrange(1, 3)}.",
+        f':- use(U), motion(U,"{one}"), gives(U,O), use(V), needs(V,O), needs(V,P), kitchen(P).',
+    )
+    before = f'earlier_motion="{rng.choice(MOTIONS)}"', f'later_motion="{one}"'
+    if rng.random() < 0.6:
+        return Settings((Path("before"),), constants=before)
+    return Settings((RuleText(rng.choice(texts)),))
+
+
+@SERIES
+def test_random_problems_under_rules_that_see_the_kitchen(part: int, tmp_path: Path) -> None:
+    compared = mattered = little = 0
+    for seed in range(45 // part):
+        rng = random.Random(seed)
+        rule = rng.choice(list(ContainerRule))
+        problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
+        made = sorted(set(reach(problem).makers) - problem.kitchen)
+        goals = (rng.choice(made or problem.goals),)
+        posed = stored(problem, tmp_path).nearby(goals, rule.value, first=1)
+        objectives, whole = rng.choice(LISTS), replace(problem, goals=goals)
+        free = solve(whole, objectives)
+        motions = [problem.network.motions[unit] for unit in free.units or ()]
+        how = random_look(rng, rng.choice(motions or MOTIONS))
+        near = near_goals(posed, objectives, how)
+        assert (near is not None) is isinstance(posed, NearbyProblem)
+        if near is None:
+            continue
+        found = answered_nearby(near, objectives, how)
+        expected = solve(whole, objectives, how)
+        assert found.status is expected.status, (seed, how, objectives)
+        if found.costs is not None and expected.costs is not None:
+            order = levels(objectives)
+            assert found.costs.key(order) == expected.costs.key(order), (seed, how, objectives)
+        compared += 1
+        mattered += (free.status, free.costs) != (expected.status, expected.costs)
+        little += len(found.problem.network) < len(near.whole().network)
+    assert compared > 22 // part
+    assert mattered > compared // 4
+    assert little > compared // 4
+
+
+ONE_AT_HAND = 'motion(U,"serve"), needs(U,O), kitchen(O)'
+
+
+@pytest.mark.parametrize(
+    ("rule", "constants", "best"),
+    [
+        (Path("before"), ("earlier_motion=boil", "later_motion=serve"), 3),
+        (Path("before"), ("earlier_motion=serve", "later_motion=plate"), 12),
+        (RuleText(f":- use(U), {ONE_AT_HAND}."), (), 3),
+        (RuleText(':- use(U), motion(U,"serve"), #sum { 1,O : needs(U,O), kitchen(O) } > 0.'), (), 3),
+        (RuleText(f":- #count {{ U : use(U), {ONE_AT_HAND} }} > 0."), (), 3),
+        (RuleText(':- use(U), use(V), motion(U,"plate"), needs(U,O), kitchen(O), motion(V,"serve").'), (), 3),
+    ],
+)
+def test_rules_see_the_kitchen_as_it_is(
+    rule: Path | RuleText,
+    constants: tuple[str, ...],
+    best: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What units that were not read may make is no item of the kitchen, nor is it there too early."""
+    dataset = two_ways(tmp_path)
+    problem = dataset.nearby(dataset.goals(["stew"]), "strict", first=1)
+    monkeypatch.setattr(Nearby, "whole", None)
+    found = answered_under(problem, [Objective.UNITS], Settings((rule,), constants=constants))
+    assert found.status is Status.OPTIMAL
+    assert found.units is not None
+    assert len(found.units) == best
+    assert best == 12 or len(found.problem.network) < len(SHORT + LONG)
+    assert found.problem.kitchen == found.problem.kitchen_seen
+
+
 @pytest.mark.parametrize(
     ("text", "holds"),
     [
         (':- use(U), motion(U,"fry").', True),
         (":- #count { U : use(U) } > 3.", True),
         (':- not 1 <= #count { U : use(U), motion(U,"fry") }.', False),  # a part may lack it
-        (':- use(U), needs(U,O), not kitchen(O), motion(U,"fry").', False),  # more is at hand
-        (":- #count { O : available(O) } > 7.", False),
+        (':- use(U), needs(U,O), not kitchen(O), motion(U,"fry").', True),
+        (":- #count { O : use(U), needs(U,O), kitchen(O) } > 7.", True),
+        (":- #count { O : available(O) } > 7.", False),  # more is available than in the kitchen
+        (':- use(U), needs(U,O), fresh(O). fresh(O) :- label(O,"ice"), available(O).', False),
         (":- use(U), motion(U,M), #count { V : motion(V,M) } < 2.", False),  # others are not there
     ],
 )

@@ -157,7 +157,7 @@ def test_kinds_of_rules(text: str, kind: Kind, local: bool) -> None:
     ("text", "varied"),
     [
         (":- use(U), needs(U,O), kitchen(O).", ("kitchen", 1)),
-        (":- use(U), gives(U,O), available(O).", ("kitchen", 1)),
+        (":- use(U), gives(U,O), available(O).", ("available", 1)),
         ("want(O) :- goal(O). :- want(O), use(U), gives(U,O).", ("goal", 1)),
     ],
 )

@@ -214,15 +214,15 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
 def hold_for_parts(settings: Settings) -> bool:
     """Whether any part of a tree that keeps to the rules that are added keeps to them, too.
 
-    Also where there are no units but those of a part of the network, and where more is at hand. Raises as
-    :func:`assemble` does.
+    Also where there are no units but those of a part of the network, and where more is available, which they
+    do not see in the kitchen. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
     rules = assemble(settings, lambda _: None).understood
     if rules is None:
         return not settings.constraints
-    varying = rules.varying({("kitchen", 1)})
+    varying = rules.varying({("available", 1)})
     return varying.local and varying.shrinking
 
 

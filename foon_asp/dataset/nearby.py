@@ -44,10 +44,14 @@ class Nearby:
         The units read of any tree are enough for the goals there: what they need is at hand, made by one of
         them, or open. So there is no tree in the whole network that costs less than the best here, by
         objectives that only units add to.
+
+        Rules of the user's do not see what is taken to be at hand, but the kitchen as it is: so they say of
+        units here what they say of them in the whole network, if they do not ask what is available.
         """
         open_ = self._cone.open
         places = (o for o, number in enumerate(self.problem.network.object_numbers) if number in open_)
-        return replace(self.problem, kitchen=self.problem.kitchen.union(places), origin=None)
+        kitchen = self.problem.kitchen.union(places)
+        return replace(self.problem, kitchen=kitchen, as_seen=self.problem, origin=None)
 
     def whole(self) -> Problem:
         """Read all that the goals can need."""

@@ -86,21 +86,19 @@ def write_facts(
     name = problem.network.object_number
     nodes = described(problem, units)
     prices = None if looked_at is None else hundredths(problem, units, looked_at)
+    kitchen = problem.kitchen_seen
     lines = []
     for unit in units:
         atoms = _unit_atoms(problem, unit, scales, prices)
         lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
     for o in nodes:
         atoms = _object_atoms(problem, o)
-        if o in problem.kitchen:
+        if o in kitchen:
             atoms.append(("kitchen", f"{name(o)}"))
             copies = problem.stock_of(o)
             atoms += [] if copies is None else [("stock", f"{name(o)},{_check(copies)}")]
         lines.append(". ".join([_object_atom(problem, o), *map(_written, atoms)]) + ".")
-    labels = {problem.network.objects[o].label for o in nodes}
-    lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
-    lines += [f"goal({name(o)})." for o in problem.goals]
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
 
 
 def write_facts_read(
@@ -113,6 +111,7 @@ def write_facts_read(
     seen = problem.as_seen or problem
     name = problem.network.object_number
     nodes = described(problem, units)
+    kitchen = problem.kitchen_seen
     lines: list[str] = []
     prices = hundredths(problem, units, read) if _OF_RULES & {*read} else None
     of_objects = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
@@ -134,13 +133,20 @@ def write_facts_read(
         atoms += [
             (each, f"{name(o)},{said}") for each, said in object_facts(problem.network.objects[o], of_objects)
         ]
-        if o in problem.kitchen:
+        if o in kitchen:
             atoms.append(("kitchen", f"{name(o)}"))
         add(atoms)
+    return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
+
+
+def _other_lines(problem: Problem, nodes: Iterable[int]) -> Iterator[str]:
+    """Say which labels are utensils, what the goals are, and what is at hand that rules do not see there."""
+    name, nodes = problem.network.object_number, list(nodes)
     labels = {problem.network.objects[o].label for o in nodes}
-    lines += [f"utensil({quote(label)})." for label in sorted(labels & problem.utensils)]
-    lines += [f"goal({name(o)})." for o in problem.goals]
-    return "\n".join(lines) + "\n"
+    yield from (f"utensil({quote(label)})." for label in sorted(labels & problem.utensils))
+    yield from (f"goal({name(o)})." for o in problem.goals)
+    taken = problem.kitchen - problem.kitchen_seen
+    yield from (f"available({name(o)})." for o in nodes if o in taken)
 
 
 def write_worlds(

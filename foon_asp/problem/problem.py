@@ -96,7 +96,8 @@ class Problem:
     :meth:`price` gives that of a unit. For a store, ``network`` is the part that can matter for the goals.
     ``measures`` are those of the user's own, by the name of the objective; :meth:`measure` gives what a unit
     costs by one. ``origin`` is the data that it was made from, or ``None`` for a problem made by hand.
-    ``as_seen`` is the problem whose rates the user's rules look at, if others are used. ``restriction`` is
+    ``as_seen`` is the problem whose rates the user's rules look at, if others are used, and whose kitchen, if
+    there is more in this one. ``restriction`` is
     what rules leave of the network, for this question only: a variation of it has to find its own.
     ``items`` says that items are used up, and which; ``None`` if they last. ``starting`` says that no kitchen
     was given, so that what no unit makes out of others is at hand. Rates that lack a motion of the network
@@ -272,6 +273,11 @@ class Problem:
             o: The id of the object node.
         """
         return None if self.items is None else self.items.stock.get(self.network.objects[o])
+
+    @cached_property
+    def kitchen_seen(self) -> frozenset[int]:
+        """What is at hand as the user's rules see it: what is only taken to be there is not part of it."""
+        return self.kitchen if self.as_seen is None else self.kitchen & self.as_seen.kitchen
 
     @cached_property
     def endless(self) -> frozenset[int]:

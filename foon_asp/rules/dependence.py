@@ -66,7 +66,7 @@ class Doubt(NamedTuple):
 class Dependence:
     """What becomes of each predicate of a program when units come to a tree.
 
-    ``varied`` are predicates of facts that the question derives or varies.
+    ``varied`` are predicates that the question says otherwise, or more of.
     """
 
     def __init__(
@@ -128,7 +128,7 @@ class Dependence:
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
-        if signature in self._varied or (signature == AVAILABLE and ("kitchen", 1) in self._varied):
+        if signature in self._varied:
             return Doubt(f"{name}/{arity} varies within this question")
         if signature in _UNSURE:
             return Doubt(f"of {name}/{arity}, {_UNSURE[signature]}")

@@ -334,7 +334,7 @@ class _Said(NamedTuple):
 
 
 def _said(problem: Problem, prices: Mapping[int, int]) -> _Said:
-    network, kitchen, utensils = problem.network, problem.kitchen, problem.utensils
+    network, kitchen, utensils = problem.network, problem.kitchen_seen, problem.utensils
     objects, inputs = network.objects, network.inputs
     seen = problem.as_seen or problem
     written = lru_cache(maxsize=1000)(encodable)  # many units are of one video
