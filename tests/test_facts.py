@@ -102,7 +102,7 @@ def test_what_is_taken_to_be_at_hand_is_in_no_kitchen_for_rules(
     builder.add("thin", [broth, water], [soup], Source("x", 2))
     problem = Problem(builder.build(), frozenset({0}), (2,), None, frozenset())
     more = replace(problem, kitchen=frozenset({0, 1}), as_seen=problem)
-    assert (more.kitchen_seen, replace(problem, as_seen=more).kitchen_seen) == ({0}, {0})
+    assert more.kitchen_seen == replace(problem, as_seen=more).kitchen_seen == {0}
     facts = bare_program(more, (Objective.UNITS,), Settings(rules), {}).facts.splitlines()
     assert [line for line in facts if "available" in line] == ["available(1)."]
     assert [f"kitchen({o})." in "\n".join(facts) for o in range(3)] == [True, False, False]
