@@ -71,8 +71,15 @@ class Nearby:
         return sorted(map(problem.network.object_number, lacking))
 
     def grow(self, objects: Iterable[int]) -> None:
-        """Read a fifth more units, which lead to these open objects, by id in the whole network."""
-        self._cone.grow(objects, len(self._cone.units) // 10 + 1)
+        """Read a tenth more units, which lead to these open objects, by id in the whole network."""
+        self._grow(objects, len(self._cone.units) // 10 + 1)
+
+    def double(self) -> None:
+        """Read as many units again, whichever lead to open objects."""
+        self._grow(sorted(self._cone.open), len(self._cone.units))
+
+    def _grow(self, objects: Iterable[int], more: int) -> None:
+        self._cone.grow(objects, more)
         for known in ("problem", "relaxed"):
             self.__dict__.pop(known, None)
 

@@ -7,6 +7,7 @@ from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
+from foon_asp.dataset.nearby_under_rules import least_with_one_more, solve_nearby_under
 from foon_asp.deadline import LimitError
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
@@ -151,6 +152,23 @@ def answered_under(
     near = near_goals(problem, objectives, how)
     if near is not None:
         return answered_nearby(near, objectives, how)
+    reporter = reporter or caller().reporter
+    how = how._replace(deadline=how.begun)
+    found = solve_nearby_under(problem, objectives, how, reporter)
+    if found is not None and (found.status is Status.OPTIMAL or found.stopped):
+        return _noted(found)
+    try:
+        return _answered_reading(problem, objectives, how, reporter)
+    except LimitError as limit:
+        if found is None:
+            raise
+        return _noted(found._replace(stopped=limit.stopped))
+
+
+def _answered_reading(
+    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter
+) -> Answer:
+    """Read the part that the goals can need, and where that is not enough, everything."""
     problem = read(problem)
     part = problem.network.object_numbers and problem.items is None and how.constraints
     if part and how.replaced is None and reach_of_rules(how) is ReachOfRules.TREE:
@@ -158,9 +176,8 @@ def answered_under(
         if free.status is Status.OPTIMAL and free.costs:
             here = find(problem, objectives, how, Reporter())
             order = levels(tuple(objectives))
-            least = list(free.costs.key(order))
-            least[order.index(Objective.UNITS)] += 1
-            if here.status is Status.OPTIMAL and here.costs and here.costs.key(order) <= tuple(least):
+            least = least_with_one_more(free.costs, order)
+            if here.status is Status.OPTIMAL and here.costs and here.costs.key(order) <= least:
                 return _noted(here)
             try:
                 with how.begun.watched("reading"):  # and not late, since there may be a tree already

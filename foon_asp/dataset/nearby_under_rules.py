@@ -1,0 +1,79 @@
+"""The best tree under rules that may ask for units of a large store that lead to no goal.
+
+The units read of any tree of the whole network are a tree of the relaxed question of
+:class:`~foon_asp.dataset.nearby.Nearby`, where no rules are added: so they cost no less than the best one
+there. By objectives that only units add to, a unit that was not read makes that no cheaper, and counts as one
+unit more. So a tree that has one is no better than the best one without rules would be with one unit more;
+and the trees without one are those of what was read, of which rules that look at a tree alone say the same.
+"""
+
+from collections.abc import Sequence
+
+from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
+from foon_asp.asp.assembly import ReachOfRules, assemble, reach_of_rules
+from foon_asp.asp.optimum import solve
+from foon_asp.dataset.nearby import Nearby
+from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
+from foon_asp.deadline import LimitError
+from foon_asp.problem import Costs, Objective, Problem, levels
+
+_READ = 4  # times in which a tree is looked for that is good enough, each among twice as many units
+
+
+def least_with_one_more(costs: Costs, order: Sequence[Objective]) -> tuple[object, ...]:
+    """Give the key that no tree is better than which has a unit more than one that costs this or more."""
+    least: list[object] = [*costs.key(order)]
+    least[order.index(Objective.UNITS)] = costs.units + 1
+    return tuple(least)
+
+
+def solve_nearby_under(
+    problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter
+) -> Outcome | None:
+    """Solve a question to a large store under rules, as far as what is near the goals tells.
+
+    The best tree of what was read is the best of all if no tree with a further unit can be better. Else it is
+    given as one of which that is not known; only at a limit, ``stopped`` says so. ``None`` where there is
+    none, or nothing was asked.
+    """
+    if not how.constraints or reach_of_rules(how) is ReachOfRules.ALL:
+        return None
+    plain = how._replace(constraints=(), constants=(), session=None)
+    near = near_goals(problem, objectives, plain)
+    free = None if near is None else solve_nearby(near, objectives, plain)
+    if near is None or free is None or (free.units is None and not free.stopped):
+        return None
+    found = _with_rules(near, free, how._replace(session=None), reporter)
+    return None if found.units is None and not found.stopped else found
+
+
+def _with_rules(near: Nearby, free: Outcome, how: Settings, reporter: Reporter) -> Outcome:
+    """Look for a tree that is proved to be the best, where ``free`` is the best without rules.
+
+    Without a tree, its status is unknown.
+    """
+    order = levels(free.objectives)
+    bounds = {each: bound for each, bound in free.bounds.items() if each == order[0]}
+    best = free._replace(status=Status.UNKNOWN, units=None, costs=None, proof=None, bounds=bounds)
+    best = best._replace(cuts=(), cases=None)
+    if free.status is not Status.OPTIMAL or free.costs is None:
+        return best
+    least = least_with_one_more(free.costs, order)
+    for asked_before in range(_READ):
+        try:
+            with how.begun.watched("reading"):
+                if asked_before:
+                    near.double()
+                here = near.problem
+        except LimitError as limit:
+            return best._replace(stopped=limit.stopped)
+        found = solve(here, free.objectives, how)._replace(cuts=(), cases=None)
+        if found.status is Status.OPTIMAL and found.costs is not None and found.costs.key(order) <= least:
+            assemble(how, reporter.warning)
+            reporter.tree(found.costs)
+            return found if free.proof is Proof.CUTS else found._replace(proof=free.proof)
+        if found.units is not None:
+            best = found._replace(status=Status.FEASIBLE, proof=None, bounds=bounds)
+        if found.stopped:
+            return best._replace(stopped=found.stopped)
+    return best

@@ -1,0 +1,226 @@
+"""Large stores under rules that may ask for units no goal needs: the answer of the whole, from less of it."""
+
+import random
+from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from foon_asp.asp import Reporter, Settings, Status, solve
+from foon_asp.asp.assembly import ReachOfRules, hold_for_parts, reach_of_rules
+from foon_asp.asp.outcome import Outcome
+from foon_asp.dataset import nearby_under_rules
+from foon_asp.dataset.nearby import Nearby, NearbyProblem
+from foon_asp.dataset.nearby_under_rules import solve_nearby_under
+from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
+from foon_asp.questions.answer import Answer, answered_under
+from foon_asp.rules.constraint import RuleText
+from foon_asp.store.import_files import import_files
+from foon_asp.text.data_folder import DataFiles
+from tests.constraint_oracle import random_rule, settings_of
+from tests.random_problems import SERIES, random_problem
+from tests.test_nearby import LISTS, LONG, SHORT, asked, stored
+
+UNITS = (Objective.UNITS,)
+WAVE = Settings((Path("require_motion"),), constants=('required_motion="wave"',))
+
+
+def near_stew(folder: Path, *more: tuple[str, str, str], first: int = 4) -> Problem:
+    """Ask for a stew by two ways, of 3 and of 12 units, and more units; bones and water are at hand."""
+    units = (*SHORT, *LONG, *more)
+    text = "".join(
+        "".join(f"O\t{each}\n" for each in needs.split("+")) + f"M\t{motion}\nO\t{give}\n//\n"
+        for motion, needs, give in units
+    )
+    (folder / "stew.txt").write_text(text, encoding="utf-8")
+    (folder / "kitchen.txt").write_text("O\twater\nO\tbones\n", encoding="utf-8")
+    import_files(DataFiles((folder / "stew.txt",), folder / "kitchen.txt"), folder / "stew.foon")
+    dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
+    assert isinstance(dataset, StoredDataset)
+    return dataset.nearby(dataset.goals(["stew"]), "strict", first=first)
+
+
+def read_little(problem: Problem) -> bool:
+    return isinstance(problem, NearbyProblem) and "_all" not in vars(problem)
+
+
+def test_a_unit_more_near_the_goals_is_proved_with_the_rest_unread(tmp_path: Path) -> None:
+    problem = near_stew(tmp_path, ("wave", "boiled", "plated"), ("turn", "plated", "boiled"))
+    heard: list[Costs] = []
+
+    class Heard(Reporter):
+        def tree(self, costs: Costs) -> None:
+            heard.append(costs)
+
+    found = answered_under(problem, UNITS, WAVE, Heard())
+    assert found.costs is not None
+    assert (found.status, found.costs.units) == (Status.OPTIMAL, 3)
+    assert "wave" in {unit.motion for unit in found.tree.units} if found.tree else False
+    assert heard == [found.costs]
+    assert read_little(problem)
+    assert len(found.problem.network) < len(SHORT + LONG)
+    assert found.cuts == ()  # those of what was read may be none of the whole
+
+
+# The tree under the rule that is near the goals has two units more than the best one without it.
+SLOW = (("soak", "water", "soaked"), ("fold", "soaked", "folded"), ("wave", "folded", "boiled"))
+
+
+def test_a_unit_from_elsewhere_is_better_than_two_near_the_goals(tmp_path: Path) -> None:
+    problem = near_stew(tmp_path, *SLOW, ("wave", "bones", "waved"))
+    near = solve_nearby_under(problem, UNITS, WAVE, Reporter())
+    assert near is not None
+    assert near.costs is not None
+    assert (near.status, near.costs.units, near.bounds, near.proof) == (
+        Status.FEASIBLE,
+        5,
+        {"units": 3},
+        None,
+    )
+    assert near.stopped is None
+    found = answered_under(problem, UNITS, WAVE)
+    assert found.costs is not None
+    assert (found.status, found.costs.units) == (Status.OPTIMAL, 4)
+    assert not read_little(problem)
+
+
+WIDE = (
+    ("join", "left+right+top", "stew"),
+    ("wave", "bones", "left"),
+    ("cut", "bones", "right"),
+    ("dice", "bones", "top"),
+)
+
+
+def test_what_units_that_were_not_read_make_may_lead_to_a_better_tree(tmp_path: Path) -> None:
+    """The tree of what is read at first has four units, and the best one three, of which one is open."""
+    problem = near_stew(tmp_path, *WIDE, ("wave", "water", "boiled"), first=8)
+    near = asked(problem)
+    assert len(solve(near.problem, UNITS, WAVE).units or ()) == 4
+    found = answered_under(near_stew(tmp_path, *WIDE, ("wave", "water", "boiled"), first=8), UNITS, WAVE)
+    assert found.costs is not None
+    assert (found.status, found.costs.units) == (Status.OPTIMAL, 3)
+
+
+def test_what_rules_ask_for_may_be_far(tmp_path: Path) -> None:
+    problem = near_stew(tmp_path, ("wave", "bones", "waved"), first=1)
+    assert solve_nearby_under(problem, UNITS, WAVE, Reporter()) is None
+    found = answered_under(problem, UNITS, WAVE)
+    assert found.costs is not None
+    assert (found.status, found.costs.units) == (Status.OPTIMAL, 4)
+    problem = near_stew(tmp_path, first=1)
+    assert answered_under(problem, UNITS, WAVE).status is Status.INFEASIBLE
+
+
+@pytest.mark.parametrize(
+    ("text", "near"),
+    [
+        (':- not use(U) : motion(U,"wave").', True),
+        (':- use(U), needs(U,O), kitchen(O), motion(U,"wave").', True),  # of trees alone
+        (":- use(U), motion(U,M), #count { V : motion(V,M) } > 9.", False),  # of units that were not read
+    ],
+)
+def test_rules_that_see_beyond_a_tree_read_all(text: str, near: bool, tmp_path: Path) -> None:
+    problem = near_stew(tmp_path, ("wave", "boiled", "plated"))
+    how = Settings((RuleText(text),))
+    assert (reach_of_rules(how) is not ReachOfRules.ALL) is near
+    assert (solve_nearby_under(problem, UNITS, how, Reporter()) is not None) is near
+
+
+def stopped_at(times: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the question about what was read stop at a limit, after some times."""
+    given: list[Outcome] = []
+
+    def stopping(*asked: object) -> Outcome:
+        given.append(solve(*asked))  # type: ignore[arg-type]
+        if len(given) <= times:
+            return given[-1]
+        return given[-1]._replace(status=Status.UNKNOWN, proof=None, stopped="a limit", bounds={})
+
+    monkeypatch.setattr(nearby_under_rules, "solve", stopping)
+
+
+@pytest.mark.parametrize(("times", "status", "units"), [(0, Status.UNKNOWN, None), (3, Status.FEASIBLE, 5)])
+def test_a_limit_gives_the_tree_and_the_bound(
+    times: int, status: Status, units: int | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = near_stew(tmp_path, *SLOW)
+    stopped_at(times, monkeypatch)
+    found = answered_under(problem, UNITS, WAVE)
+    assert (found.status, found.stopped, found.proof) == (status, "a limit", None)
+    assert (found.costs and found.costs.units, found.bounds) == (units, {Objective.UNITS: 3})
+    assert read_little(problem)
+
+
+def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*asked: object) -> None:
+        raise LimitError(Deadline(0))
+
+    problem = near_stew(tmp_path, *SLOW, first=12)
+    with monkeypatch.context() as patched:
+        patched.setattr(Nearby, "double", stopped)
+        patched.setattr(Deadline, "watched", lambda *given, **late: nullcontext())
+        found = solve_nearby_under(problem, UNITS, WAVE, Reporter())
+    assert found is not None
+    assert found.costs is not None
+    assert (found.status, found.costs.units, found.bounds) == (Status.FEASIBLE, 5, {Objective.UNITS: 3})
+    assert found.stopped
+    with monkeypatch.context() as patched:  # then the rest
+        patched.setattr("foon_asp.questions.answer._answered_reading", stopped)
+        again = answered_under(problem, UNITS, WAVE)
+        assert (again.status, again.costs, bool(again.stopped)) == (Status.FEASIBLE, found.costs, True)
+        with pytest.raises(LimitError):
+            answered_under(near_stew(tmp_path, first=1), UNITS, WAVE)
+
+
+def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(*asked: object) -> Outcome:
+        found = solve(*asked)  # type: ignore[arg-type]
+        return found._replace(status=Status.FEASIBLE, proof=None, stopped="a limit")
+
+    problem = near_stew(tmp_path, *SLOW, first=9)
+    monkeypatch.setattr("foon_asp.dataset.nearby_optimum.solve", stopped)
+    found = answered_under(problem, UNITS, WAVE)
+    assert (found.status, found.units, found.costs, found.stopped) == (Status.UNKNOWN, None, None, "a limit")
+    assert found.bounds == {Objective.UNITS: 3}
+
+
+@SERIES
+def test_random_problems_under_rules(part: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    compared = little = far = 0
+    for seed in range(60 if part == 1 else 10):
+        rng = random.Random(seed)
+        rule = rng.choice(list(ContainerRule))
+        problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
+        asking, *others = (random_rule(rng, problem) for _ in range(rng.choice((1, 1, 2))))
+        while hold_for_parts(settings_of([asking])):
+            asking = random_rule(rng, problem)
+        how = settings_of([*{each["rule"]: each for each in (*others, asking)}.values()])
+        dataset = stored(problem, tmp_path)
+        objectives = rng.choice(LISTS)
+        order = levels(objectives)
+        posed = dataset.nearby(problem.goals, rule.value, first=1)
+        if not isinstance(posed, NearbyProblem):
+            continue
+        monkeypatch.setattr(nearby_under_rules, "_READ", rng.choice((1, 2, 4)))
+        near = solve_nearby_under(posed, objectives, how, Reporter())
+        found: Answer = answered_under(posed, objectives, how)
+        expected = solve(dataset.problem(problem.goals, rule.value, everything=True), objectives, how)
+        assert found.status is expected.status, seed
+        if found.costs is not None and expected.costs is not None:
+            assert found.costs.key(order) == expected.costs.key(order), seed
+        compared += 1
+        far += found.units is not None and (near is None or near.status is not Status.OPTIMAL)
+        if near is not None and near.costs is not None:
+            assert expected.costs is not None
+            little += near.status is Status.OPTIMAL
+            measured = expected.costs.measure(order[0])
+            bound = near.bounds[order[0]]
+            assert bound >= measured if order[0].row.multiplies else bound <= measured
+    assert compared > 20 // part
+    assert min(little, far) > compared // 10 or part > 1
