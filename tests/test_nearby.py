@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import foon_asp
-from foon_asp.asp import Proof, Settings, Status, solve
+from foon_asp.asp import Proof, Reporter, Settings, Status, solve
 from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
 from foon_asp.batch.answer_row import answer_row
@@ -301,6 +301,31 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
         mattered += (free.status, free.costs) != (expected.status, expected.costs)
     assert compared > 15 // part
     assert mattered > compared // 10
+
+
+@pytest.mark.parametrize(
+    ("text", "without"),
+    [(":- #count { U : use(U) } > 20.", True), (':- use(U), motion(U,"cook 3").', False), ("", False)],
+)
+def test_a_rule_on_whole_trees_is_asked_about_where_the_best_one_without_it_was_read(
+    text: str, without: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked_under = []
+
+    def heard(problem: Problem, by: tuple[Objective, ...], how: Settings, reporter: Reporter) -> Outcome:
+        asked_under.append((how.constraints, len(problem.network)))
+        return solve(problem, by, how, reporter)
+
+    monkeypatch.setattr(nearby_optimum, "solve", heard)
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    rules = (RuleText(text),) if text else ()
+    found = answered_nearby(near, [Objective.UNITS], Settings(rules))
+    assert (found.status, found.costs and found.costs.units) == (Status.OPTIMAL, 3)
+    *before, last = asked_under
+    assert last[0] == rules
+    assert {constraints for constraints, _ in before} == {() if without else rules}
+    assert min(size for _, size in before) < last[1]
 
 
 def random_look(rng: random.Random, one: str) -> Settings:

@@ -226,6 +226,12 @@ def hold_for_parts(settings: Settings) -> bool:
     return varying.local and varying.shrinking
 
 
+def leave_a_rest(settings: Settings) -> bool:
+    """Whether rules that are added say more than which units there are; raises as :func:`assemble` does."""
+    rules = assemble(settings, lambda _: None).understood
+    return rules is not None and bool(rules.rest)
+
+
 def asks_of_all(problem: Problem, settings: Settings) -> bool:
     """Whether rules that are added may be about units beyond what the goals can need.
 

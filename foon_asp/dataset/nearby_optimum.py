@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.assembly import hold_for_parts
+from foon_asp.asp.assembly import hold_for_parts, leave_a_rest
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import LimitError
@@ -31,18 +31,20 @@ def solve_nearby(
 
     What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
     is a tree of the whole network, and none there costs less; else more is read of what leads to what it
-    takes. In the end everything is read. Rules of the user's have to hold for parts of trees. ``None`` where
-    there is no tree even so, and rules are not all that there is to it: why is then a question about all that
-    could lead to the goals.
+    takes. In the end everything is read. Rules of the user's have to hold for parts of trees; what the best
+    tree without them takes is read before they are asked about. ``None`` where there is no tree even so, and
+    rules are not all that there is to it: why is then a question about all that could lead to the goals.
     """
     reporter = reporter or Reporter()
     deadline = how.begun
     alone = how._replace(session=None, deadline=deadline)
+    free = alone._replace(constraints=(), constants=())
+    if leave_a_rest(how):  # the best tree without them is needed anyway, and quick to read
+        solve_nearby(near, objectives, free, _OnlyWarnings(reporter))
     while True:
         problem = near.problem
         found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter))
         if found.status is Status.INFEASIBLE:
-            free = alone._replace(constraints=(), constants=())
             ruled_out = how.constraints and solve_nearby(near, objectives, free)
             return found._replace(problem=near.problem) if ruled_out else None
         lacking = [] if found.units is None else near.lacking(found.units)
