@@ -174,6 +174,10 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         assert (again.status, again.costs, bool(again.stopped)) == (Status.FEASIBLE, found.costs, True)
         with pytest.raises(LimitError):
             answered_under(near_stew(tmp_path, first=1), UNITS, WAVE)
+    nothing = found._replace(status=Status.UNKNOWN, units=None, costs=None, stopped="a limit")
+    monkeypatch.setattr("foon_asp.questions.answer._answered_reading", lambda *asked: Answer(*nothing))
+    last = answered_under(near_stew(tmp_path, *SLOW, first=12), UNITS, WAVE)
+    assert (last.status, last.costs, last.stopped) == (Status.FEASIBLE, found.costs, "a limit")
 
 
 def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(

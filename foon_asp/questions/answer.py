@@ -158,11 +158,14 @@ def answered_under(
     if found is not None and (found.status is Status.OPTIMAL or found.stopped):
         return _noted(found)
     try:
-        return _answered_reading(problem, objectives, how, reporter)
+        answer = _answered_reading(problem, objectives, how, reporter)
     except LimitError as limit:
         if found is None:
             raise
         return _noted(found._replace(stopped=limit.stopped))
+    if found is not None and answer.status is Status.UNKNOWN:  # there is a tree already
+        return _noted(found._replace(stopped=answer.stopped))
+    return answer
 
 
 def _answered_reading(
