@@ -1,5 +1,7 @@
 """HiGHS ends when time is up, however long a step of it takes."""
 
+import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from fractions import Fraction
@@ -122,3 +124,9 @@ def test_large_programs_have_the_same_solutions(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("foon_asp.bounds.whole_program.run", lambda *_: False)
     with pytest.raises(Stopped):
         program.solve({0: 1})
+
+
+def test_nothing_is_written_where_answers_are() -> None:
+    made = "from foon_asp.bounds.relaxation import Covering\nCovering([1.0]).solve()\n"
+    run = subprocess.run([sys.executable, "-c", made], capture_output=True, check=True)
+    assert (run.stdout, run.stderr) == (b"", b"")

@@ -6,6 +6,7 @@ from typing import Any
 
 from contest.elimination import ordered
 from contest.instance import Instance, cuts
+from foon_asp.bounds.highs_run import silent_highs
 
 
 def ready() -> None:
@@ -115,8 +116,8 @@ class _Program:
         lp.a_matrix_.value_ = np.array(self._values)
         whole, real = highspy.HighsVarType.kInteger, highspy.HighsVarType.kContinuous
         lp.integrality_ = [whole if upper == 1.0 else real for upper in self._upper]
-        self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
-        options = {"output_flag": False, "threads": self._threads, "mip_rel_gap": 0.0, "mip_abs_gap": 1e-6}
+        self._highs = silent_highs()
+        options = {"threads": self._threads, "mip_rel_gap": 0.0, "mip_abs_gap": 1e-6}
         for option, value in options.items():
             self._highs.setOptionValue(option, value)
         self._highs.passModel(lp)

@@ -21,6 +21,22 @@ def libraries() -> tuple[Any, Any]:
     return highspy, np
 
 
+def silent_highs() -> Any:
+    """Make an instance of HiGHS that writes nothing.
+
+    From version 1.16 on, it writes its name when it is made, where it sets callbacks, before it has options.
+    """
+    libraries()
+    import highspy  # noqa: PLC0415 (it is there now)
+
+    class Silent(highspy.Highs):
+        def enableCallbacks(self) -> None:  # noqa: N802
+            self.setOptionValue("output_flag", False)
+            super().enableCallbacks()  # type: ignore[no-untyped-call]
+
+    return Silent()  # type: ignore[no-untyped-call]
+
+
 def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
     """Let HiGHS solve what it was told, in ``whole`` numbers if it was; whether there was time to its end.
 

@@ -5,11 +5,10 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Final, NamedTuple
 
-from foon_asp.bounds.highs_run import libraries, run
+from foon_asp.bounds.highs_run import libraries, run, silent_highs
 from foon_asp.errors import BugError
 
 _OPTIONS: Final[dict[str, bool | str | float]] = {
-    "output_flag": False,
     "presolve": "off",
     "solver": "simplex",
     "threads": 1,
@@ -63,7 +62,7 @@ class Covering:
     def __init__(self, costs: Sequence[float]) -> None:
         highspy, np = libraries()
         self._library, self._array = highspy, np.array
-        self._highs = highspy.Highs()
+        self._highs = silent_highs()
         self._set(_OPTIONS)
         self._cornered = True  # the last solution, if any
         count = len(costs)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from foon_asp.bounds.highs_run import libraries, run
+from foon_asp.bounds.highs_run import libraries, run, silent_highs
 
 # What weights of rows are rounded to: parts of the first that suffices, since most weights are simple.
 _PARTS = (720720, 2**40)
@@ -190,7 +190,7 @@ class WholeProgram:
         np, inf = self._np, self._library.kHighsInf
         count = self.columns
         if self._highs is None:
-            self._highs = self._library.Highs()
+            self._highs = silent_highs()
             for option, value in _OPTIONS.items():
                 self._highs.setOptionValue(option, value)
             self._highs.addVars(count, np.zeros(count), np.full(count, inf))
@@ -242,7 +242,6 @@ class WholeProgram:
 
 
 _OPTIONS: dict[str, bool | str | float] = {
-    "output_flag": False,
     "presolve": "off",
     "solver": "simplex",
     "threads": 1,

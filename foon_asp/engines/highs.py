@@ -8,7 +8,7 @@ each node it needs, and a made node stands above the nodes that its maker needs,
 import time
 from collections.abc import Iterable
 
-from foon_asp.bounds.highs_run import libraries
+from foon_asp.bounds.highs_run import libraries, silent_highs
 from foon_asp.engines.engine import EngineAnswer, cost, scope_of, taken
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
@@ -40,12 +40,11 @@ class _Program:
     """The mixed integer program of a problem."""
 
     def __init__(self, problem: Problem, forbidden: frozenset[int]) -> None:
-        self._library, self._numpy = highspy, _ = libraries()
+        self._library, self._numpy = libraries()
         self._problem = problem
         scope = scope_of(problem, forbidden)
-        self._highs = highs = highspy.Highs()
+        self._highs = highs = silent_highs()
         for option, value in (
-            ("output_flag", False),
             ("threads", 1),
             ("mip_rel_gap", 0.0),
             ("mip_abs_gap", 1e-9),
