@@ -21,6 +21,11 @@ from foon_asp.text.json_value import schema_name
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = ROOT.parent / "shared" / "corpus"
 
+# On a busy machine, a limit comes while a file is read: between opening it and seeing to its end.
+STRUCK_WHILE_READING = pytest.mark.filterwarnings(
+    "ignore:Exception ignored in. <_io.FileIO:pytest.PytestUnraisableExceptionWarning"
+)
+
 # The machine may be busy: no example fails for being slow.
 settings.register_profile("busy", deadline=None, suppress_health_check=(HealthCheck.too_slow,))
 settings.load_profile("busy")

@@ -20,7 +20,7 @@ from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.questions.assist import Assistance, assist
 from foon_asp.questions.assist import assistant as module
 from tests import oracle
-from tests.conftest import Cli
+from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.random_problems import MOTIONS, RATES, SERIES, UTENSILS, random_problem
 from tests.test_alternatives import choosing
 
@@ -393,6 +393,7 @@ def test_rates_are_needed_and_above_0() -> None:
         assist(without)
 
 
+@STRUCK_WHILE_READING
 def test_the_command(cli: Cli, tmp_path: Path) -> None:
     ran = cli("assist", "--goal", "macaroni", "--reach", "0.8", "--format", "json")
     assert ran.code == 0

@@ -32,7 +32,7 @@ from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
 from foon_asp.text.writer import write_units
 from tests import oracle
-from tests.conftest import Cli
+from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.gap_problem import gap_problem
 from tests.handmade_certificate import forbid
 from tests.random_problems import MOTIONS, random_objectives, random_problem
@@ -388,6 +388,7 @@ def mine(folder: Path, rule: str) -> Path:
 NO_CRUSHING = ':- N = #count { U : use(U), motion(U,"crush") }, N > 0.'  # which nothing is known of
 
 
+@STRUCK_WHILE_READING
 def test_certify_prints_what_it_finds(cli: Cli, tmp_path: Path) -> None:
     found = cli("certify", "--goal", "apple pie")
     assert found.code == 1

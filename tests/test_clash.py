@@ -16,7 +16,7 @@ from foon_asp.problem import ContainerRule, Objective, Problem, parse_objectives
 from foon_asp.questions.clash import clash
 from foon_asp.rules.constraint import Constraint
 from tests import oracle
-from tests.conftest import Cli
+from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.random_problems import MOTIONS, random_problem
 
 pytestmark = pytest.mark.sampled(3)  # by default some cases of each test: there are many
@@ -214,6 +214,7 @@ def test_a_clash_of_two_files(cli: Cli, two_files: tuple[Path, Path]) -> None:
     assert len(why.json["clash"]["smallest_clash"]) == 3
 
 
+@STRUCK_WHILE_READING
 def test_clash_where_there_is_no_tree_at_all(cli: Cli, two_files: tuple[Path, Path]) -> None:
     ran = cli("clash", "--goal", "apple pie", "--constraint", two_files[0])
     assert ran.code == 1

@@ -22,7 +22,7 @@ from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
 from tests import oracle
-from tests.conftest import Cli
+from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.random_problems import MOTIONS, SERIES, random_problem
 from tests.stopped_search import stopped_after
 from tests.test_alternatives import choosing
@@ -182,6 +182,7 @@ def test_the_answer_in_json(cli: Cli) -> None:
         before = ids
 
 
+@STRUCK_WHILE_READING
 def test_exit_codes(cli: Cli, tmp_path: Path) -> None:
     none = cli("pareto", "--goal", "apple pie", "--chart", tmp_path / "none.svg")
     assert none.code == 1

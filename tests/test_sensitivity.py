@@ -20,7 +20,7 @@ from foon_asp.questions.sensitivity import Sensitivity, sensitivity
 from foon_asp.questions.sensitivity.interval import End, Interval
 from foon_asp.resources import bundled_kitchen, encodings_folder
 from tests import oracle
-from tests.conftest import Cli
+from tests.conftest import STRUCK_WHILE_READING, Cli
 from tests.random_problems import (
     MOTIONS,
     NEAR_0,
@@ -426,6 +426,7 @@ def test_what_was_found_before_a_limit_is_said(interrupted: bool, monkeypatch: p
 # --- The command.
 
 
+@STRUCK_WHILE_READING
 def test_exit_codes_and_what_is_printed(cli: Cli, tmp_path: Path) -> None:
     ran = cli("sensitivity", "--goal", "macaroni")
     assert ran.code == 0

@@ -22,7 +22,7 @@ from foon_asp.text.diagnostics import InputError
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.price_list import read_prices
 from tests import oracle
-from tests.conftest import CORPUS, Cli
+from tests.conftest import CORPUS, STRUCK_WHILE_READING, Cli
 from tests.random_problems import random_problem
 
 
@@ -290,6 +290,7 @@ def test_a_kitchen_item_that_is_taken_away_is_on_a_list(folder: Path | None) -> 
     assert sum(case.place is not None for case in found) >= 0.95 * len(found)
 
 
+@STRUCK_WHILE_READING
 def test_a_limit_is_told(cli: Cli) -> None:
     ran = cli("shopping-list", "--goal", "hot cocoa", "--time-limit", "0")
     assert ran.code == 3

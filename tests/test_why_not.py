@@ -15,7 +15,7 @@ from foon_asp.problem import ContainerRule, Problem
 from foon_asp.problem.dead_ends import Cause
 from foon_asp.text.line_parser import parse_node
 from tests import oracle
-from tests.conftest import ROOT, Cli
+from tests.conftest import ROOT, STRUCK_WHILE_READING, Cli
 from tests.random_problems import random_problem
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
@@ -221,6 +221,7 @@ def test_causes_that_are_not_shown_are_counted() -> None:
     assert "\n12 more behind other units; --format json lists all\n" in said
 
 
+@STRUCK_WHILE_READING
 def test_the_last_line_is_the_cheapest_fix(cli: Cli) -> None:
     ran = cli("why-not", "--goal", "hot cocoa")
     fix = "cheapest fix: add cocoa tin; contains {cocoa powder} (foon-asp shopping-list says more)"
