@@ -131,6 +131,32 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
     assert found.bounds[Objective.UNITS] == 1
 
 
+@pytest.mark.parametrize("rules", [(), (RuleText(":- #count { U : use(U) } > 20."),)])
+@pytest.mark.parametrize("weak", [{}, {Objective.UNITS: 0}])
+def test_a_limit_keeps_the_bound_of_what_was_asked_before(
+    rules: tuple[RuleText, ...],
+    weak: dict[Objective, int],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    looks = 0
+
+    def stopped(problem: Problem, by: tuple[Objective, ...], how: Settings, reporter: Reporter) -> Outcome:
+        nonlocal looks
+        found, looks = solve(problem, by, how, reporter), looks + 1
+        if looks < 4 and not (rules and how.constraints):
+            return found
+        return found._replace(status=Status.FEASIBLE, proof=None, stopped="a limit", bounds=dict(weak))
+
+    monkeypatch.setattr(nearby_optimum, "solve", stopped)
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    found = answered_nearby(near, [Objective.UNITS], Settings(rules))
+    assert looks >= 4
+    assert found.stopped == "a limit"
+    assert found.bounds == {Objective.UNITS: 2}  # of the last two units of either way
+
+
 def test_a_limit_while_all_is_read_gives_the_tree_in_hand(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

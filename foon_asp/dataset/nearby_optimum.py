@@ -1,6 +1,7 @@
 """The best tree for a question to a large store, of which no more is read than it takes to prove it."""
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
@@ -8,7 +9,7 @@ from foon_asp.asp.assembly import hold_for_parts, leave_a_rest
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import LimitError
-from foon_asp.problem import Objective, Problem, levels
+from foon_asp.problem import Objective, Problem, levels, multiplies
 from foon_asp.reduce import ALL
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -39,14 +40,19 @@ def solve_nearby(
     deadline = how.begun
     alone = how._replace(session=None, deadline=deadline)
     free = alone._replace(constraints=(), constants=())
+    first = levels(tuple(objectives))[0]
+    tighter = min if multiplies(first) else max
+    known: list[int | Fraction] = []  # bounds on the first objective
     if leave_a_rest(how):  # the best tree without them is needed anyway, and quick to read
-        solve_nearby(near, objectives, free, _OnlyWarnings(reporter))
+        without = solve_nearby(near, objectives, free, _OnlyWarnings(reporter))
+        known += [bound for each, bound in without.bounds.items() if each == first] if without else []
     while True:
         problem = near.problem
         found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter))
         if found.status is Status.INFEASIBLE:
             ruled_out = how.constraints and solve_nearby(near, objectives, free)
             return found._replace(problem=near.problem) if ruled_out else None
+        known += [bound for each, bound in found.bounds.items() if each == first]
         lacking = [] if found.units is None else near.lacking(found.units)
         if lacking and found.status is Status.OPTIMAL:
             try:
@@ -55,7 +61,8 @@ def solve_nearby(
                 continue
             except LimitError as limit:
                 found = found._replace(proof=None, stopped=limit.stopped)
-        found = found._replace(problem=problem)
+        bounds = {**found.bounds, first: tighter(known)} if known else found.bounds
+        found = found._replace(problem=problem, bounds=bounds)
         if lacking:  # at a limit: the bound holds, and what was read may have a tree of its own
             tree = solve(problem, objectives, alone, _OnlyWarnings(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
