@@ -9,7 +9,7 @@ from foon_asp.asp.assembly import hold_for_parts, leave_a_rest
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import LimitError
-from foon_asp.problem import Objective, Problem, levels, multiplies
+from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.reduce import ALL
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -72,6 +72,13 @@ def solve_nearby(
             assert found.costs is not None
             reporter.tree(found.costs)
         return found
+
+
+def least_with_one_more(costs: Costs, order: Sequence[Objective]) -> tuple[object, ...]:
+    """Give the key that no tree is better than which has a unit more than one that costs this or more."""
+    least: list[object] = [*costs.key(order)]
+    least[order.index(Objective.UNITS)] = costs.units + 1
+    return tuple(least)
 
 
 class _OnlyWarnings(Reporter):

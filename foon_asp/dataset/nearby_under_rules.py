@@ -13,18 +13,11 @@ from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, assemble, reach_of_rules
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby import Nearby
-from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
+from foon_asp.dataset.nearby_optimum import least_with_one_more, near_goals, solve_nearby
 from foon_asp.deadline import LimitError
-from foon_asp.problem import Costs, Objective, Problem, levels
+from foon_asp.problem import Objective, Problem, levels
 
 _READ = 4  # times in which a tree is looked for that is good enough, each among twice as many units
-
-
-def least_with_one_more(costs: Costs, order: Sequence[Objective]) -> tuple[object, ...]:
-    """Give the key that no tree is better than which has a unit more than one that costs this or more."""
-    least: list[object] = [*costs.key(order)]
-    least[order.index(Objective.UNITS)] = costs.units + 1
-    return tuple(least)
 
 
 def solve_nearby_under(

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
-from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
-from foon_asp.dataset.nearby_under_rules import least_with_one_more, solve_nearby_under
+from foon_asp.dataset.nearby_optimum import least_with_one_more, near_goals, solve_nearby
 from foon_asp.deadline import LimitError
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
@@ -154,7 +153,11 @@ def answered_under(
         return answered_nearby(near, objectives, how)
     reporter = reporter or caller().reporter
     how = how._replace(deadline=how.begun)
-    found = solve_nearby_under(problem, objectives, how, reporter)
+    found = None
+    if hasattr(problem, "near"):  # of a large store
+        from foon_asp.dataset.nearby_under_rules import solve_nearby_under  # noqa: PLC0415
+
+        found = solve_nearby_under(problem, objectives, how, reporter)
     if found is not None and (found.status is Status.OPTIMAL or found.stopped):
         return _noted(found)
     try:
