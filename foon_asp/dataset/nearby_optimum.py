@@ -43,15 +43,19 @@ def solve_nearby(
     first = levels(tuple(objectives))[0]
     tighter = min if multiplies(first) else max
     known: list[int | Fraction] = []  # bounds on the first objective
+    without: Outcome | None = None
     if leave_a_rest(how):  # the best tree without them is needed anyway, and quick to read
         without = solve_nearby(near, objectives, free, _OnlyWarnings(reporter))
-        known += [bound for each, bound in without.bounds.items() if each == first] if without else []
+        if without is None:
+            return None
+        known += [bound for each, bound in without.bounds.items() if each == first]
     while True:
         problem = near.problem
         found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter))
         if found.status is Status.INFEASIBLE:
-            ruled_out = how.constraints and solve_nearby(near, objectives, free)
-            return found._replace(problem=near.problem) if ruled_out else None
+            if without is None and how.constraints:
+                without = solve_nearby(near, objectives, free)
+            return None if without is None else found._replace(problem=near.problem)
         known += [bound for each, bound in found.bounds.items() if each == first]
         lacking = [] if found.units is None else near.lacking(found.units)
         if lacking and found.status is Status.OPTIMAL:

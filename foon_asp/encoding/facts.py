@@ -139,9 +139,9 @@ def write_facts_read(
     return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
 
 
-def _other_lines(problem: Problem, nodes: Iterable[int]) -> Iterator[str]:
+def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
     """Say which labels are utensils, what the goals are, and what is at hand that rules do not see there."""
-    name, nodes = problem.network.object_number, list(nodes)
+    name = problem.network.object_number
     labels = {problem.network.objects[o].label for o in nodes}
     yield from (f"utensil({quote(label)})." for label in sorted(labels & problem.utensils))
     yield from (f"goal({name(o)})." for o in problem.goals)
