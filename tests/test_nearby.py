@@ -2,6 +2,7 @@
 
 import json
 import random
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from itertools import product
@@ -59,6 +60,14 @@ def asked(problem: Problem) -> Nearby:
     near = near_of(problem)
     assert near is not None
     return near
+
+
+def assert_same(found: Outcome, expected: Outcome, objectives: Sequence[Objective], *drawn: object) -> None:
+    """Require the status and the costs that are expected; what was drawn is told where they differ."""
+    assert found.status is expected.status, (*drawn, objectives)
+    if found.costs is not None and expected.costs is not None:
+        order = levels(tuple(objectives))
+        assert found.costs.key(order) == expected.costs.key(order), (*drawn, objectives)
 
 
 # Two ways to a stew, of 3 and of 12 units; the last unit of either makes it of what takes the others.
@@ -223,10 +232,7 @@ def test_random_problems(rule: ContainerRule, part: int, tmp_path: Path) -> None
                 before = len(near.problem.network)
                 found = answered_nearby(near, objectives, Settings())
                 expected = solve(replace(problem, goals=goals), objectives)
-                assert found.status is expected.status, (seed, goals, objectives)
-                if found.costs is not None and expected.costs is not None:
-                    order = levels(objectives)
-                    assert found.costs.key(order) == expected.costs.key(order), (seed, goals, objectives)
+                assert_same(found, expected, objectives, seed, goals)
                 compared += 1
                 read_again += len(found.problem.network) > before
                 impossible += found.status is Status.INFEASIBLE
@@ -319,10 +325,7 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
         found = answered_nearby(near, objectives, how)
         whole = near.whole()
         expected, free = solve(whole, objectives, how), solve(whole, objectives)
-        assert found.status is expected.status, (seed, drawn, objectives)
-        if found.costs is not None and expected.costs is not None:
-            order = levels(objectives)
-            assert found.costs.key(order) == expected.costs.key(order), (seed, drawn, objectives)
+        assert_same(found, expected, objectives, seed, drawn)
         compared += 1
         mattered += (free.status, free.costs) != (expected.status, expected.costs)
     assert compared > 15 // part
@@ -391,10 +394,7 @@ def test_random_problems_under_rules_that_see_the_kitchen(part: int, tmp_path: P
             continue
         found = answered_nearby(near, objectives, how)
         expected = solve(whole, objectives, how)
-        assert found.status is expected.status, (seed, how, objectives)
-        if found.costs is not None and expected.costs is not None:
-            order = levels(objectives)
-            assert found.costs.key(order) == expected.costs.key(order), (seed, how, objectives)
+        assert_same(found, expected, objectives, seed, how)
         compared += 1
         mattered += (free.status, free.costs) != (expected.status, expected.costs)
         little += len(found.problem.network) < len(near.whole().network)

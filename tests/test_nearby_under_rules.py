@@ -22,7 +22,7 @@ from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles
 from tests.constraint_oracle import random_rule, settings_of
 from tests.random_problems import SERIES, random_problem
-from tests.test_nearby import LISTS, LONG, SHORT, asked, stored
+from tests.test_nearby import LISTS, LONG, SHORT, asked, assert_same, stored
 
 UNITS = (Objective.UNITS,)
 WAVE = Settings((Path("require_motion"),), constants=('required_motion="wave"',))
@@ -215,9 +215,7 @@ def test_random_problems_under_rules(part: int, tmp_path: Path, monkeypatch: pyt
         near = solve_nearby_under(posed, objectives, how, Reporter())
         found: Answer = answered_under(posed, objectives, how)
         expected = solve(dataset.problem(problem.goals, rule.value, everything=True), objectives, how)
-        assert found.status is expected.status, seed
-        if found.costs is not None and expected.costs is not None:
-            assert found.costs.key(order) == expected.costs.key(order), seed
+        assert_same(found, expected, objectives, seed)
         compared += 1
         far += found.units is not None and (near is None or near.status is not Status.OPTIMAL)
         if near is not None and near.costs is not None:
