@@ -18,7 +18,7 @@ MODULES = {path.relative_to(ROOT).as_posix(): path for path in sorted(PACKAGE.rg
 # foon_asp/__init__.py. Rooms that are planned and not built yet are named too.
 FACE = "the face"
 FLOORS = (
-    {"errors", "escapes", "resources", "deadline", "pipe", "python_process", "typed", "warning"},
+    {"errors", "escapes", "resources", "deadline", "garbage", "pipe", "python_process", "typed", "warning"},
     {"network"},
     {"text", "problem", "bounds"},
     {"reduce", "grounding", "document", "offered"},

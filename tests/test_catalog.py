@@ -67,7 +67,7 @@ text: assumed_goals bytes_read clean_line data_folder diagnostics exact_price go
     motion_times object_list
     plain_file provenance rate_table reader stated_prices table_rows unit_price_list writer
 """
-ALONE = {"deadline", "errors", "escapes", "resources", "typed", "warning"}
+ALONE = {"deadline", "errors", "escapes", "garbage", "resources", "typed", "warning"}
 # parameters that the command line has no option for: it has them from elsewhere
 PYTHON_ONLY = {"problem", "foon", "about", "data", "left", "right", "reporter", "cancel", "on_progress"}
 

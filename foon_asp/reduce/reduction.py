@@ -1,13 +1,13 @@
 """A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
 
-import gc
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from collections.abc import Callable, Collection, Sequence
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.bounds.landmark_cuts import Cuts, landmark_cuts
+from foon_asp.garbage import uncollected
 from foon_asp.problem import Objective, Problem
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.dominance import undominated
@@ -102,7 +102,7 @@ def reduce(
     ``rest`` says that trees have to keep to more than is known here, which ``wide`` is needed for; ``spare``
     that those may have units that lead to no goal.
     """
-    with _uncollected():
+    with uncollected():
         with guard():
             reducer = _Reducer(
                 problem,
@@ -129,7 +129,7 @@ def at_costs(
     With ``below``, only units are left out that only trees have that cost as much, and no less than the tree
     found.
     """
-    with _uncollected():
+    with uncollected():
         reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
         reducer = _Reducer(
             wide.problem, tuple(objectives), frozenset(reductions), expired, Listener(), wide.spare, rest=True
@@ -142,18 +142,6 @@ def at_costs(
         if below:  # what is left goes to clingo with a tree in hand
             reducer.small = _EASY
         return reducer.reduce(nullcontext)
-
-
-@contextmanager
-def _uncollected() -> Iterator[None]:
-    """Do without collecting: nothing here is circular, and a collection walks over the whole network."""
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collecting:
-            gc.enable()
 
 
 class _Reducer:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from fractions import Fraction
+from itertools import chain
 from typing import Any
 
 from foon_asp.escapes import note_line_end
@@ -46,7 +47,11 @@ def _flag(value: Any) -> bool:
 
 
 def _numbers(value: Any) -> bool:
-    return type(value) is list and all(type(each) is int and 0 <= each < _GREATEST for each in value)
+    return type(value) is list and _all_numbers(value)
+
+
+def _all_numbers(values: list[Any]) -> bool:
+    return not values or ({*map(type, values)} == {int} and min(values) >= 0 and max(values) < _GREATEST)
 
 
 def _maybe(shape: Shape) -> Shape:
@@ -71,8 +76,61 @@ def _block(table: Table, shape: Shape) -> Shape:
     return lambda value: every(value) and len(value) <= SIZES[table]
 
 
-def _in_groups(size: int, least: int = 0) -> Shape:
-    return lambda value: _numbers(value) and len(value) % size == 0 and len(value) >= least
+def _pairs(value: Any) -> bool:
+    return _numbers(value) and len(value) % 2 == 0
+
+
+# Of these three there are many blocks, and each is read for a few of its rows: what is in their lists is
+# looked at together.
+
+
+def _units(rows: Any) -> bool:
+    """Rows of a motion, the inputs, the outputs, and three numbers for each place, at least one."""
+    if type(rows) is not list or len(rows) > SIZES[Table.UNIT]:
+        return False
+    numbers: list[Any] = []
+    for row in rows:
+        if type(row) is not list or len(row) != 4:
+            return False
+        motion, *lists = row
+        if not all(type(each) is list for each in lists) or not lists[2] or len(lists[2]) % 3:
+            return False
+        numbers.append(motion)
+        numbers += chain.from_iterable(lists)
+    return _all_numbers(numbers)
+
+
+def _producers(rows: Any) -> bool:
+    """Rows of units."""
+    return (
+        type(rows) is list
+        and len(rows) <= SIZES[Table.PRODUCERS]
+        and all(type(each) is list for each in rows)
+        and _all_numbers([*chain.from_iterable(rows)])
+    )
+
+
+def _nodes(rows: Any) -> bool:
+    """Rows of whether it is at hand and the label; then states, relations, contents, if there are any."""
+    if type(rows) is not list or len(rows) > SIZES[Table.NODE]:
+        return False
+    texts: list[Any] = []
+    for row in rows:
+        if type(row) is not list or not 2 <= len(row) <= 5 or not _flag(row[0]):
+            return False
+        states, relations, contents = (*row[2:], [], [], [])[:3]
+        pairs = [*relations, *contents] if type(relations) is type(contents) is list else [None]
+        if any(type(pair) is not list or len(pair) != 2 for pair in pairs):
+            return False
+        held = [items for _, items in contents]
+        if any(type(each) is not list for each in (states, *held)):
+            return False
+        texts += (row[1], *states)
+        for pair in relations:
+            texts += pair
+        for word, items in contents:
+            texts += (word, *items)
+    return {*map(type, texts)} <= {str}
 
 
 def _by_trigram(value: Any) -> bool:
@@ -128,7 +186,6 @@ _COUNTS: dict[str, Shape] = {
 
 _texts = _list(_text)
 _relations = _list(_row(_text, _text))
-_node = _row(_flag, _text, _texts, _relations, _list(_row(_text, _texts)), least=2)
 _entry = _row(_text, _texts, _texts, _maybe(_text), _relations, _text, _number, _number)
 
 _ABOUT: tuple[Shape, ...] = (
@@ -141,10 +198,10 @@ _ABOUT: tuple[Shape, ...] = (
     _digests,
 )
 _SHAPES: dict[Table, Shape] = {
-    Table.UNIT: _block(Table.UNIT, _row(_number, _numbers, _numbers, _in_groups(3, least=1))),
-    Table.NODE: _block(Table.NODE, _node),
-    Table.PRODUCERS: _block(Table.PRODUCERS, _numbers),
-    Table.NODE_HASH: _in_groups(2),
+    Table.UNIT: _units,
+    Table.NODE: _nodes,
+    Table.PRODUCERS: _producers,
+    Table.NODE_HASH: _pairs,
     Table.LABEL: _block(Table.LABEL, _row(_text, _number, _numbers)),
     Table.TRIGRAM: _by_trigram,
     Table.MOTION: _block(Table.MOTION, _row(_text, _text, *[_number] * 6)),

@@ -3,6 +3,8 @@
 from collections import deque
 from collections.abc import Callable, Iterable
 
+from foon_asp.garbage import uncollected
+
 
 class Cone:
     """What goals can need, as far as it was read; everything is by id in the whole network.
@@ -25,6 +27,7 @@ class Cone:
         self._closed: set[int] = set()
         self._producers, self._needs, self._at_hand = producers, needs, at_hand
 
+    @uncollected()
     def grow(self, objects: Iterable[int], most: int | None = None) -> None:
         """Read the producers of open nodes, then of what these need, the nearest first.
 

@@ -59,7 +59,7 @@ class LabelIndex:
     """Looks labels up in the blocks of a file."""
 
     def __init__(self, file: StoreFile, labels: int, trigram_blocks: int) -> None:
-        self._file = file
+        self._file, self._label = file, file.values(Table.LABEL)
         self._labels = labels
         self._trigram_blocks = trigram_blocks
 
@@ -68,7 +68,7 @@ class LabelIndex:
         place = self._place(label)
         if place == self._labels or self._at(place) != label:
             return 0, ()
-        _, count, first = self._file.value(Table.LABEL, place)
+        _, count, first = self._label(place)
         return count, first
 
     def beginning(self, start: str, most: int) -> list[str]:
@@ -98,5 +98,5 @@ class LabelIndex:
         return bisect_left(range(self._labels), label, key=self._at)
 
     def _at(self, place: int) -> str:
-        label: str = self._file.value(Table.LABEL, place)[0]
+        label: str = self._label(place)[0]
         return label

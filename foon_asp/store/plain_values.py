@@ -35,8 +35,8 @@ def node_of(values: list[Any]) -> ObjectNode:
     return ObjectNode(
         label,
         frozenset(states),
-        frozenset(Relation(word, related) for word, related in relations),
-        tuple(Contents(word, tuple(items)) for word, items in contents),
+        frozenset([Relation(word, related) for word, related in relations]),
+        tuple([Contents(word, tuple(items)) for word, items in contents]),
     )
 
 

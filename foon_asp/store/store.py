@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
+from foon_asp.garbage import uncollected
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
 from foon_asp.network.network import UnitKey
 from foon_asp.problem import ContainerRule, Unpriced, needed_inputs
@@ -43,6 +44,10 @@ class Store:
         labels = LabelIndex(self._file, about["labels"], about["trigram_blocks"])
         self.labelled, self.beginning, self.near = labels.labelled, labels.beginning, labels.near
         self._nodes: dict[int, ObjectNode] = {}
+        # what there is of each by number
+        tables = Table.UNIT, Table.NODE, Table.PRODUCERS, Table.MOTION, Table.ORIGIN, Table.PRICE
+        each = map(self._file.values, tables)
+        self._unit, self._node, self._makers, self._motion, self._origin, self._price_row = each
 
     def close(self) -> None:
         """Close the file; to read more of it raises :class:`UserError`."""
@@ -90,7 +95,7 @@ class Store:
             return {}
         rows: Iterable[Any]
         if network.object_numbers:  # a part, be it one without units
-            rows = (self._at(Table.PRICE, unit) for unit in network.unit_numbers)
+            rows = (self._price_row(unit) for unit in network.unit_numbers)
         else:
             rows = [row for block in self._file.blocks(Table.PRICE) for row in block]
             if len(rows) != self.units:
@@ -106,25 +111,25 @@ class Store:
         ``listed`` is as for :meth:`unit_prices`.
         """
         ids = {unit_id for unit in units if (unit_id := self.unit_id(unit)) is not None}
-        others = Counter(self._at(Table.UNIT, u)[0] for u in ids if self._stored_price(u, listed) is None)
+        others = Counter(self._unit(u)[0] for u in ids if self._stored_price(u, listed) is None)
         found: dict[int, Unpriced] = {}
         for number in range(self._counts["motions"]):
-            motion, *_, own, first_own, both, first_both = self._at(Table.MOTION, number)
+            motion, *_, own, first_own, both, first_both = self._motion(number)
             count, first = (both, first_both) if listed else (own, first_own)
             count -= others[number]
             if motion in motions or count <= 0:
                 continue
             while first in ids or not self._is_unpriced(first, number, listed):
                 first += 1
-            source = self._source(*self._at(Table.UNIT, first)[3][:3])
+            source = self._source(*self._unit(first)[3][:3])
             found[first] = Unpriced(motion, count, source)
         return [found[first] for first in sorted(found)]
 
     def _is_unpriced(self, unit: int, motion: int, listed: bool) -> bool:
-        return self._at(Table.UNIT, unit)[0] == motion and self._stored_price(unit, listed) is None
+        return self._unit(unit)[0] == motion and self._stored_price(unit, listed) is None
 
     def _stored_price(self, unit: int, listed: bool) -> str | None:
-        return _price(self._at(Table.PRICE, unit), listed) if self.has_unit_prices else None
+        return _price(self._price_row(unit), listed) if self.has_unit_prices else None
 
     @cached_property
     def utensils(self) -> frozenset[str]:
@@ -143,22 +148,22 @@ class Store:
     def motion_sources(self) -> list[tuple[str, Source]]:
         """Read every motion, with the place of the first unit that has it."""
         motions = range(self._counts["motions"])
-        return [(values[0], Source(*values[1:4])) for values in (self._at(Table.MOTION, m) for m in motions)]
+        return [(values[0], Source(*values[1:4])) for values in (self._motion(m) for m in motions)]
 
     def node(self, object_id: int) -> ObjectNode:
         """Give the node with that id."""
         found = self._nodes.get(object_id)
         if found is None:
-            found = self._nodes[object_id] = node_of(self._at(Table.NODE, object_id))
+            found = self._nodes[object_id] = node_of(self._node(object_id))
         return found
 
     def in_kitchen(self, object_id: int) -> bool:
         """Whether the node is in the kitchen that was imported."""
-        return bool(self._at(Table.NODE, object_id)[0])
+        return bool(self._node(object_id)[0])
 
     def is_starting(self, object_id: int) -> bool:
         """Whether no unit makes the node out of others, see :func:`foon_asp.network.starting_nodes`."""
-        return all(object_id in self._at(Table.UNIT, unit)[1] for unit in self.producers(object_id))
+        return all(object_id in self._unit(unit)[1] for unit in self.producers(object_id))
 
     def object_id(self, node: ObjectNode) -> int | None:
         """Give the id of a node, or ``None`` when the network does not have it."""
@@ -177,13 +182,14 @@ class Store:
         outputs = sides[1]
         candidates = self._file.block(Table.ABOUT, 4) if not outputs else self.producers(outputs[0])  # type: ignore[arg-type]
         for candidate in candidates:
-            motion, inputs, outputs, _ = self._at(Table.UNIT, candidate)
+            motion, inputs, outputs, _ = self._unit(candidate)
             if [set(inputs), set(outputs)] == [set(side) for side in sides] and (
-                self._at(Table.MOTION, motion)[0] == unit.motion
+                self._motion(motion)[0] == unit.motion
             ):
                 return candidate
         return None
 
+    @uncollected()
     def cone(
         self,
         goals: Iterable[int],
@@ -213,10 +219,11 @@ class Store:
         """Read what was found of a cone."""
         return self.part(cone.units, cone.goals)
 
+    @uncollected()
     def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
         """Read some units, the nodes in them, and further nodes, as a part of the whole network."""
         unit_ids = sorted(set(units))
-        read = [self._at(Table.UNIT, unit) for unit in unit_ids]
+        read = [self._unit(unit) for unit in unit_ids]
         object_ids = sorted(
             {*objects, *(o for _, ins, outs, _ in read for side in (ins, outs) for o in side)}
         )
@@ -224,6 +231,7 @@ class Store:
         network = self._network(read, [self.node(o) for o in object_ids], new_ids)
         return replace(network, unit_numbers=tuple(unit_ids), object_numbers=tuple(object_ids))
 
+    @uncollected()
     def whole(self) -> tuple[Network, frozenset[int]]:
         """Read the whole network, and which nodes are in the kitchen."""
         values = [values for block in self._file.blocks(Table.NODE) for values in block]
@@ -246,7 +254,7 @@ class Store:
         if isinstance(ids, range) and max(named, default=-1) >= len(ids):
             self._file.damaged("a unit has an object node that is missing")
         for motion, ins, outs, places in units:
-            motions.append(self._at(Table.MOTION, motion)[0])
+            motions.append(self._motion(motion)[0])
             inputs.append(tuple([ids[o] for o in ins]))
             outputs.append(tuple([ids[o] for o in outs]))
             sources.append(tuple(self._source(*places[i : i + 3]) for i in range(0, len(places), 3)))
@@ -267,11 +275,11 @@ class Store:
         )
 
     def _source(self, origin: int, line: int, column: int) -> Source:
-        file, videos = self._at(Table.ORIGIN, origin)
+        file, videos = self._origin(origin)
         return Source(file, line, column, tuple(videos))
 
     def _needs(self, unit: int, containers: ContainerRule, utensils: frozenset[str]) -> list[int]:
-        inputs: list[int] = self._at(Table.UNIT, unit)[1]
+        inputs: list[int] = self._unit(unit)[1]
         if containers is ContainerRule.STRICT:
             return inputs
         nodes = tuple(map(self.node, inputs))
@@ -280,23 +288,20 @@ class Store:
 
     def producers(self, object_id: int) -> list[int]:
         """Give the units that have a node as an output, in order."""
-        found: list[int] = self._at(Table.PRODUCERS, object_id)
+        found: list[int] = self._makers(object_id)
         return found
 
     def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
         """Give the motion, the inputs, the outputs and the places of a unit."""
-        motion, ins, outs, places = self._at(Table.UNIT, unit)
+        motion, ins, outs, places = self._unit(unit)
         sources = tuple(self._source(*places[i : i + 3]) for i in range(0, len(places), 3))
-        return self._at(Table.MOTION, motion)[0], tuple(ins), tuple(outs), sources
+        return self._motion(motion)[0], tuple(ins), tuple(outs), sources
 
     def _hashed(self, wanted: int, is_it: Callable[[ObjectNode], bool]) -> list[int]:
         """Give the ids of the nodes that have this hash and that ``is_it`` says yes of."""
         bucket = self._file.block(Table.NODE_HASH, wanted % self._counts["hash_blocks"])
         found = zip(bucket[::2], bucket[1::2], strict=True)
         return [o for known, o in found if known == wanted and is_it(self.node(o))]
-
-    def _at(self, table: Table, number: int) -> Any:
-        return self._file.value(table, number)
 
 
 def _price(row: list[str | None] | None, listed: bool) -> str | None:

@@ -33,7 +33,7 @@ class StoreFile:
 
     def __init__(self, file: Path) -> None:
         self.file = file
-        self._blocks: dict[tuple[Table, int], Any] = {}
+        self._blocks: dict[Table, dict[int, Any]] = {table: {} for table in Table}
         self._check_header()
         try:
             # immutable: no locks, no files beside it. Who holds it open keeps what an import replaces.
@@ -50,21 +50,29 @@ class StoreFile:
 
     def block(self, table: Table, number: int) -> Any:
         """Give a block, which is not to be changed."""
-        found = self._blocks.get((table, number))
+        known = self._blocks[table]
+        found = known.get(number)
         if found is None:
             row = self._guarded(lambda: self._row(table, number))
             if row is None:
                 self.damaged(f"block {number} of {table} is missing")
-            found = self._blocks[table, number] = self._guarded(lambda: _opened(table, number, row[0]))
+            found = known[number] = self._guarded(lambda: _opened(table, number, row[0]))
         return found
 
-    def value(self, table: Table, number: int) -> Any:
-        """Give what a table has under a number, among others in a block."""
-        block, place = divmod(number, SIZES[table])
-        values = self.block(table, block)
-        if place >= len(values):
-            self.damaged(f"number {number} of {table} is missing")
-        return values[place]
+    def values(self, table: Table) -> Callable[[int], Any]:
+        """Make a function that gives what a table has under a number, among others in a block."""
+        known, size = self._blocks[table], SIZES[table]
+
+        def value(number: int) -> Any:
+            values = known.get(number // size)
+            if values is None:
+                values = self.block(table, number // size)
+            place = number % size
+            if place >= len(values):
+                self.damaged(f"number {number} of {table} is missing")
+            return values[place]
+
+        return value
 
     def blocks(self, table: Table) -> Iterator[Any]:
         """Give all blocks of a table in order, and keep none of them."""

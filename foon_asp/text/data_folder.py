@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.garbage import uncollected
 from foon_asp.network import (
     FunctionalUnit,
     Network,
@@ -161,8 +162,9 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     ``level`` 3, network, kitchen and goals are taken at that level: an entry stands for all nodes that
     are the same as it there.
     """
-    reader = FoonReader(lenient)
-    whole = reader.read_network(files.network)
+    with uncollected():
+        reader = FoonReader(lenient)
+        whole = reader.read_network(files.network)
     network = network_at_level(whole, level)
     warnings = reader.diagnostics
     starting = files.kitchen in {None, STARTING}

@@ -1,6 +1,6 @@
 """One line of FOON text and what it says."""
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from foon_asp.network import Contents, Relation
 
@@ -93,6 +93,11 @@ class LineError(Exception):
         self.column = column
         self.found = found
         self.expected = expected
+
+    def kept(self) -> Self:
+        """Give the error to keep as a value: without what was going on when it was raised."""
+        self.__context__ = None
+        return self.with_traceback(None)
 
 
 def is_number(field: str) -> bool:

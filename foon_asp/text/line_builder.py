@@ -255,7 +255,8 @@ def build(start: str, text: str) -> object:
     try:
         return _parser().parse(text, start=start)
     except UnexpectedInput as error:
-        raise _line_error(error, text, in_file=start == "lines") from None
+        fault = _line_error(error, text, in_file=start == "lines")
+    raise fault  # with nothing of what the parser had in its hands
 
 
 def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:

@@ -38,7 +38,7 @@ def parse_lines(texts: Sequence[str]) -> list[Line | LineError]:
                 try:
                     lines.append(parse_line(texts[place]))
                 except LineError as error:
-                    lines.append(error)
+                    lines.append(error.kept())
         for place, line in zip(batch, lines, strict=True):
             found[place] = line
     return cast(list[Line | LineError], found)

@@ -305,7 +305,7 @@ class FoonReader:
                     raise LineError(_LONGEST + 1, found, (f"at most {_LONGEST}",))
                 parsed = parse_line(line)
             except LineError as error:
-                parsed = error
+                parsed = error.kept()
             self._lines[line] = parsed
         return parsed
 
