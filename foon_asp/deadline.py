@@ -19,7 +19,7 @@ from foon_asp.errors import UserError
 _STATM = Path("/proc/self/statm")
 _PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 _ADVICE = {
-    "reading": "raise the limit, or make a store of the network once: foon-asp import",
+    "reading": "raise the limit, or if the network is text, make a store of it once: foon-asp import",
     "grounding": "rules that were added may be endless, as in p(f(X)) :- p(X), or have too many instances: "
     "check them, or raise the limit",
 }

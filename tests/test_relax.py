@@ -17,7 +17,11 @@ import pytest
 
 import foon_asp
 from foon_asp import RefusedError, UserError
+from foon_asp.deadline import Deadline, LimitError
 from foon_asp.engines import fast_downward
+from foon_asp.planning.delete_relaxation import relaxed
+from foon_asp.planning.pddl_reader import read_pddl
+from foon_asp.planning.task_files import read_task
 from tests.conftest import Cli
 from tests.test_export import parsed
 
@@ -624,3 +628,22 @@ def test_the_search_ends_when_the_cost_is_proved(tmp_path: Path, monkeypatch: py
     relaxed = foon_asp.relax(written(tmp_path, domain, metric))
     assert relaxed.cost == 1
     assert relaxed.proved
+
+
+def test_advice_at_a_limit_is_about_the_task(tmp_path: Path) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "task.pddl"
+    domain.write_text(
+        "(define (domain d) (:predicates (p ?x)) (:action a :parameters (?x) :effect (p ?x)))",
+        encoding="utf-8",
+    )
+    problem.write_text(
+        "(define (problem t) (:domain d) (:objects o) (:init) (:goal (p o)))", encoding="utf-8"
+    )
+    assert len(read_task([domain, problem], Deadline()).actions) == 1
+    with pytest.raises(LimitError) as reading:
+        read_task([domain, problem], Deadline(1e-9))
+    with pytest.raises(LimitError) as grounding:
+        relaxed(read_pddl(domain, problem), Deadline(1e-9))
+    assert reading.value.stopped.endswith("while reading the task")
+    assert grounding.value.stopped.endswith("while grounding the task")
+    assert [each.value.advice for each in (reading, grounding)] == ["raise the limit"] * 2

@@ -20,8 +20,9 @@ class Grounded:
     """Files and text, grounded.
 
     With ``endless``, for rules whose grounding may have no end, it is in a process of its own, which ends at
-    the limits and at ctrl-C; so it is where there is much text, and where the memory is limited. Raises
-    :class:`foon_asp.grounding.run.ProgramError` for what clingo refuses, and :class:`LimitError`.
+    the limits and at ctrl-C; so it is where there is much text, and where the memory is limited. ``doing`` is
+    what a limit says of it. Raises :class:`foon_asp.grounding.run.ProgramError` for what clingo refuses, and
+    :class:`LimitError`.
     """
 
     def __init__(
@@ -32,8 +33,9 @@ class Grounded:
         products: int,
         deadline: Deadline,
         endless: bool,
+        doing: str = "grounding",
     ) -> None:
-        deadline.doing = "grounding"
+        deadline.doing = doing
         deadline.check()
         names = [str(file) if isinstance(file, Path) else file for file in files]
         self._program: GroundProgram | WorkerProgram

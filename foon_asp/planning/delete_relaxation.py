@@ -28,6 +28,7 @@ from foon_asp.planning.formula import (
 from foon_asp.planning.pddl_task import Effect, PddlTask, Schema
 from foon_asp.planning.strips_task import REACHED, StripsAction, StripsTask
 
+_DOING = "grounding the task"
 _MOST_WAYS = 1000  # of one condition to hold
 
 Fact = tuple[str, bool, tuple[int, ...]]
@@ -113,13 +114,13 @@ class _Relaxation:
 
     def ground(self, deadline: Deadline) -> StripsTask:
         text, predicates = self.program.text(), self.program.actions
-        program = Grounded([], text, ["--warn=none"], 0, deadline, endless=True)
+        program = Grounded([], text, ["--warn=none"], 0, deadline, endless=True, doing=_DOING)
         try:
             found = program.consequences(predicates)
         finally:
             program.close()
         facts = _Facts(self)
-        with deadline.watched("grounding"):
+        with deadline.watched(_DOING):
             actions = [
                 action
                 for prepared, bindings in zip(self.schemas, found, strict=True)

@@ -18,7 +18,7 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
     Raises :class:`UserError` for other files, and what is not understood in them; :class:`LimitError` at the
     deadline.
     """
-    deadline.doing = "reading"
+    deadline.doing = "reading the task"
     if len(files) == 1:
         text = read_plain_text(files[0])
         if not is_translated(text):
@@ -26,11 +26,11 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
                 f"{files[0]}: found one file that is not of Fast Downward's translator (it begins with "
                 f"{sas_reader.BEGINNING}), expected DOMAIN.pddl PROBLEM.pddl"
             )
-        with deadline.watched("reading"):
+        with deadline.watched("reading the task"):
             return sas_reader.parse_sas(text, str(files[0]))
     if len(files) != 2:
         raise UserError(f"found {len(files)} files, expected DOMAIN.pddl PROBLEM.pddl, or TASK.sas")
-    with deadline.watched("reading"):
+    with deadline.watched("reading the task"):
         task = read_pddl(*files)
     return relaxed(task, deadline)
 
