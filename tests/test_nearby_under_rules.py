@@ -1,8 +1,10 @@
 """Large stores under rules that may ask for units no goal needs: the answer of the whole, from less of it."""
 
 import random
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -26,18 +28,39 @@ from tests.test_nearby import LISTS, LONG, SHORT, asked, assert_same, stored
 
 UNITS = (Objective.UNITS,)
 WAVE = Settings((Path("require_motion"),), constants=('required_motion="wave"',))
+LABEL = Settings((Path("require_object"),), constants=('required_object="waved"',))
+# Each of these has the best tree of the first, and says less of the motion.
+EITHER = Settings(
+    (RuleText(':- not use(U) : motion(U,"wave"); not use(U) : output(U,O), label(O,"waved").'),)
+)
+WAVED_BY_NONE = Settings(
+    (RuleText(':- not use(U) : unit(U), not motion(U,"cook 0"), output(U,O), label(O,"waved").'),)
+)
+OF_ANOTHER = Settings(
+    (RuleText(':- not use(U) : output(U,O), label(O,"waved"), output(V,O), motion(V,"wave").'),)
+)
 
 
-def near_stew(folder: Path, *more: tuple[str, str, str], first: int = 4) -> Problem:
+def near_stew(
+    folder: Path,
+    *more: tuple[str, str, str],
+    first: int = 4,
+    long: Sequence[tuple[str, str, str]] = LONG,
+    rates: str = "",
+) -> Problem:
     """Ask for a stew by two ways, of 3 and of 12 units, and more units; bones and water are at hand."""
-    units = (*SHORT, *LONG, *more)
+    units = (*SHORT, *long, *more)
     text = "".join(
         "".join(f"O\t{each}\n" for each in needs.split("+")) + f"M\t{motion}\nO\t{give}\n//\n"
         for motion, needs, give in units
     )
     (folder / "stew.txt").write_text(text, encoding="utf-8")
     (folder / "kitchen.txt").write_text("O\twater\nO\tbones\n", encoding="utf-8")
-    import_files(DataFiles((folder / "stew.txt",), folder / "kitchen.txt"), folder / "stew.foon")
+    (folder / "motion.txt").write_text(rates, encoding="utf-8")
+    files = DataFiles(
+        (folder / "stew.txt",), folder / "kitchen.txt", folder / "motion.txt" if rates else None
+    )
+    import_files(files, folder / "stew.foon")
     dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
     assert isinstance(dataset, StoredDataset)
     return dataset.nearby(dataset.goals(["stew"]), "strict", first=first)
@@ -70,7 +93,7 @@ SLOW = (("soak", "water", "soaked"), ("fold", "soaked", "folded"), ("wave", "fol
 
 
 def test_a_unit_from_elsewhere_is_better_than_two_near_the_goals(tmp_path: Path) -> None:
-    problem = near_stew(tmp_path, *SLOW, ("wave", "bones", "waved"))
+    problem = near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved"))
     near = solve_nearby_under(problem, UNITS, WAVE, Reporter())
     assert near is not None
     assert near.costs is not None
@@ -85,6 +108,55 @@ def test_a_unit_from_elsewhere_is_better_than_two_near_the_goals(tmp_path: Path)
     assert found.costs is not None
     assert (found.status, found.costs.units) == (Status.OPTIMAL, 4)
     assert not read_little(problem)
+
+
+@pytest.mark.parametrize("asked", [WAVE, LABEL])
+def test_a_unit_that_the_kitchen_is_enough_for_is_found_wherever_it_is(
+    asked: Settings, tmp_path: Path
+) -> None:
+    problem = near_stew(tmp_path, *SLOW, ("wave", "bones+water", "waved"))
+    found = answered_under(problem, UNITS, asked)
+    assert found.costs is not None
+    assert (found.status, found.costs.units, read_little(problem)) == (Status.OPTIMAL, 4, True)
+
+
+RATES = "boil\t0.5\nplate\t1\nserve\t1\nwave\t0.92\n" + "".join(f"cook {n}\t1\n" for n in range(12))
+BY_SUCCESS = (Objective.SUCCESS,)
+
+
+@pytest.mark.parametrize(
+    ("asked", "little"),
+    [(WAVE, True), (LABEL, False), (EITHER, False), (WAVED_BY_NONE, False), (OF_ANOTHER, False)],
+)
+def test_by_success_a_unit_with_the_motion_asked_for_is_proved_the_best(
+    asked: Settings, little: bool, tmp_path: Path
+) -> None:
+    problem = near_stew(tmp_path, ("wave", "bones", "waved"), rates=RATES)
+    found = answered_under(problem, BY_SUCCESS, asked)
+    assert found.costs is not None
+    whole = solve(replace(problem.whole, origin=None), BY_SUCCESS, asked)
+    assert (found.status, found.costs) == (Status.OPTIMAL, whole.costs)
+    problem = near_stew(tmp_path, ("wave", "bones", "waved"), rates=RATES)
+    near = solve_nearby_under(problem, BY_SUCCESS, asked, Reporter())
+    assert (near is not None and near.status is Status.OPTIMAL) is little
+
+
+def test_by_success_a_tree_that_was_not_read_to_its_end_may_be_better(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The wave near the goal is 0.92 * 0.51 with what was not read, and one to spare 0.92 * 0.5."""
+    long = [*LONG[:-1], ("wave", "stock 11", "stew")]
+    rates = RATES.replace("cook 10\t1", "cook 10\t0.51")
+    monkeypatch.setattr(nearby_under_rules, "_READ", 1)
+    more = ("wave", "bones", "waved")
+    problem = near_stew(tmp_path, more, first=6, long=long, rates=rates)
+    near = solve_nearby_under(problem, BY_SUCCESS, WAVE, Reporter())
+    assert near is not None
+    assert near.costs is not None
+    assert (near.status, near.costs.success) == (Status.FEASIBLE, Fraction("0.46"))
+    found = answered_under(problem, BY_SUCCESS, WAVE)
+    assert found.costs is not None
+    assert (found.status, found.costs.success) == (Status.OPTIMAL, Fraction("0.4692"))
 
 
 WIDE = (
@@ -106,7 +178,7 @@ def test_what_units_that_were_not_read_make_may_lead_to_a_better_tree(tmp_path: 
 
 
 def test_what_rules_ask_for_may_be_far(tmp_path: Path) -> None:
-    problem = near_stew(tmp_path, ("wave", "bones", "waved"), first=1)
+    problem = near_stew(tmp_path, ("wave", "plated", "waved"), first=1)
     assert solve_nearby_under(problem, UNITS, WAVE, Reporter()) is None
     found = answered_under(problem, UNITS, WAVE)
     assert found.costs is not None

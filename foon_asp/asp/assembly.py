@@ -232,6 +232,22 @@ def leave_a_rest(settings: Settings) -> bool:
     return rules is not None and bool(rules.rest)
 
 
+def asked_for(settings: Settings) -> frozenset[str]:
+    """Give the motions, labels and ingredients that rules name where they ask for a unit; raises as above."""
+    rules = assemble(settings, lambda _: None).understood
+    return frozenset() if rules is None else rules.asked_for
+
+
+def motions_asked_for(settings: Settings) -> list[list[str]] | None:
+    """Give the motions for each unit that rules ask for, ``[]`` where it may have any; raises as above.
+
+    ``None`` where they see more than a tree, also where more is available, or do more than to rule units out
+    and to ask for one.
+    """
+    rules = assemble(settings, lambda _: None).understood
+    return None if rules is None else rules.varying({("available", 1)}).motions_asked_for()
+
+
 def asks_of_all(problem: Problem, settings: Settings) -> bool:
     """Whether rules that are added may be about units beyond what the goals can need.
 

@@ -20,7 +20,8 @@ class Nearby:
     """A question over the units near its goals; what the others are good for is not known yet.
 
     ``cone`` is what was read, ``pose`` makes the question over it, and ``read_all`` over all that the goals
-    can need. ``subject`` gives what a certificate of the answer speaks about.
+    can need. ``ready`` gives some units that execute with the kitchen and have a motion or label among some.
+    ``subject`` gives what a certificate of the answer speaks about.
     """
 
     def __init__(
@@ -28,9 +29,11 @@ class Nearby:
         cone: Cone,
         pose: Callable[[Cone], Problem],
         read_all: Callable[[], Problem],
+        ready: Callable[[Collection[str]], Iterable[int]],
         subject: "Callable[[], Subject]",
     ) -> None:
         self._cone, self._pose, self._read_all, self.subject = cone, pose, read_all, subject
+        self._ready = ready
 
     @cached_property
     def problem(self) -> Problem:
@@ -78,8 +81,16 @@ class Nearby:
         """Read as many units again, whichever lead to open objects."""
         self._grow(sorted(self._cone.open), len(self._cone.units))
 
+    def add_ready(self, words: Collection[str]) -> None:
+        """Read units that execute with the kitchen and have one of these words as motion or label."""
+        self._cone.add(self._ready(words))
+        self._forget()
+
     def _grow(self, objects: Iterable[int], more: int) -> None:
         self._cone.grow(objects, more)
+        self._forget()
+
+    def _forget(self) -> None:
         for known in ("problem", "relaxed"):
             self.__dict__.pop(known, None)
 

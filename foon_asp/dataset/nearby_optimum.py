@@ -78,11 +78,18 @@ def solve_nearby(
         return found
 
 
-def least_with_one_more(costs: Costs, order: Sequence[Objective]) -> tuple[object, ...]:
-    """Give the key that no tree is better than which has a unit more than one that costs this or more."""
-    least: list[object] = [*costs.key(order)]
-    least[order.index(Objective.UNITS)] = costs.units + 1
-    return tuple(least)
+def least_with_one_more(
+    costs: Costs, order: Sequence[Objective], rate: Fraction = Fraction(1)
+) -> tuple[int | Fraction, ...]:
+    """Give the key that no tree is better than which has a unit more than one that costs this or more.
+
+    ``rate`` is the greatest success rate that the unit can have, above 0.
+    """
+    least = dict(zip(order, costs.key(order), strict=True))
+    least[Objective.UNITS] += 1
+    if Objective.SUCCESS in least:
+        least[Objective.SUCCESS] *= rate
+    return tuple(least.values())
 
 
 class _OnlyWarnings(Reporter):

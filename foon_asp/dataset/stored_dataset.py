@@ -331,6 +331,7 @@ class StoredDataset(Dataset):
                 cone,
                 lambda cone: self._posed(cone, containers, None),
                 lambda: self.problem(goals, containers),
+                self._store.ready,
                 lambda: self.subject(everything=False),
             ),
             lambda goals: self.nearby(goals, containers, None, first),

@@ -22,7 +22,7 @@ from foon_asp.problem import Contradiction, Problem, Restriction, reach
 from foon_asp.rules.clause import Clause, Signature, literals, written
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.flat_answers import FlatAnswers
-from foon_asp.rules.flat_body import Asking, FlatBodies, NotFlatError, Way
+from foon_asp.rules.flat_body import Asking, Constant, Fact, FlatBodies, Item, NotFlatError, Way
 from foon_asp.rules.lifted_program import NOBODY, LiftedProgram, stands_alone
 from foon_asp.rules.limit import Limit, Limiting, limiting
 from foon_asp.rules.number_limits import number_checks
@@ -182,6 +182,25 @@ class Rules:
             if rule.kind in {Kind.FACT, Kind.DELETING}
             or (rule.one_of and (number in self._flat or stands_alone(self._live[number])))
         ]
+
+    @property
+    def asked_for(self) -> frozenset[str]:
+        """The motions, labels and ingredients that rules name where they ask for a unit with them."""
+        ways = [way for flat in self._flat.values() for asking in flat.askings for way in asking.helping]
+        return frozenset(name for way in ways for name in _named(way, {"motion", "label", "ingredient"}))
+
+    def motions_asked_for(self) -> list[list[str]] | None:
+        """Give the motions for each unit that is asked for, ``[]`` where it may have any.
+
+        ``None`` where rules see more than a tree, or do more than to rule units out and to ask for one.
+        """
+        if not self.local or self.rest or not self._flat.keys() >= set(self._settled):
+            return None
+        found = []
+        for asking in (each for flat in self._flat.values() for each in flat.askings):
+            motions = [_named(way._replace(items=_of_unit(way)), {"motion"}) for way in asking.helping]
+            found.append([name for names in motions for name in names] if all(motions) else [])
+        return found
 
     @cached_property
     def _flat(self) -> "dict[int, _Flat]":
@@ -345,6 +364,18 @@ def _ids(problem: Problem, numbers: Iterable[int]) -> frozenset[int]:
     """Give units by id that are known by their numbers in the whole network."""
     found = map(problem.network.unit_of_number, numbers)
     return frozenset(unit for unit in found if unit is not None)
+
+
+def _of_unit(way: Way) -> tuple[Item, ...]:
+    """Give the facts about the unit that a way takes."""
+    return tuple(item for item in way.items if isinstance(item, Fact) and item.terms[0] == way.unit)
+
+
+def _named(way: Way, predicates: Collection[str]) -> list[str]:
+    """Give the texts that facts of the unit of a way, or of what it has, state in a rule."""
+    facts = (item for item in way.items if isinstance(item, Fact) and item.signature[0] in predicates)
+    terms = (fact.terms[-1] for fact in facts)
+    return [term.value for term in terms if isinstance(term, Constant) and isinstance(term.value, str)]
 
 
 def _saying(statements: Iterable[AST]) -> list[AST]:

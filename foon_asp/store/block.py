@@ -7,7 +7,7 @@ from zlib import crc32
 from foon_asp.text.json_value import read_json
 
 APPLICATION_ID = 0x464F4F4E  # "FOON", in SQLite's header
-VERSION = 4  # of what is in the tables; SQLite's user_version
+VERSION = 5  # of what is in the tables; SQLite's user_version
 
 _CHECKSUM = 4  # bytes in front of every block
 

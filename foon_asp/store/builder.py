@@ -11,7 +11,7 @@ from typing import Any
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, sealed, table_statement, unseal
-from foon_asp.store.label_index import LISTED, trigram_blocks, trigram_values
+from foon_asp.store.label_index import LISTED, READY, trigram_blocks, trigram_values
 from foon_asp.store.numbering import Numbering
 from foon_asp.store.plain_values import (
     entry_values,
@@ -62,11 +62,15 @@ class StoreBuilder:
         self._latest: dict[ObjectNode, int] = {}  # the numbers of some nodes
         self._same: dict[int, int] = {}  # the same by the address of the object in _latest
         self._needed = bytearray()  # by node: whether a unit has it as an input
+        self._at_hand = bytearray()  # by node: whether it is in the kitchen
         self._units = Numbering()
         self._motions: dict[str, int] = {}
         self._motion_sources: list[Source] = []  # of the first unit with each
         self._motion_of = array("I")  # by unit
         self._without_outputs: list[int] = []  # units
+        # the first units that execute with what is in the kitchen: by motion, and by label of what they have
+        self._ready: list[list[int]] = []
+        self._ready_with: dict[int, list[int]] = {}
         self._origins: dict[tuple[str, tuple[str, ...]], int] = {}
         self._last_origin: tuple[str, tuple[str, ...]] | None = None
         self._last_number = -1
@@ -105,6 +109,7 @@ class StoreBuilder:
         motion_id = self._motions.setdefault(motion, len(self._motions))
         if motion_id == len(self._motion_sources):
             self._motion_sources.append(sources[0])
+            self._ready.append([])
             self._digests.add_motion(motion)
         places: list[int] = []
         for file, line, column, videos in sources:
@@ -125,6 +130,8 @@ class StoreBuilder:
                 self._without_outputs.append(unit)
             for o in ins:
                 self._needed[o] = 1
+            if all(map(self._at_hand.__getitem__, ins)):
+                self._note_ready(unit, motion_id, (*ins, *outs))
             self._made.extend(outs)
             self._makers.extend([unit] * len(outs))
             if len(block) == SIZES[Table.UNIT]:
@@ -195,7 +202,7 @@ class StoreBuilder:
         trigrams = trigram_blocks(labels)
         self._write_all(Table.TRIGRAM, trigram_values(trigrams))
         motions = (
-            [motion, *source[:3], *lacking[0][number], *lacking[1][number]]
+            [motion, *source[:3], self._ready[number], *lacking[0][number], *lacking[1][number]]
             for number, (motion, source) in enumerate(self.motion_sources())
         )
         self._write_values(Table.MOTION, motions)
@@ -270,7 +277,9 @@ class StoreBuilder:
             if counts[label] <= LISTED:
                 first[label].append(node)
         return (
-            [label, counts[number], first[number]] for label in labels for number in (self._labels[label],)
+            [label, counts[number], first[number], self._ready_with.get(number, [])]
+            for label in labels
+            for number in (self._labels[label],)
         )
 
     def _new_node(self, node: ObjectNode, number: int, texts: tuple[str, ...], content: bytes) -> None:
@@ -284,10 +293,17 @@ class StoreBuilder:
                     in_kitchen = self.matched[entry] = True
         self._label_of.append(self._labels.setdefault(node.label, len(self._labels)))
         self._needed.append(0)
+        self._at_hand.append(in_kitchen)
         self._digests.add_node(number, content, in_kitchen)
         self._node_block.append(node_values(texts, in_kitchen))
         if len(self._node_block) == SIZES[Table.NODE]:
             self._flush_nodes(number)
+
+    def _note_ready(self, unit: int, motion: int, nodes: Iterable[int]) -> None:
+        labels = {self._label_of[o] for o in nodes}
+        for ready in (self._ready[motion], *(self._ready_with.setdefault(each, []) for each in labels)):
+            if len(ready) < READY:
+                ready.append(unit)
 
     def _ids(self, nodes: Iterable[ObjectNode]) -> list[int]:
         # The reader gives one object for each node: knowing that object is quicker than comparing nodes.

@@ -1,7 +1,7 @@
 """A store, opened to ask questions: names, and the part of the network that a question is about."""
 
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -43,6 +43,7 @@ class Store:
         self._counts = about
         labels = LabelIndex(self._file, about["labels"], about["trigram_blocks"])
         self.labelled, self.beginning, self.near = labels.labelled, labels.beginning, labels.near
+        self._ready_with = labels.ready_with
         self._nodes: dict[int, ObjectNode] = {}
         # what there is of each by number
         tables = Table.UNIT, Table.NODE, Table.PRODUCERS, Table.MOTION, Table.ORIGIN, Table.PRICE
@@ -290,6 +291,15 @@ class Store:
         """Give the units that have a node as an output, in order."""
         found: list[int] = self._makers(object_id)
         return found
+
+    def ready(self, words: Collection[str]) -> set[int]:
+        """Give some units that execute with what is in the kitchen that was imported, if there are any.
+
+        They have one of these words as their motion, or an object node with it as its label.
+        """
+        motions = map(self._motion, range(self._counts["motions"]))
+        found = {unit for motion, *_, ready, _, _, _, _ in motions if motion in words for unit in ready}
+        return found.union(*map(self._ready_with, words))
 
     def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
         """Give the motion, the inputs, the outputs and the places of a unit."""
