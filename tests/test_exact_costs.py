@@ -354,6 +354,11 @@ def test_a_price_is_on_units_that_count_and_a_limit_is_met_by_a_bound_or_a_tree(
     limited = costs.priced(lambda action: action != 1, 1000, 1086)
     assert [limited.met(Cuts(bound, {}, []), {0, 1}) for bound in (1085, 1086)] == [False, True]
     assert [limited.met(Cuts(0, {}, []), tree) for tree in ({0}, {2, 3}, {0, 1})] == [True, False, False]
+    # at a fraction, all are whole
+    third = costs.priced(lambda action: action != 1, Fraction(1, 3))
+    assert list(map(third, range(6))) == [3 * 29 + 1, 3 * 57, 3 * 85 + 1, 21, 21, 21]
+    halves = costs_of("1/2", "1/4")
+    assert halves.priced(lambda action: True, Fraction(2, 3)).doubt == 3 * halves.doubt > 0
     # where rates are rounded, no bound proves anything with a price, which is no product of rates
     rounded = costs_of("1/2", "1/4").priced(lambda action: True, 5)
     assert [rounded.met(Cuts(rounded(0) + more, {}, []), {0}) for more in (-1, 0, 9)] == [False] * 3

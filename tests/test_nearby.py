@@ -122,7 +122,8 @@ def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: 
 def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def stopped(*asked: object) -> None:
+    def stopped(*asked: object, quickly: bool) -> None:
+        assert not quickly
         raise LimitError(Deadline(0))
 
     dataset = two_ways(tmp_path)
@@ -190,8 +191,8 @@ def test_rows_of_a_batch_are_those_of_the_text(tmp_path: Path, monkeypatch: pyte
     whole: list[object] = []
 
     class Counted(Nearby):
-        def grow(self, objects: object) -> None:
-            super().grow(objects)  # type: ignore[arg-type]
+        def grow(self, objects: object, quickly: bool = False) -> None:
+            super().grow(objects, quickly)  # type: ignore[arg-type]
             read_on.append(objects)
 
         def whole(self) -> Problem:
@@ -248,8 +249,8 @@ def test_the_command_reads_near_the_goal(tmp_path: Path, cli: Cli, monkeypatch: 
     read: list[int] = []
 
     class Counted(Nearby):
-        def grow(self, objects: object) -> None:
-            super().grow(objects)  # type: ignore[arg-type]
+        def grow(self, objects: object, quickly: bool = False) -> None:
+            super().grow(objects, quickly)  # type: ignore[arg-type]
             read.append(len(self.problem.network))
 
     monkeypatch.setattr("foon_asp.dataset.stored_dataset.Nearby", Counted)
@@ -355,6 +356,24 @@ def test_a_rule_on_whole_trees_is_asked_about_where_the_best_one_without_it_was_
     assert last[0] == rules
     assert {constraints for constraints, _ in before} == {() if without else rules}
     assert min(size for _, size in before) < last[1]
+
+
+def test_more_is_read_each_time_where_the_best_tree_without_a_rule_was_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    grow, read = Nearby.grow, []
+
+    def noted(near: Nearby, objects: Sequence[int], quickly: bool) -> None:
+        grow(near, objects, quickly)
+        read.append((quickly, len(near.problem.network)))
+
+    monkeypatch.setattr(Nearby, "grow", noted)
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    rule = RuleText(':- #count { U : use(U), motion(U,"boil") } > 0.')
+    found = answered_nearby(near, [Objective.UNITS], Settings((rule,)))
+    assert (found.status, found.costs and found.costs.units) == (Status.OPTIMAL, 12)
+    assert read == [*((False, size) for size in (3, 4, 5, 6)), *((True, size) for size in (8, 10, 13, 15))]
 
 
 def random_look(rng: random.Random, one: str) -> Settings:

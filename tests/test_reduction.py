@@ -683,3 +683,36 @@ def test_rounds_come_to_an_end_where_something_is_left_out_each_time(monkeypatch
     rounds = 0
     found = reduction.at_costs(found.wide, UNITS, found.wide.costs, lambda: False)
     assert (rounds, len(found.units), found.settled) == (6, 34, False)
+
+
+@pytest.mark.parametrize(
+    ("dropped", "many", "below", "given_up"),
+    [
+        (3, 30, 9, True),  # hardly any of many
+        (3, 36, 9, True),
+        (3, 37, 9, False),  # too few are left
+        (4, 30, 9, False),  # a tenth
+        (3, 30, 0, False),  # nothing but a good tree was asked for
+    ],
+)
+def test_what_leaves_out_hardly_any_at_first_is_given_up(
+    dropped: int, many: int, below: int, given_up: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = plain_problem([([0], [1])] * 40, [1])
+    wide = reduce(problem, UNITS, rest=True).wide
+    assert wide is not None
+    cuts = []
+
+    def none(*_: object) -> Cuts:
+        cuts.append(Cuts(0, {}, []))
+        return cuts[-1]
+
+    def fewer(_graph: Graph, left: Collection[int], *_: object) -> set[int]:
+        return {*sorted(left)[:-dropped]} if len(left) == 40 else {*left}
+
+    monkeypatch.setattr(reduction, "landmark_cuts", none)
+    monkeypatch.setattr(reduction, "dear_left_out", fewer)
+    found = reduction.at_costs(wide, UNITS, wide.costs, lambda: False, {0}, below, many)
+    assert (len(cuts) == 1) is given_up
+    assert not found.settled
+    assert len(found.units) == 40 - dropped or not below

@@ -1,5 +1,6 @@
 """A limit on how many of some units a tree has, by prices, against all trees there are."""
 
+import math
 import random
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
@@ -30,12 +31,15 @@ def _no_cases(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.sampled(2)
+@pytest.mark.parametrize("rising", [False, True])
 @pytest.mark.parametrize("improving", [True, False])
 @pytest.mark.parametrize("seeds", [range(40), pytest.param(range(40, 600), marks=pytest.mark.slow)])
 def test_better_trees_within_a_limit_are_within_what_is_left(
-    seeds: range, improving: bool, monkeypatch: pytest.MonkeyPatch
+    seeds: range, improving: bool, rising: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also where trees are not improved, so that prices and bounds have to bear bad ones."""
+    if rising:
+        monkeypatch.setattr(module, "_MANY", 0)
     if not improving:
         monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
     none = left_out = unknown = 0
@@ -291,16 +295,28 @@ class Teller:
         self.wide = wide  # the bound of its cuts is 1
         self.costs: list[ExactCosts] = []
         self.known: list[tuple[Collection[int], int]] = []
+        self.many: list[float] = []
+        self.left: list[set[int]] = []
         self._told = told
 
     @property
-    def prices(self) -> list[int]:
-        return [costs(0) - costs(10) for costs in self.costs]
+    def prices(self) -> list[Fraction]:
+        """What was asked for each unit that counts, where others cost 1."""
+        return [Fraction(costs(0), costs(10)) - 1 for costs in self.costs]
 
     def limited(self, most: int, monkeypatch: pytest.MonkeyPatch) -> Limited | None:
         """Ask with a tree of 8 units, 5 of which count."""
         monkeypatch.setattr(module, "at_costs", self)
         return limited(self.wide, UNITS, picked(5, 3), lambda unit: unit < 10, most, lambda: False)
+
+    def rising(self, best: frozenset[int], monkeypatch: pytest.MonkeyPatch) -> Limited:
+        """Ask at rising prices, from 2, where at most 2 units that count are within the limit."""
+        monkeypatch.setattr(module, "at_costs", self)
+        monkeypatch.setattr(module, "_LOW", Fraction(2))
+        over = picked(5, 3)
+        return module._by_rising_prices(
+            self.wide, UNITS, best, over, lambda unit: unit < 10, 2, lambda: False
+        )
 
     def __call__(
         self,
@@ -310,12 +326,14 @@ class Teller:
         expired: Callable[[], bool],
         known: Collection[int],
         below: int,
+        many: float,
     ) -> Reduced:
-        assert (wide, objectives, expired()) == (self.wide, UNITS, False)
-        assert costs(10) == 1
+        assert (wide.cuts, objectives, expired()) == (self.wide.cuts, UNITS, False)
         tree, bound, left = self._told[len(self.costs)]
         self.costs.append(costs)
         self.known.append((known, below))
+        self.many.append(many)
+        self.left.append(set(wide.left))
         return Reduced(tree, tuple(range(left)), False, None, bound, None)
 
 
@@ -353,8 +371,10 @@ def test_prices_follow_from_what_was_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(module, "_FEW", 7)
+    monkeypatch.setattr(module, "_MANY", 9)
     teller = Teller(told)
     found = teller.limited(2, monkeypatch)
+    assert teller.many == [math.inf, *[9] * len(prices)]
     assert teller.prices == [31, *prices]  # the first is more than all units cost
     assert found == Limited(tree, None if left is None else frozenset(range(left)))
     assert teller.known[0] == (frozenset(), 0)
@@ -366,6 +386,110 @@ def test_prices_follow_from_what_was_told(
         best.append(each if better else best[-1])
     wanted = zip(best, prices, strict=False)
     assert teller.known[1:] == [(tree, len(tree or ()) + 2 * price) for tree, price in wanted]
+
+
+# --- The same where prices rise. They end with one question more, at the price of the greatest bound.
+
+FAR = picked(2, 20)  # within the limit: 14 units more for 3 fewer that count
+OVER = picked(5, 3)
+
+
+@pytest.mark.parametrize(
+    ("best", "told", "prices", "tree"),
+    [
+        # none is asked for where the tree within the limit is as good
+        (picked(2, 6), [], [], picked(2, 6)),
+        (picked(1, 2), [], [], picked(1, 2)),
+        (FAR, [(None, 99)], [2], FAR),
+        # a tree with as many as may be is the best at its price; prices are fractions, too
+        (FAR, [(picked(2, 12), 18)], [2], picked(2, 12)),
+        (picked(1, 12), [(picked(2, 10), 0)], ["5/4"], picked(2, 10)),
+        # they rise until a tree is within the limit, or costs as much as the one in hand
+        (FAR, [(OVER, 18), (picked(2, 12), 22)], [2, 4], picked(2, 12)),
+        (FAR, [(OVER, 0), (picked(3, 8), 0), (picked(2, 12), 0)], [2, 4, 8], picked(2, 12)),
+        (FAR, [(OVER, 0), (OVER, 0), (OVER, 0)], [2, 4, "14/3"], FAR),
+        (FAR, [(OVER, 0), (OVER, 0), (FAR, 0)], [2, 4, "14/3"], FAR),
+        # then a tree within the limit or beyond it comes instead of the one before
+        (FAR, [(picked(1, 11), 0), (OVER, 0)], [2, 1], picked(1, 11)),
+        (FAR, [(picked(1, 11), 0), (picked(3, 6), 0), (picked(1, 11), 0)], [2, 1, "3/2"], picked(1, 11)),
+        (FAR, [(picked(1, 13), 0), (picked(1, 9), 0), (picked(1, 9), 0)], [2, "3/2", "1/2"], picked(1, 9)),
+        # a tree that is no better ends it
+        (picked(2, 13), [(picked(1, 14), 0)], [2], picked(2, 13)),
+    ],
+)
+def test_rising_prices_follow_from_what_was_told(
+    best: frozenset[int],
+    told: list[tuple[frozenset[int] | None, int]],
+    prices: list[int | str],
+    tree: frozenset[int],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = [*map(Fraction, prices)]
+    bounds = [Fraction(bound, p.denominator) - 2 * p for p, (_, bound) in zip(asked, told, strict=True)]
+    last = [max(zip(bounds, asked, strict=True))[1]] if told and told[-1][0] else []
+    teller = Teller([*((tree, bound, 9) for tree, bound in told), (None, 0, 0)])
+    assert teller.rising(best, monkeypatch) == Limited(tree)
+    assert teller.prices == [*asked, *last]
+    assert teller.many == [math.inf] * len(teller.prices)
+    assert teller.known[: len(told)] == [(frozenset(), 0)] * len(told)
+    # what is better than the best tree within the limit costs less than that and the price of two
+    assert teller.known[len(told) :] == [(tree, len(tree) * p.denominator + 2 * p.numerator) for p in last]
+
+
+def test_so_many_rising_prices_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_RISING", 2)
+    teller = Teller([(OVER, 0, 9), (OVER, 0, 9), (None, 0, 0)])
+    assert teller.rising(FAR, monkeypatch) == Limited(FAR)
+    assert teller.prices == [2, 4, 2]
+
+
+@pytest.mark.parametrize(
+    ("last", "found"),
+    [
+        ((OVER, 0, 9), Limited(picked(2, 12), frozenset(range(9)))),
+        ((picked(2, 12), 0, 8), Limited(picked(2, 12), frozenset(range(8)))),
+        ((picked(2, 11), 0, 8), Limited(picked(2, 11), frozenset(range(8)))),
+        ((picked(1, 11), 0, 8), Limited(picked(1, 11), frozenset(range(8)))),
+        ((picked(3, 9), 0, 8), Limited(picked(2, 12), frozenset(range(8)))),
+        ((None, 0, 8), Limited(picked(2, 12))),
+    ],
+)
+def test_the_price_of_the_greatest_bound_leaves_units(
+    last: Told, found: Limited, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for bound, price in ((23, 4), (21, 2)):
+        teller = Teller([(OVER, 18, 9), (picked(2, 12), bound, 9), last])
+        assert teller.rising(FAR, monkeypatch) == found
+        assert teller.prices == [2, 4, price]
+        assert teller.known[-1] == (picked(2, 12), 14 + 2 * price)
+
+
+def test_units_of_dearer_trees_are_no_longer_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    limits = []
+
+    def within(_: Wide, limit: int, expired: Callable[[], bool]) -> Collection[int]:
+        limits.append((limit, expired()))
+        return range(limit - 1)
+
+    monkeypatch.setattr(Wide, "actions_within", within)
+    teller = Teller([(OVER, 0, 9), (picked(2, 12), 0, 9), (None, 0, 0)])
+    assert teller.rising(FAR, monkeypatch) == Limited(picked(2, 12))
+    assert limits == [(22, False), (14, False)]
+    far = {*range(21), *FAR}
+    assert teller.left == [far, far, {*range(13), *picked(2, 12)}]
+
+
+@pytest.mark.parametrize("many", [9, 10])
+def test_prices_rise_where_the_first_leaves_too_many(many: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_MANY", many)
+    teller = Teller([(FAR, 0, 0), (FAR, 0, 10), (picked(2, 12), 18, 9), (None, 0, 0)])
+    found = teller.limited(2, monkeypatch)
+    rising = [Fraction(3, 2)] * 2
+    assert teller.prices == [31, 5, *(rising if many < 10 else [])]
+    if many < 10:
+        assert found == Limited(picked(2, 12))
+    else:
+        assert found == Limited(FAR, frozenset(range(10)))
 
 
 @pytest.mark.parametrize("most", range(3))

@@ -33,8 +33,9 @@ def solve_nearby(
     What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
     is a tree of the whole network, and none there costs less; else more is read of what leads to what it
     takes. In the end everything is read. Rules of the user's have to hold for parts of trees; what the best
-    tree without them takes is read before they are asked about. ``None`` where there is no tree even so, and
-    rules are not all that there is to it: why is then a question about all that could lead to the goals.
+    tree without them takes is read before they are asked about, and then more each time. ``None`` where there
+    is no tree even so, and rules are not all that there is to it: why is then a question about all that could
+    lead to the goals.
     """
     reporter = reporter or Reporter()
     deadline = how.begun
@@ -61,7 +62,7 @@ def solve_nearby(
         if lacking and found.status is Status.OPTIMAL:
             try:
                 with deadline.watched("reading"):  # and not late, so that there is time for a tree
-                    near.grow(lacking)
+                    near.grow(lacking, quickly=without is not None)
                 continue
             except LimitError as limit:
                 found = found._replace(proof=None, stopped=limit.stopped)

@@ -50,16 +50,21 @@ class ExactCosts:
         self._known: dict[int, int] = {}
         self._actions = actions
         self._price: Callable[[int], int] | None = None
+        self._times = 1
         self._limit: int | None = None
 
-    def priced(self, counts: Callable[[int], int], price: int, limit: int | None = None) -> "ExactCosts":
+    def priced(
+        self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
+    ) -> "ExactCosts":
         """Give the same costs with a price on each unit, as many times as it counts.
 
-        With a ``limit``, they are met as soon as a bound reaches it, or a tree stays below it.
+        Where the price is a fraction, all are as many times as much as makes them whole. With a ``limit``,
+        they are met as soon as a bound reaches it, or a tree stays below it.
         """
         units, costs = self._units, copy(self)
-        costs._known, costs._limit = {}, limit
-        costs._price = lambda action: price * counts(action) if action < units else 0
+        whole, costs._times = Fraction(price).as_integer_ratio()
+        costs._known, costs._limit, costs.doubt = {}, limit, self.doubt * costs._times
+        costs._price = lambda action: whole * counts(action) if action < units else 0
         return costs
 
     @property
@@ -96,7 +101,7 @@ class ExactCosts:
         """Give what an action costs."""
         cost = self._known.get(action)
         if cost is None:
-            cost = sum(self._figure(o, action) * factor for o, factor in self._factors.items())
+            cost = self._times * sum(self._figure(o, action) * factor for o, factor in self._factors.items())
             cost += self._price(action) if self._price else 0
             self._known[action] = cost
         return cost

@@ -123,11 +123,12 @@ def at_costs(
     expired: Callable[[], bool],
     in_hand: Collection[int] = (),
     below: int = 0,
+    many: float = math.inf,
 ) -> Reduced:
     """Ask the same for other costs; ``in_hand`` is a tree.
 
     With ``below``, only units are left out that only trees have that cost as much, and no less than the tree
-    found.
+    found. That is given up where the first cuts leave out hardly any, and more than ``many``.
     """
     with uncollected():
         reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
@@ -138,7 +139,7 @@ def at_costs(
         if not isinstance(wide.left, range):  # other objectives may count no items
             reducer.known = {action for action in wide.left if action < len(reducer.graph.needs)}
         reducer.in_hand, reducer.below = wide.actions(in_hand), below
-        reducer.rounds = _FEW
+        reducer.rounds, reducer.many = _FEW, many
         if below:  # what is left goes to clingo with a tree in hand
             reducer.small = _EASY
         return reducer.reduce(nullcontext)
@@ -160,6 +161,7 @@ class _Reducer:
         self.expired, self.listener, self.spare, self.rest = expired, listener, spare, rest
         self.extended = extended  # so costs of all actions are asked for later
         self.rounds, self.effort, self.small = _ROUNDS, _EFFORT, _SMALL
+        self.many = math.inf  # are too many where hardly any are left out
         self.extending = False  # some trees were left out before there were cuts
         self.graph: Graph = graph_of(problem, objectives)
         self.coarse: Callable[[int], int] = CoarseCosts(problem, objectives[0])
@@ -299,10 +301,15 @@ class _Reducer:
             if self._met(costs, Cuts(0, {}, [])):
                 return True
         thorough = False  # as a last resort
-        for _ in range(self.rounds):
+        for turn in range(self.rounds):
             before = len(self.left), self.tree
             if costs is not None and self.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
                 cuts = self._bound(costs, guide)
+                lazy = isinstance(self.left, range)  # so most of it leads to no goal, and is left out anyway
+                if not turn and self.below and not lazy and len(self.left) > self.many:
+                    self._drop_dear(costs, cuts)  # what is dear does not depend on the trees found
+                    if len(self.left) > max(self.many, _WORTH * before[0]):
+                        return False
                 met = self._met(costs, cuts)
                 if not met and not self.expired():
                     self._improve(costs, cuts, thorough)
