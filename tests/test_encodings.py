@@ -258,7 +258,7 @@ def test_facts_are_what_the_table_says() -> None:
     settings = Settings(constraints=(Path("only_sources"),))
     parse_string(bare_program(problem, OBJECTIVES, settings, {}).facts, statements.append)
     assert survey(statements).heads == everything - {("video", 2)}  # the bundled kitchen names none
-    assert second_step == {("_exponent", 3), ("_product", 3), ("_seen", 1), ("_wanted", 1)}
+    assert second_step == {("_exponent", 3), ("_product", 3), ("_seen", 1), ("_fewer", 2), ("_wanted", 1)}
 
 
 def test_every_constant_is_in_the_table_with_its_own_value() -> None:
@@ -670,6 +670,10 @@ def test_exact_success_rules_out_seen_products_and_keeps_the_wanted_one() -> Non
     assert trees(0, sliced) == TREES
     assert trees(0, sliced + "_seen(0).") == TREES - {SLICED}
     assert trees(7, quarter + "_seen(7).") == TREES - {CRANKED}
+    assert trees(
+        7, quarter + f"_seen(7). _fewer(7,{len(CRANKED)}). _fewer(8,{len(CRANKED) + 1})."
+    ) == TREES - {CRANKED}
+    assert trees(7, quarter + f"_seen(7). _fewer(7,{len(CRANKED) + 1}).") == TREES
     assert trees(2, third + "_wanted(2).") == {SLICED | {WASH_APPLE}, SLICED | {WASH_KNIFE}}
 
 

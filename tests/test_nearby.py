@@ -7,11 +7,12 @@ from contextlib import nullcontext
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import foon_asp
-from foon_asp.asp import Proof, Reporter, Settings, Status, solve
+from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.asp.assembly import hold_for_parts
 from foon_asp.asp.outcome import Outcome
 from foon_asp.batch.answer_row import answer_row
@@ -141,6 +142,39 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
     assert found.bounds[Objective.UNITS] == 1
 
 
+@pytest.mark.parametrize("at_limit", [1, 2])
+def test_at_a_limit_the_tree_of_the_fewest_units_is_one_that_keeps_to_the_rules(
+    at_limit: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[Objective] = []
+
+    def stopped(
+        problem: Problem, by: Sequence[Objective], how: Settings, *more: Any, **known: Any
+    ) -> Outcome:
+        found = solve(problem, by, how, *more, **known)
+        looks.extend(by if how.constraints else ())
+        if looks.count(Objective.INPUTS) < 3 - at_limit or looks[-1] is Objective.UNITS:
+            return found
+        at_once = found._replace(status=Status.UNKNOWN, units=None, costs=None, proof=None)
+        return at_once._replace(stopped="a limit", bounds={})
+
+    monkeypatch.setattr(nearby_optimum, "solve", stopped)
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    how = Settings((Path("before"),), constants=("earlier_motion=serve", "later_motion=plate"))
+    found = answered_nearby(near, [Objective.INPUTS], how)
+    assert (found.stopped, found.proof) == ("a limit", None)
+    if at_limit == 2:  # before the fewest units were asked about
+        assert (found.status, found.units) == (Status.UNKNOWN, None)
+        return
+    assert Objective.UNITS in looks
+    assert (found.status, found.costs and found.costs.units) == (Status.FEASIBLE, 12)
+    assert found.tree is not None
+    assert len(found.tree.units) == 12
+    assert found.costs is not None
+    assert found.bounds[Objective.INPUTS] <= found.costs.inputs
+
+
 @pytest.mark.parametrize("rules", [(), (RuleText(":- #count { U : use(U) } > 20."),)])
 @pytest.mark.parametrize("weak", [{}, {Objective.UNITS: 0}])
 def test_a_limit_keeps_the_bound_of_what_was_asked_before(
@@ -151,9 +185,9 @@ def test_a_limit_keeps_the_bound_of_what_was_asked_before(
 ) -> None:
     looks = 0
 
-    def stopped(problem: Problem, by: tuple[Objective, ...], how: Settings, reporter: Reporter) -> Outcome:
+    def stopped(problem: Problem, by: Sequence[Objective], how: Settings, *more: Any) -> Outcome:
         nonlocal looks
-        found, looks = solve(problem, by, how, reporter), looks + 1
+        found, looks = solve(problem, by, how, *more), looks + 1
         if looks < 4 and not (rules and how.constraints):
             return found
         return found._replace(status=Status.FEASIBLE, proof=None, stopped="a limit", bounds=dict(weak))
@@ -342,9 +376,9 @@ def test_a_rule_on_whole_trees_is_asked_about_where_the_best_one_without_it_was_
 ) -> None:
     asked_under = []
 
-    def heard(problem: Problem, by: tuple[Objective, ...], how: Settings, reporter: Reporter) -> Outcome:
+    def heard(problem: Problem, by: tuple[Objective, ...], how: Settings, *more: Any) -> Outcome:
         asked_under.append((how.constraints, len(problem.network)))
-        return solve(problem, by, how, reporter)
+        return solve(problem, by, how, *more)
 
     monkeypatch.setattr(nearby_optimum, "solve", heard)
     dataset = two_ways(tmp_path)

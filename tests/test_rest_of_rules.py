@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,7 +16,7 @@ from foon_asp.asp import Outcome, Proof, Settings, Status, solve
 from foon_asp.asp import prepared as prepared_module
 from foon_asp.asp import solver as solver_module
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.prepared import prepare
+from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.solver import Reporter, _Heard, _Solver
 from foon_asp.deadline import Deadline
@@ -331,20 +332,88 @@ def test_rounding_hides_nothing_among_loose_ends(monkeypatch: pytest.MonkeyPatch
 def test_a_tree_of_the_fewest_units_is_not_held_against_those_that_are_as_good(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    searches = Searches(monkeypatch)
+    fewer: list[dict[int, int]] = []
+
+    def written(units: dict[int, int]) -> str:
+        fewer.append(units)
+        return ""
+
+    monkeypatch.setattr("foon_asp.encoding.facts.write_fewer", written)
     few = replace(LOOSE, rates=dict.fromkeys(LOOSE.network.motions, Fraction(1, 2)))
     outcome = asked(few, APART, Objective.SUCCESS)
     assert outcome.costs is not None
     assert (outcome.costs.success, outcome.costs.units) == (Fraction(1, 64), 6)
-    ran = len(searches.modes)
-    searches.modes.clear()
+    assert fewer == [{}]
     many = replace(
         few, rates={**(few.rates or {}), **dict.fromkeys(("cut", "dry", "hang", "soak"), Fraction(1))}
     )
     outcome = asked(many, APART, Objective.SUCCESS)
     assert outcome.costs is not None
     assert (outcome.costs.success, outcome.costs.units) == (Fraction(1, 8), 7)
-    assert len(searches.modes) == ran + 1
+    assert fewer[1:] == [{0: 7}]
+
+
+def test_loose_ends_begin_with_what_mattered_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks = Looks(monkeypatch)
+    known = set[int]()
+    first = solve(LOOSE, (Objective.UNITS,), Settings((given_constraint(APART),)), known=known)
+    assert known > {2, 4, 12, 13, 14}
+    asked_before, looks.units = len(looks.units), []
+    monkeypatch.setattr(Prepared, "keeps", None)  # that is known, and that nothing else tells
+    for step in ("_by_cases", "_within_limits"):
+        monkeypatch.setattr(_Solver, step, None)
+    again = solve(LOOSE, (Objective.UNITS,), Settings((given_constraint(APART),)), known=known)
+    assert again.costs == first.costs
+    assert len(looks.units) == 1 < asked_before
+
+
+def test_the_best_tree_without_the_rest_is_not_looked_for_again() -> None:
+    found: dict[tuple[str, bool], Reduced] = {}
+    for rule, brief in product((APART, ""), (False, True)):
+        settings = Settings((given_constraint(rule),) if rule else ())
+        heard = _Heard(LOOSE, (Objective.UNITS,), Reporter())
+        program = assemble(settings, print)
+        first = prepare(LOOSE, (Objective.UNITS,), settings, program, heard, brief=brief)
+        assert first.reduced is not None
+        found[rule, brief] = first.reduced
+    assert {asked for asked, reduced in found.items() if not reduced.settled} == {(APART, True)}
+    quick, thorough = found[APART, True].wide, found[APART, False].wide
+    assert quick is not None
+    assert thorough is not None
+    assert quick.landmarks() == thorough.landmarks()
+
+
+def test_of_units_that_mattered_before_those_that_rules_remove_are_gone() -> None:
+    settings = Settings((given_constraint(f'{APART} :- use(U), motion(U,"cut").'),))
+    heard = _Heard(LOOSE, (Objective.UNITS,), Reporter())
+    first = prepare(LOOSE, (Objective.UNITS,), settings, assemble(settings, print), heard)
+    assert first.reduced is not None
+    assert first.reduced.wide is not None
+    assert first.reduced.wide.left_of([2, 3, 4, 99]) == {2, 4}
+
+
+def test_units_that_mattered_before_may_be_any() -> None:
+    """Also those that are not here, or that rules remove."""
+    met: Counter[Status] = Counter()
+    for seed in range(60):
+        rng = random.Random(seed)
+        problem = random_problem(seed, list(ContainerRule)[seed % 2], units=12)
+        gone, *both = rng.sample(MOTIONS, 3)
+        kept = [tree for tree in oracle.trees(problem) if not {*both} <= {unit.motion for unit in tree}]
+        kept = [tree for tree in kept if gone not in {unit.motion for unit in tree}]
+        kept += [()] if oracle.makes(problem, ()) else []
+        rules = ':- use(U), motion(U,"{}"). :- use(U), use(V), motion(U,"{}"), motion(V,"{}").'
+        settings = Settings((given_constraint(rules.format(gone, *both)),))
+        names = rng.choice((["units"], ["success"], ["inputs"]))
+        known = {*rng.sample(range(15), rng.randrange(1, 15))}
+        outcome = solve(problem, [*map(Objective, names)], settings, known=known)
+        best = oracle.best(kept, problem, names)
+        assert outcome.status is (Status.INFEASIBLE if best is None else Status.OPTIMAL), seed
+        met[outcome.status] += 1
+        if outcome.units is not None:
+            tree = tuple(map(problem.network.unit, outcome.units))
+            assert oracle.key(problem, tree, names) == best, seed
+    assert len(met) == 2
 
 
 def test_rules_that_were_applied_wrongly_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -155,6 +155,7 @@ def prepare(
     program: Program,
     listener: Listener | None = None,
     for_sale: Collection[int] = (),
+    brief: bool = False,
 ) -> Prepared:
     """Cut a network down to what can matter.
 
@@ -163,8 +164,9 @@ def prepare(
     reductions are asked for; those that are settled so need not be asked again. With a ``listener``, who
     hears of trees and bounds, it is less what the reductions leave out: what only trees have that are no
     better than another, which may be the only one within bounds, so then they leave out nothing.
-    ``for_sale`` are object nodes that may come to those in the kitchen. Raises :class:`UserError` where an
-    objective needs rates that are not known.
+    ``for_sale`` are object nodes that may come to those in the kitchen. ``brief`` says that the
+    best tree without the rest of the rules is not asked for. Raises :class:`UserError` where an objective
+    needs rates that are not known.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
@@ -199,6 +201,7 @@ def prepare(
                 lambda: deadline.watched("cutting the network", late=True),
                 first.spare,
                 first.rest,
+                brief and first.rest,
             )
             if reduced.interrupted:
                 deadline.interrupt()

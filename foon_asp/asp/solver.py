@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from foon_asp.asp.assembly import SHRINKING, assemble, ready_made
+from foon_asp.asp.assembly import CLINGO_OPTIONS, SHRINKING, assemble, ready_made
 from foon_asp.asp.outcome import Outcome, Proof, Status
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
@@ -27,8 +27,8 @@ _NEAR = 200  # units nearest to the goals, among which a tree that keeps to all 
 _LOOSE = 12  # times that trees with loose ends are looked for, with ever fewer of these
 _FEWEST: tuple[Objective, ...] = (Objective.UNITS,)
 _GROWN = 1.5  # times as many of them are known each time, if that is what leads to what they need
-_MANY = 5000  # units that are known then, at most about
-_QUICK = "--configuration=frumpy"  # takes half the time of what clingo chooses by itself
+_MANY = 5000  # units that are known then, at most about, beside those that were before
+_QUICK = "--configuration=frumpy", "--opt-strategy=usc,pmres,4"  # what clingo has done by itself takes longer
 _MORE = 4  # times as many, where there is none
 
 Units = frozenset[int]
@@ -82,19 +82,22 @@ def solve(
     objectives: Sequence[Objective] = (Objective.UNITS,),
     settings: Settings | None = None,
     reporter: Reporter | None = None,
+    known: set[int] | None = None,
 ) -> Outcome:
     """Find the best task tree under a lexicographic list of objectives, and prove it.
 
     ``units`` decides last, so that no tree carries a unit it does not need. Stops at the time limit or at
-    ctrl-C with the best tree so far. Raises :class:`UserError` for faults in constraints, encodings and
-    options, and where ``success`` is asked for and no rates are known.
+    ctrl-C with the best tree so far. ``known`` are numbers of units that mattered in a question like this
+    one, and of those that matter in this one afterwards. Raises :class:`UserError` for faults in constraints,
+    encodings and options, and where ``success`` is asked for and no rates are known.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
     program = ready_made(problem, settings, reporter.warning) or assemble(settings, reporter.warning)
     began = time.perf_counter()
     heard = _Heard(problem, objectives, reporter)
-    first = prepare(problem, objectives, settings, program, heard)
-    return _Solver(first, objectives, heard, {"cut": time.perf_counter() - began}).solve()
+    first = prepare(problem, objectives, settings, program, heard, brief=bool(known))
+    seconds = {"cut": time.perf_counter() - began}
+    return _Solver(first, objectives, heard, seconds, known=known).solve()
 
 
 def solve_prepared(first: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
@@ -136,6 +139,7 @@ class _Solver:
         heard: _Heard,
         seconds: dict[str, float],
         rules: str = "",
+        known: set[int] | None = None,
     ) -> None:
         self.first, self.objectives, self.heard, self.seconds = first, tuple(objectives), heard, seconds
         self.rules = first.program.rules + rules
@@ -145,6 +149,7 @@ class _Solver:
         self._open: OpenProgram | None = None
         self._ground: tuple[object, Grounded] | None = None  # what was asked last
         self._loose = False  # whether what is found may have loose ends
+        self._known = set() if known is None else known  # units, by number, with which loose ends begin
 
     def solve(self) -> Outcome:
         """Solve it; where that is stopped anywhere, state what is known by then."""
@@ -197,6 +202,8 @@ class _Solver:
 
         If the best tree without them keeps to them, it is the one.
         """
+        if self._known:  # it does not, and nothing else told before
+            return self._beside(wide, tree)
         keeps = self.first.keeps(tree)
         if keeps:
             self.heard.tree(tree)
@@ -213,7 +220,7 @@ class _Solver:
 
         One is looked for that has units without what they need, and then one near the goals.
         """
-        if not wide.spare and (found := self._within_limits(wide, tree)) is not None:
+        if not wide.spare and not self._known and (found := self._within_limits(wide, tree)) is not None:
             return found
         ended = None if wide.spare else self._with_loose_ends(wide, tree)
         is_best = ended is not None
@@ -319,16 +326,17 @@ class _Solver:
         program, number = self.program, self.problem.network.unit_number
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
         # to make cores small takes longer than it saves here
-        arguments = tuple(each for each in program.arguments if each != SHRINKING)
-        if not self.first.settings.clingo_options:
-            arguments = (*arguments, _QUICK)
+        others, quick = ((SHRINKING,), ()) if self.first.settings.clingo_options else (CLINGO_OPTIONS, _QUICK)
+        arguments = (*(each for each in program.arguments if each not in others), *quick)
         program = program._replace(files=files, arguments=arguments)
         sets = wide.landmarks()
         required = write_required([map(number, sorted(each)) for each in sets])
-        first = tree.union(*(each for each in sets if len(each) <= _NEAR))
-        known = wide.with_only_makers(first, _MANY)
+        before = wide.left_of(self._known)
+        most = _MANY + len(before)
+        known = wide.with_only_makers(before.union(tree, *(e for e in sets if len(e) <= _NEAR)), most)
         by, fewest = _FEWEST, 0  # quick to ask, and enough to see that there is none
         for _ in range(_LOOSE):
+            self._known.update(map(number, known))
             self._look_at(known.union(wide.makers(known), *sets))
             asked = replace(self.first, program=program)
             text = required + write_known(map(number, sorted(known)))
@@ -344,12 +352,12 @@ class _Solver:
             ended.units = self._ids(ended.units)
             if ended.units <= known:
                 return self._settled_with_loose_ends(ended, program, text, known, fewest)
-            if len(known) > _MANY:
+            if len(known) > most:
                 return None
             fresh = wide.beside(ended.units - known)
-            enough = min(_MANY, len(known) * _GROWN)
+            enough = min(most, len(known) * _GROWN)
             while fresh and len(known) < enough:
-                fresh = wide.with_only_makers(fresh | wide.makers(fresh), _MANY) - known
+                fresh = wide.with_only_makers(fresh | wide.makers(fresh), most) - known
                 known |= fresh
         return None
 
@@ -448,11 +456,13 @@ class _Solver:
         wanted: int | None = None,
         opt_mode: str = "opt",
         bounds: bool = False,
+        fewer: Mapping[int, int] | None = None,
     ) -> "Run":
         """Ask clingo for the best tree by some of the levels.
 
-        ``products`` of rates, by exponents, are ruled out; with ``wanted`` the one of that number is asked
-        for instead. The reporter hears of trees, and of ``bounds`` where they are those of the question.
+        ``products`` of rates, by exponents, are ruled out, but for trees of fewer units than ``fewer`` says
+        of their number; with ``wanted`` the one of that number is asked for instead. The reporter hears of
+        trees, and of ``bounds`` where they are those of the question.
         """
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
@@ -470,7 +480,7 @@ class _Solver:
             ):
                 ended = self._run_open(objectives, products, wanted, opt_mode, on_tree, on_bound)
             else:
-                ended = self._grounded(objectives, products, wanted).search(
+                ended = self._grounded(objectives, products, wanted, fewer or {}).search(
                     self.deadline, opt_mode, on_tree, on_bound
                 )
         except KeyboardInterrupt:  # before it came to a search
@@ -484,7 +494,11 @@ class _Solver:
         return ended
 
     def _grounded(
-        self, objectives: Sequence[Objective], products: Sequence[Mapping[int, int]], wanted: int | None
+        self,
+        objectives: Sequence[Objective],
+        products: Sequence[Mapping[int, int]],
+        wanted: int | None,
+        fewer: Mapping[int, int],
     ) -> "Grounded":
         """Ground what is asked, unless it was the last thing asked."""
         asked = objectives, len(products), wanted
@@ -504,6 +518,7 @@ class _Solver:
             text += facts.write_exponents(self.problem, self._scaled())
             text += "".join(itertools.starmap(facts.write_product, enumerate(products)))
             text += facts.write_seen(range(len(products))) if wanted is None else facts.write_wanted(wanted)
+            text += facts.write_fewer(fewer)
         from foon_asp.encoding.search import ground  # noqa: PLC0415 (slow to import)
 
         began = time.perf_counter()
@@ -592,6 +607,7 @@ class _Solver:
         totals: list[dict[int, int]] = []
         fixed = [scales.weight(objective, best) for objective in before]
         chosen, rival, wanted = best, best, [0]  # the totals that are as good as that of the tree chosen
+        at_once = self._loose and after == _FEWEST  # the second search of these takes long
         while True:
             # A total that is better or as good has a weight of at most W + n - 1, where n units of the tree
             # weigh less than they cost, and of at most W where none does.
@@ -601,9 +617,10 @@ class _Solver:
                 break  # nothing succeeds more often than always, and equal products have equal vectors
             band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
             mode = ",".join(["opt", *map(str, fixed), str(band)])
-            ended = self._run(by, totals, opt_mode=mode)
-            if not ended.exhausted:
-                return chosen, False
+            fewer = wanted if at_once and len(chosen) > fewest else ()
+            ended = self._run(by, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
+            if not ended.exhausted or (at_once and ended.units is None):
+                return chosen, ended.exhausted
             if ended.units is None:
                 break
             rival = ended.units
@@ -611,6 +628,8 @@ class _Solver:
             ours, theirs = (self.heard.costs(tree).key(by) for tree in (chosen, rival))
             if theirs < ours:
                 chosen, wanted = rival, []
+            elif theirs == ours and at_once:
+                chosen = min(chosen, rival, key=len)
             if theirs <= ours:
                 wanted.append(len(totals))
         if not after or (after == _FEWEST and len(chosen) == fewest):

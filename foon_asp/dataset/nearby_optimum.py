@@ -9,7 +9,7 @@ from foon_asp.asp.assembly import hold_for_parts, leave_a_rest
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import LimitError
-from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
+from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, multiplies
 from foon_asp.reduce import ALL
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -33,9 +33,9 @@ def solve_nearby(
     What units that were not read may make is taken to be at hand. If the best tree takes nothing of that, it
     is a tree of the whole network, and none there costs less; else more is read of what leads to what it
     takes. In the end everything is read. Rules of the user's have to hold for parts of trees; what the best
-    tree without them takes is read before they are asked about, and then more each time. ``None`` where there
-    is no tree even so, and rules are not all that there is to it: why is then a question about all that could
-    lead to the goals.
+    tree without them takes is read before they are asked about, and then more each time: first what the tree
+    of the fewest units takes that keeps to them. ``None`` where there is no tree even so, and rules are not
+    all that there is to it: why is then a question about all that could lead to the goals.
     """
     reporter = reporter or Reporter()
     deadline = how.begun
@@ -44,6 +44,8 @@ def solve_nearby(
     first = levels(tuple(objectives))[0]
     tighter = min if multiplies(first) else max
     known: list[int | Fraction] = []  # bounds on the first objective
+    mattered = set[int]()  # units, by number, that say what keeps to the rules
+    few: list[int] | None = None  # a tree that keeps to them, by number, once it was asked for
     without: Outcome | None = None
     if leave_a_rest(how):  # the best tree without them is needed anyway, and quick to read
         without = solve_nearby(near, objectives, free, _OnlyWarnings(reporter))
@@ -52,7 +54,7 @@ def solve_nearby(
         known += [bound for each, bound in without.bounds.items() if each == first]
     while True:
         problem = near.problem
-        found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter))
+        found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter), mattered)
         if found.status is Status.INFEASIBLE:
             if without is None and how.constraints:
                 without = solve_nearby(near, objectives, free)
@@ -63,20 +65,48 @@ def solve_nearby(
             try:
                 with deadline.watched("reading"):  # and not late, so that there is time for a tree
                     near.grow(lacking, quickly=without is not None)
-                continue
             except LimitError as limit:
                 found = found._replace(proof=None, stopped=limit.stopped)
+            else:
+                if without is not None and few is None:
+                    few = [] if first is Objective.UNITS else _fewest(near, alone, mattered)
+                continue
         bounds = {**found.bounds, first: tighter(known)} if known else found.bounds
         found = found._replace(problem=problem, bounds=bounds)
         if lacking:  # at a limit: the bound holds, and what was read may have a tree of its own
             tree = solve(problem, objectives, alone, _OnlyWarnings(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
             found = found._replace(status=status, units=tree.units, costs=tree.costs)
+        if found.status is Status.UNKNOWN and few:
+            units = [unit for number in few if (unit := problem.network.unit_of_number(number)) is not None]
+            found = found._replace(
+                status=Status.FEASIBLE, units=executable_order(problem, units), costs=problem.costs(units)
+            )
         if found.units is not None:
             Postconditions(problem, levels(tuple(objectives)), how).tree(found.units)
             assert found.costs is not None
             reporter.tree(found.costs)
         return found
+
+
+def _fewest(near: "Nearby", how: Settings, mattered: set[int]) -> list[int]:
+    """Read what the tree of the fewest units takes that keeps to the rules.
+
+    That is asked sooner than by other objectives, tells as well where there is none, and what better trees
+    take is mostly near that. Gives it by number; nothing where there is none, or at a limit.
+    """
+    while True:
+        found = solve(near.relaxed, (Objective.UNITS,), how, known=mattered)
+        if found.status is not Status.OPTIMAL or found.units is None:
+            return []
+        lacking = near.lacking(found.units)
+        if not lacking:
+            return [*map(near.problem.network.unit_number, found.units)]
+        try:
+            with how.begun.watched("reading"):
+                near.grow(lacking, quickly=True)
+        except LimitError:
+            return []
 
 
 def least_with_one_more(

@@ -359,6 +359,11 @@ def write_seen(numbers: Iterable[int]) -> str:
     return "".join(f"_seen({number}).\n" for number in numbers)
 
 
+def write_fewer(units: Mapping[int, int]) -> str:
+    """Let trees of fewer units have products of rates that are ruled out, by number."""
+    return "".join(f"_fewer({number},{count}).\n" for number, count in units.items())
+
+
 def write_wanted(number: int) -> str:
     """Ask for trees with exactly that product of rates."""
     return f"_wanted({number}).\n"

@@ -93,6 +93,7 @@ def reduce(
     guard: Callable[[], AbstractContextManager[object]] = nullcontext,
     spare: bool = False,
     rest: bool = False,
+    brief: bool = False,
 ) -> Reduced:
     """Leave of a problem what a search for the best tree still has to look at.
 
@@ -100,7 +101,7 @@ def reduce(
     something. Without reductions that is what can be made from the kitchen and the goals can need.
     ``expired`` is asked now and then; what takes longer is interrupted, as by ctrl-C, by the ``guard``.
     ``rest`` says that trees have to keep to more than is known here, which ``wide`` is needed for; ``spare``
-    that those may have units that lead to no goal.
+    that those may have units that lead to no goal. ``brief`` asks for any tree, and for ``wide`` alone.
     """
     with uncollected():
         with guard():
@@ -113,6 +114,7 @@ def reduce(
                 spare,
                 rest,
             )
+            reducer.brief = brief
         return reducer.reduce(guard)
 
 
@@ -177,6 +179,7 @@ class _Reducer:
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
         self.cases: Cases = None
+        self.brief = False  # whether cuts alone are wanted
         self.proved = False  # whether the tree is the best, as there is none better for the goals alone
 
     def reduce(self, guard: Callable[[], AbstractContextManager[object]]) -> Reduced:
@@ -294,6 +297,9 @@ class _Reducer:
             all_costs = range(len(self.graph.needs)) if self.spare or self.extended else self.left
             self.costs = self.costs or ExactCosts(self.problem, self.objectives, all_costs)
         costs = self.costs
+        if costs is not None and self.brief:
+            self._bound(costs, guide)
+            return False
         if costs is not None and not isinstance(self.left, range) and len(self.left) > _EASY:
             self._follow_added(costs)
         if costs is not None and costs.limited:  # a cheap tree is all that is asked for

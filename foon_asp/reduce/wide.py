@@ -51,6 +51,12 @@ class Wide:
         made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
         return {maker for o in made for maker in graph.makers[o]}
 
+    def left_of(self, numbers: Iterable[int]) -> set[int]:
+        """Give the units that there are of some, by number in a network that this one is a part of."""
+        network, restriction = self.problem.network, self.problem.restriction
+        units = {unit for number in numbers if (unit := network.unit_of_number(number)) is not None}
+        return {unit for unit in units if restriction is None or not restriction.removed(unit)}
+
     def with_only_makers(self, units: Iterable[int], most: int) -> set[int]:
         """Give units with all that they build upon without a choice, or part of it beyond ``most``."""
         graph, kitchen = self.graph, self.problem.kitchen
