@@ -353,6 +353,21 @@ def test_a_tree_of_the_fewest_units_is_not_held_against_those_that_are_as_good(
     assert fewer[1:] == [{0: 7}]
 
 
+def test_fewer_units_with_the_same_product_come_in_the_same_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With weights so coarse that 0.7 weighs nothing, and 0.49 something."""
+    monkeypatch.setattr(exact_success, "_scale", lambda _: 2)
+    rates = dict.fromkeys(LOOSE.network.motions, Fraction(1))
+    rates |= {
+        "cut": Fraction("0.7"),
+        "dry": Fraction("0.7"),
+        "air": Fraction("0.1"),
+        "chop": Fraction("0.49"),
+    }
+    outcome = asked(replace(LOOSE, rates=rates), APART, Objective.SUCCESS)
+    assert outcome.costs is not None
+    assert (outcome.costs.success, outcome.costs.units) == (Fraction("0.49"), 6)
+
+
 def test_loose_ends_begin_with_what_mattered_before(monkeypatch: pytest.MonkeyPatch) -> None:
     looks = Looks(monkeypatch)
     known = set[int]()
