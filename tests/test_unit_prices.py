@@ -19,6 +19,7 @@ from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitPrices
 from foon_asp.problem import Known, Objective, Problem, Row
 from foon_asp.proof.verify import digests
 from foon_asp.search import SEARCHES, SearchSettings
+from foon_asp.store.block import VERSION
 from foon_asp.store.import_files import import_files
 from foon_asp.store.store import Store
 from foon_asp.text.data_folder import DataFiles, find_data, read_data
@@ -276,10 +277,8 @@ def test_a_store_of_before_there_were_prices_is_refused(tmp_path: Path, cli: Cli
     (tmp_path / "net.foon").write_bytes(content)
     ran = cli("solve", "--network", str(tmp_path / "net.foon"), "--goal", "b")
     assert ran.code == 2
-    assert (
-        "has version 1 of the store format, this foon-asp reads version 4: import its source files again"
-        in ran.err
-    )
+    assert "has version 1 of the store format" in ran.err
+    assert f"this foon-asp reads version {VERSION}: import its source files again" in ran.err
 
 
 def test_a_store_without_prices_has_none(tmp_path: Path) -> None:
