@@ -192,6 +192,11 @@ def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
     return [Stated(PLACE, found)] if found else []
 
 
+def _understood(settings: Settings) -> "Rules | None":
+    """Give the rules that are added, as far as they are understood; raises as :func:`assemble` does."""
+    return assemble(settings, lambda _: None).understood
+
+
 class ReachOfRules(Enum):
     """Which units rules are about, beside those of a tree: ``NEEDED`` ones, which lead to a goal.
 
@@ -205,7 +210,7 @@ class ReachOfRules(Enum):
 
 def reach_of_rules(settings: Settings) -> ReachOfRules:
     """Say which units the rules that are added are about; raises as :func:`assemble` does."""
-    rules = assemble(settings, lambda _: None).understood
+    rules = _understood(settings)
     if rules is None or not rules.local:
         return ReachOfRules.ALL
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
@@ -219,7 +224,7 @@ def hold_for_parts(settings: Settings) -> bool:
     """
     if settings.replaced is not None:
         return False
-    rules = assemble(settings, lambda _: None).understood
+    rules = _understood(settings)
     if rules is None:
         return not settings.constraints
     varying = rules.varying({("available", 1)})
@@ -228,13 +233,13 @@ def hold_for_parts(settings: Settings) -> bool:
 
 def leave_a_rest(settings: Settings) -> bool:
     """Whether rules that are added say more than which units there are; raises as :func:`assemble` does."""
-    rules = assemble(settings, lambda _: None).understood
+    rules = _understood(settings)
     return rules is not None and bool(rules.rest)
 
 
 def asked_for(settings: Settings) -> frozenset[str]:
     """Give the motions, labels and ingredients that rules name where they ask for a unit; raises as above."""
-    rules = assemble(settings, lambda _: None).understood
+    rules = _understood(settings)
     return frozenset() if rules is None else rules.asked_for
 
 
@@ -244,8 +249,8 @@ def motions_asked_for(settings: Settings) -> list[list[str]] | None:
     ``None`` where they see more than a tree, also where more is available, or do more than to rule units out
     and to ask for one.
     """
-    rules = assemble(settings, lambda _: None).understood
-    return None if rules is None else rules.varying({("available", 1)}).motions_asked_for()
+    rules = _understood(settings)
+    return None if rules is None else rules.varying({("available", 1)}).motions_asked_for
 
 
 def asks_of_all(problem: Problem, settings: Settings) -> bool:

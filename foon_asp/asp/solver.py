@@ -501,7 +501,7 @@ class _Solver:
         fewer: Mapping[int, int],
     ) -> "Grounded":
         """Ground what is asked, unless it was the last thing asked."""
-        asked = objectives, len(products), wanted
+        asked = objectives, len(products), wanted, fewer
         if self._ground:
             before, program = self._ground
             if before == asked:

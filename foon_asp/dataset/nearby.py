@@ -83,8 +83,9 @@ class Nearby:
 
     def add_ready(self, words: Collection[str]) -> None:
         """Read units that execute with the kitchen and have one of these words as motion or label."""
-        self._cone.add(self._ready(words))
-        self._forget()
+        if new := set(self._ready(words)) - self._cone.units:
+            self._cone.add(new)
+            self._forget()
 
     def _grow(self, objects: Iterable[int], more: int) -> None:
         self._cone.grow(objects, more)

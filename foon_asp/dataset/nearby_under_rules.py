@@ -56,6 +56,7 @@ def _with_rules(near: Nearby, free: Outcome, how: Settings, reporter: Reporter) 
     best = best._replace(cuts=(), cases=None)
     if free.status is not Status.OPTIMAL or free.costs is None:
         return best
+    rate = _rate_asked_for(near.problem, how) if Objective.SUCCESS in order else None
     for asked_before in range(_READ):
         try:
             with how.begun.watched("reading"):
@@ -67,7 +68,7 @@ def _with_rules(near: Nearby, free: Outcome, how: Settings, reporter: Reporter) 
         except LimitError as limit:
             return best._replace(stopped=limit.stopped)
         found = solve(here, free.objectives, how)._replace(cuts=(), cases=None)
-        proved = _proved(found, free, near, how)
+        proved = _proved(found, free, near, how, rate)
         if proved is not None and found.costs is not None:
             assemble(how, reporter.warning)
             reporter.tree(found.costs)
@@ -79,14 +80,18 @@ def _with_rules(near: Nearby, free: Outcome, how: Settings, reporter: Reporter) 
     return best
 
 
-def _proved(found: Outcome, free: Outcome, near: Nearby, how: Settings) -> Proof | None:
-    """Say by what the best tree near the goals is the best of all, if it is known to be."""
+def _proved(
+    found: Outcome, free: Outcome, near: Nearby, how: Settings, rate: Fraction | None
+) -> Proof | None:
+    """Say by what the best tree near the goals is the best of all, if it is known to be.
+
+    ``rate`` is the greatest success rate of a unit that rules ask for, where that is known.
+    """
     order = levels(free.objectives)
     if found.status is not Status.OPTIMAL or found.costs is None or free.costs is None:
         return None
     key, proofs = found.costs.key(order), [free.proof, found.proof]
     if key > least_with_one_more(free.costs, order):
-        rate = _rate_asked_for(near.problem, how) if Objective.SUCCESS in order else None
         if rate is None or key > least_with_one_more(free.costs, order, rate):
             return None
         # what a rule asks for is a unit from elsewhere, or what was read of the tree keeps to the rules

@@ -22,7 +22,7 @@ from foon_asp.problem import Contradiction, Problem, Restriction, reach
 from foon_asp.rules.clause import Clause, Signature, literals, written
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.flat_answers import FlatAnswers
-from foon_asp.rules.flat_body import Asking, Constant, Fact, FlatBodies, Item, NotFlatError, Way
+from foon_asp.rules.flat_body import Asking, Constant, Fact, FlatBodies, NotFlatError, Way
 from foon_asp.rules.lifted_program import NOBODY, LiftedProgram, stands_alone
 from foon_asp.rules.limit import Limit, Limiting, limiting
 from foon_asp.rules.number_limits import number_checks
@@ -186,21 +186,28 @@ class Rules:
     @property
     def asked_for(self) -> frozenset[str]:
         """The motions, labels and ingredients that rules name where they ask for a unit with them."""
-        ways = [way for flat in self._flat.values() for asking in flat.askings for way in asking.helping]
-        return frozenset(name for way in ways for name in _named(way, {"motion", "label", "ingredient"}))
+        facts = (fact for asking in self._askings for way in asking.helping for fact in _facts(way))
+        return frozenset(_named(facts, {"motion", "label", "ingredient"}))
 
+    @property
     def motions_asked_for(self) -> list[list[str]] | None:
-        """Give the motions for each unit that is asked for, ``[]`` where it may have any.
+        """The motions for each unit that is asked for, ``[]`` where it may have any.
 
         ``None`` where rules see more than a tree, or do more than to rule units out and to ask for one.
         """
         if not self.local or self.rest or not self._flat.keys() >= set(self._settled):
             return None
         found = []
-        for asking in (each for flat in self._flat.values() for each in flat.askings):
-            motions = [_named(way._replace(items=_of_unit(way)), {"motion"}) for way in asking.helping]
+        for asking in self._askings:
+            of_unit = ([fact for fact in _facts(way) if fact.terms[0] == way.unit] for way in asking.helping)
+            motions = [_named(facts, {"motion"}) for facts in of_unit]
             found.append([name for names in motions for name in names] if all(motions) else [])
         return found
+
+    @property
+    def _askings(self) -> list[Asking]:
+        """What is asked for by the rules that are answered without clingo."""
+        return [asking for flat in self._flat.values() for asking in flat.askings]
 
     @cached_property
     def _flat(self) -> "dict[int, _Flat]":
@@ -366,15 +373,13 @@ def _ids(problem: Problem, numbers: Iterable[int]) -> frozenset[int]:
     return frozenset(unit for unit in found if unit is not None)
 
 
-def _of_unit(way: Way) -> tuple[Item, ...]:
-    """Give the facts about the unit that a way takes."""
-    return tuple(item for item in way.items if isinstance(item, Fact) and item.terms[0] == way.unit)
+def _facts(way: Way) -> list[Fact]:
+    return [item for item in way.items if isinstance(item, Fact)]
 
 
-def _named(way: Way, predicates: Collection[str]) -> list[str]:
-    """Give the texts that facts of the unit of a way, or of what it has, state in a rule."""
-    facts = (item for item in way.items if isinstance(item, Fact) and item.signature[0] in predicates)
-    terms = (fact.terms[-1] for fact in facts)
+def _named(facts: Iterable[Fact], predicates: Collection[str]) -> list[str]:
+    """Give the texts that facts of some predicates have in a rule."""
+    terms = (fact.terms[-1] for fact in facts if fact.signature[0] in predicates)
     return [term.value for term in terms if isinstance(term, Constant) and isinstance(term.value, str)]
 
 

@@ -118,16 +118,14 @@ def _nodes(rows: Any) -> bool:
     for row in rows:
         if type(row) is not list or not 2 <= len(row) <= 5 or not _flag(row[0]):
             return False
+        if any(type(each) is not list for each in row[2:]):
+            return False
         states, relations, contents = (*row[2:], [], [], [])[:3]
-        pairs = [*relations, *contents] if type(relations) is type(contents) is list else [None]
-        if any(type(pair) is not list or len(pair) != 2 for pair in pairs):
+        if any(type(pair) is not list or len(pair) != 2 for pair in (*relations, *contents)):
             return False
-        held = [items for _, items in contents]
-        if any(type(each) is not list for each in (states, *held)):
+        if any(type(items) is not list for _, items in contents):
             return False
-        texts += (row[1], *states)
-        for pair in relations:
-            texts += pair
+        texts += (row[1], *states, *chain.from_iterable(relations))
         for word, items in contents:
             texts += (word, *items)
     return {*map(type, texts)} <= {str}
