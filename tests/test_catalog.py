@@ -55,7 +55,7 @@ encoding: own_encodings
 grounding: stated
 network: counted functional_unit level network node_pattern object_node source spelling
     starting task_tree unit_prices
-problem: containers costs items number objective order problem progress relevance restriction
+problem: containers costs items number objective order problem progress relevance restriction trait
 proof: simulation
 questions: answer arguments caller contract docstring in_hand index options posing result solve
 reduce: derivation dominance exact_costs extension forced graph narrow near reduction reductions

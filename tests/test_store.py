@@ -331,7 +331,7 @@ def test_a_question_reads_what_it_is_about(tmp_path: Path) -> None:
         opened = Store(store)
         goal = find_goal(SOUP_NODE, opened)
         assert len(opened.cone([goal], ContainerRule.STRICT, frozenset()).units) == 3
-        counts.append(len(opened._file._blocks))
+        counts.append(sum(map(len, opened._file._blocks.values())))
     assert counts[0] == counts[1] < 12
 
 
@@ -966,6 +966,7 @@ def blocks_of(store: Path) -> list[tuple[Table, int, Any]]:
         return [
             (table, number, unseal(table, number, block))
             for table in Table
+            if table is not Table.OUTLINE  # columns of bare numbers
             for number, block in database.execute(f"SELECT * FROM {table}")
         ]
 

@@ -224,11 +224,10 @@ def hold_for_parts(settings: Settings) -> bool:
     """
     if settings.replaced is not None:
         return False
-    rules = _understood(settings)
+    rules = varying_available(settings)
     if rules is None:
         return not settings.constraints
-    varying = rules.varying({("available", 1)})
-    return varying.local and varying.shrinking
+    return rules.local and rules.shrinking
 
 
 def leave_a_rest(settings: Settings) -> bool:
@@ -237,20 +236,10 @@ def leave_a_rest(settings: Settings) -> bool:
     return rules is not None and bool(rules.rest)
 
 
-def asked_for(settings: Settings) -> frozenset[str]:
-    """Give the motions, labels and ingredients that rules name where they ask for a unit; raises as above."""
+def varying_available(settings: Settings) -> "Rules | None":
+    """Give the rules that are added, for questions where more is available; raises as above."""
     rules = _understood(settings)
-    return frozenset() if rules is None else rules.asked_for
-
-
-def motions_asked_for(settings: Settings) -> list[list[str]] | None:
-    """Give the motions for each unit that rules ask for, ``[]`` where it may have any; raises as above.
-
-    ``None`` where they see more than a tree, also where more is available, or do more than to rule units out
-    and to ask for one.
-    """
-    rules = _understood(settings)
-    return None if rules is None else rules.varying({("available", 1)}).motions_asked_for
+    return None if rules is None else rules.varying({("available", 1)})
 
 
 def asks_of_all(problem: Problem, settings: Settings) -> bool:

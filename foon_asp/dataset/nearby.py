@@ -11,6 +11,7 @@ from foon_asp.store.cone import Cone
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.proof.verify import Subject
+    from foon_asp.store.elsewhere import Elsewhere
 
 FIRST = 1000
 """About as many units are read at first."""
@@ -19,9 +20,10 @@ FIRST = 1000
 class Nearby:
     """A question over the units near its goals; what the others are good for is not known yet.
 
-    ``cone`` is what was read, ``pose`` makes the question over it, and ``read_all`` over all that the goals
-    can need. ``ready`` gives some units that execute with the kitchen and have a motion or label among some.
-    ``subject`` gives what a certificate of the answer speaks about.
+    ``cone`` is what was read, ``pose`` makes the question over it, ``read_all`` over all that the goals can
+    need, and ``among`` over any units, by id in the whole network. ``elsewhere`` looks at all units, what
+    they cost being counted by an objective; it gives ``None`` where that cannot be done. ``subject`` gives
+    what a certificate of the answer speaks about.
     """
 
     def __init__(
@@ -29,11 +31,12 @@ class Nearby:
         cone: Cone,
         pose: Callable[[Cone], Problem],
         read_all: Callable[[], Problem],
-        ready: Callable[[Collection[str]], Iterable[int]],
+        among: Callable[[Iterable[int]], Problem],
+        elsewhere: "Callable[[Objective], Elsewhere | None]",
         subject: "Callable[[], Subject]",
     ) -> None:
         self._cone, self._pose, self._read_all, self.subject = cone, pose, read_all, subject
-        self._ready = ready
+        self.among, self.elsewhere = among, elsewhere
 
     @cached_property
     def problem(self) -> Problem:
@@ -77,15 +80,16 @@ class Nearby:
         """Read a tenth more units, or a fifth, which lead to these open objects, by id in the network."""
         self._grow(objects, len(self._cone.units) // (5 if quickly else 10) + 1)
 
-    def double(self) -> None:
-        """Read as many units again, whichever lead to open objects."""
-        self._grow(sorted(self._cone.open), len(self._cone.units))
+    @property
+    def units(self) -> int:
+        """How many units were read."""
+        return len(self._cone.units)
 
-    def add_ready(self, words: Collection[str]) -> None:
-        """Read units that execute with the kitchen and have one of these words as motion or label."""
-        if new := set(self._ready(words)) - self._cone.units:
-            self._cone.add(new)
-            self._forget()
+    def open_to(self, units: Iterable[int]) -> list[int]:
+        """Give what units need, or are asked for, that may not be there, by id in the whole network."""
+        problem, open_ = self.problem, self._cone.open
+        needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
+        return sorted(open_.intersection(map(problem.network.object_number, needed)))
 
     def _grow(self, objects: Iterable[int], more: int) -> None:
         self._cone.grow(objects, more)

@@ -109,17 +109,10 @@ def _fewest(near: "Nearby", how: Settings, mattered: set[int]) -> list[int]:
             return []
 
 
-def least_with_one_more(
-    costs: Costs, order: Sequence[Objective], rate: Fraction = Fraction(1)
-) -> tuple[int | Fraction, ...]:
-    """Give the key that no tree is better than which has a unit more than one that costs this or more.
-
-    ``rate`` is the greatest success rate that the unit can have, above 0.
-    """
+def least_with_more(costs: Costs, order: Sequence[Objective], units: int = 1) -> tuple[int | Fraction, ...]:
+    """Give the key that no tree is better than which has more units than one that costs this or more."""
     least = dict(zip(order, costs.key(order), strict=True))
-    least[Objective.UNITS] += 1
-    if Objective.SUCCESS in least:
-        least[Objective.SUCCESS] *= rate
+    least[Objective.UNITS] += units
     return tuple(least.values())
 
 

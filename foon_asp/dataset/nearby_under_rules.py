@@ -1,28 +1,31 @@
 """The best tree under rules that may ask for units of a large store that lead to no goal.
 
-The units read of any tree of the whole network are a tree of the relaxed question of
-:class:`~foon_asp.dataset.nearby.Nearby`, where no rules are added: so they cost no less than the best one
-there. By objectives that only units add to, a unit that was not read makes that no cheaper, and counts as one
-unit more. So a tree that has one is no better than the best one without rules would be with one unit more;
-and the trees without one are those of what was read, of which rules that look at a tree alone say the same.
-
-By ``success``, a unit more makes a tree worse. Where rules do no more than to ask for a unit with some
-motion, either that unit is from elsewhere, and its rate is that of the motion; or the units read keep to the
-rules, and so cost no less than the best tree of the relaxed question under them.
+Besides what was read near the goals, units elsewhere are read that may matter. Let c be the least cost of the
+relaxed question of :class:`~foon_asp.dataset.nearby.Nearby` without rules. A tree that has a unit v from
+elsewhere has what leads to the goals, which costs at least c, and what leads to v. The outline of the store
+tells, for all units at once, what the dearest way to a unit costs besides all that was read. So a tree that
+costs less than some q has no unit with which this and c come to q or more. Where all others were read that
+rules may ask for, and all that leads to these, what was read of such a tree is one of the relaxed question
+that keeps to the rules: so nothing is better than the best of these, or than q.
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import count
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
-from foon_asp.asp.assembly import ReachOfRules, asked_for, assemble, motions_asked_for, reach_of_rules
+from foon_asp.asp.assembly import ReachOfRules, assemble, reach_of_rules, varying_available
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby import Nearby
-from foon_asp.dataset.nearby_optimum import least_with_one_more, near_goals, solve_nearby
+from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
 from foon_asp.deadline import LimitError
-from foon_asp.problem import Objective, Problem, levels
+from foon_asp.problem import Costs, Objective, Problem, levels
+from foon_asp.reduce import reduce
+from foon_asp.store.elsewhere import Elsewhere, most_cost
+from foon_asp.store.outline import FAR, Mask
 
-_READ = 7  # times in which a tree is looked for that is good enough, each among twice as many units
+_MOST = 30_000  # units, beyond which it is not worth reading them one by one
+_TRIED = (100, 0), (1_000, 2), (10_000, 6)  # so many units that are asked for, how much dearer than the first
 
 
 def solve_nearby_under(
@@ -30,9 +33,8 @@ def solve_nearby_under(
 ) -> Outcome | None:
     """Solve a question to a large store under rules, as far as what is near the goals tells.
 
-    The best tree of what was read is the best of all if no tree with a further unit can be better. Else it is
-    given as one of which that is not known; only at a limit, ``stopped`` says so. ``None`` where there is
-    none, or nothing was asked.
+    Without a proof, the tree is one of which it is not known whether it is the best; only at a limit,
+    ``stopped`` says so. ``None`` where there is none, or nothing was asked.
     """
     if not how.constraints or reach_of_rules(how) is ReachOfRules.ALL:
         return None
@@ -41,73 +43,146 @@ def solve_nearby_under(
     free = None if near is None else solve_nearby(near, objectives, plain)
     if near is None or free is None or (free.units is None and not free.stopped):
         return None
-    found = _with_rules(near, free, how._replace(session=None), reporter)
-    return None if found.units is None and not found.stopped else found
+    how = how._replace(session=None)
+    if free.status is not Status.OPTIMAL:
+        return _unknown(near, free)
+    search = _Search(near, free, how, reporter)
+    try:
+        found = search.result()
+    except LimitError as limit:
+        return search.best._replace(stopped=limit.stopped)
+    if found is None or (found.units is None and not found.stopped and found.proof is None):
+        return None
+    return found
 
 
-def _with_rules(near: Nearby, free: Outcome, how: Settings, reporter: Reporter) -> Outcome:
-    """Look for a tree that is proved to be the best, where ``free`` is the best without rules.
+class _Search:
+    """A search for a tree that is proved to be the best, where ``free`` is the best without rules."""
 
-    Without a tree, its status is unknown.
-    """
-    order = levels(free.objectives)
-    bounds = {each: bound for each, bound in free.bounds.items() if each == order[0]}
-    best = free._replace(status=Status.UNKNOWN, units=None, costs=None, proof=None, bounds=bounds)
-    best = best._replace(cuts=(), cases=None)
-    if free.status is not Status.OPTIMAL or free.costs is None:
-        return best
-    rate = _rate_asked_for(near.problem, how) if Objective.SUCCESS in order else None
-    for asked_before in range(_READ):
-        try:
-            with how.begun.watched("reading"):
-                if asked_before:
-                    near.double()
-                else:
-                    near.add_ready(asked_for(how))
-                here = near.problem
-        except LimitError as limit:
-            return best._replace(stopped=limit.stopped)
-        found = solve(here, free.objectives, how)._replace(cuts=(), cases=None)
-        proved = _proved(found, free, near, how, rate)
-        if proved is not None and found.costs is not None:
-            assemble(how, reporter.warning)
-            reporter.tree(found.costs)
-            return found._replace(proof=proved)
+    def __init__(self, near: Nearby, free: Outcome, how: Settings, reporter: Reporter) -> None:
+        self._near, self._free, self._how, self._reporter = near, free, how, reporter
+        self._order = levels(free.objectives)
+        self.best = _unknown(near, free)  # that was found so far, without a proof
+
+    def result(self) -> Outcome | None:
+        """Give it, or what a limit left of it; ``None`` where what matters elsewhere cannot be told.
+
+        Raises :class:`LimitError`.
+        """
+        how, near = self._how, self._near
+        rules = varying_available(how)
+        if rules is None or not rules.local:
+            return None
+        with how.begun.watched("reading"):
+            first = self._order[0]
+            elsewhere = near.elsewhere(first if first is Objective.SUCCESS else Objective.UNITS)
+            if elsewhere is None:
+                return None
+            asked = rules.wanted
+            wanted = None if asked is None else [elsewhere.wanted(each.rows) for each in asked]
+        if asked is None or wanted is None:  # only the units of a tree say whether it keeps to the rules
+            tree = self._solved(near.problem)
+        else:
+            tree = self._some_tree(elsewhere, wanted, [each.always for each in asked])
+            if tree.status is Status.INFEASIBLE:
+                return tree
+        problem = None if tree.stopped else self._enough(tree, elsewhere, wanted)
+        if problem is None:
+            return self.best._replace(stopped=tree.stopped)
+        found = self._solved(problem)
+        if found.status is not Status.OPTIMAL:
+            return self.best._replace(stopped=found.stopped)
+        return self._proved(found)
+
+    def _solved(self, problem: Problem) -> Outcome:
+        """Solve a part of the question, and remember the tree."""
+        found = solve(problem, self._free.objectives, self._how)
         if found.units is not None:
-            best = found._replace(status=Status.FEASIBLE, proof=None, bounds=bounds)
-        if found.stopped:
-            return best._replace(stopped=found.stopped)
-    return best
+            self.best = self.best._replace(
+                problem=problem, status=Status.FEASIBLE, units=found.units, costs=found.costs
+            )
+        return found
 
+    def _some_tree(self, elsewhere: Elsewhere, wanted: Sequence[Mask], always: Sequence[bool]) -> Outcome:
+        """Find a tree that keeps to the rules: the best without them, and units asked for that are near it.
 
-def _proved(
-    found: Outcome, free: Outcome, near: Nearby, how: Settings, rate: Fraction | None
-) -> Proof | None:
-    """Say by what the best tree near the goals is the best of all, if it is known to be.
+        Its status is ``infeasible`` where nothing that can execute is what is asked for, and else unknown
+        where none was found.
+        """
+        tree = _numbers(self._free)
+        for most, more in _TRIED:
+            with self._how.begun.watched("reading"):
+                units, costs = elsewhere.nearest(wanted, tree, most, more)
+                problem = self._near.among({*tree, *units})
+            found = self._solved(problem)
+            if found.units is not None or found.stopped:
+                return found
+            if any(cost >= FAR and each for cost, each in zip(costs, always, strict=True)):
+                return found
+        return found._replace(status=Status.UNKNOWN)
 
-    ``rate`` is the greatest success rate of a unit that rules ask for, where that is known.
-    """
-    order = levels(free.objectives)
-    if found.status is not Status.OPTIMAL or found.costs is None or free.costs is None:
-        return None
-    key, proofs = found.costs.key(order), [free.proof, found.proof]
-    if key > least_with_one_more(free.costs, order):
-        if rate is None or key > least_with_one_more(free.costs, order, rate):
+    def _enough(self, tree: Outcome, elsewhere: Elsewhere, wanted: Sequence[Mask] | None) -> Problem | None:
+        """Read all that a better tree than one that was found can have, or a tree as good as that.
+
+        ``None`` where that is too much.
+        """
+        if tree.costs is None or tree.units is None:
             return None
-        # what a rule asks for is a unit from elsewhere, or what was read of the tree keeps to the rules
-        relaxed = solve(near.relaxed, free.objectives, how)
-        if relaxed.status is not Status.OPTIMAL or relaxed.costs is None or key > relaxed.costs.key(order):
-            return None
-        proofs.append(relaxed.proof)
-    return next((proof for proof in proofs if proof is not Proof.CUTS), Proof.CUTS)
+        within = self._within(tree.costs)
+        with self._how.begun.watched("reading"):
+            kept = self._kept(tree.costs)
+            others = [] if kept is None else elsewhere.mattering(wanted, kept, within)
+            if kept is None or len(others) > _MOST:
+                return None
+            return self._near.among({*kept, *others, *_numbers(tree)})
 
+    def _kept(self, costs: Costs) -> set[int] | None:
+        """Read on until all is there that trees for the goals have which cost no more than this.
 
-def _rate_asked_for(problem: Problem, how: Settings) -> Fraction | None:
-    """Give the greatest success rate, above 0, of a unit that rules ask for, or ``None``."""
-    asked, rates = motions_asked_for(how), problem.rates
-    if not asked or rates is None:
+        Gives these units, by number, and maybe more; ``None`` where that are too many.
+        """
+        near, deadline = self._near, self._how.begun
+        while near.units <= _MOST:
+            relaxed = near.relaxed
+            wide = reduce(relaxed, self._order, expired=lambda: deadline.passed, brief=True).wide
+            if wide is None:
+                return None
+            kept = wide.within(wide.costs.of(costs), lambda: deadline.passed)
+            deadline.check()
+            missing = near.open_to(kept)
+            if not missing:
+                return {*map(relaxed.network.unit_number, kept)}
+            near.grow(missing, quickly=True)
         return None
-    each = (
-        max([rates.get(motion, Fraction(1)) for motion in motions], default=Fraction(1)) for motions in asked
-    )
-    return max(each) or None
+
+    def _within(self, costs: Costs) -> int:
+        """Give what a unit elsewhere may cost in a tree that is better than one that costs this."""
+        order, least = self._order, self._free.costs
+        assert least is not None
+        key = costs.key(order)
+        if order[0] is Objective.SUCCESS:
+            rates = costs.measure(order[0]), least.measure(order[0])
+            return most_cost(Fraction(rates[0]) / rates[1])
+        if key[: order.index(Objective.UNITS)] > least.key(order)[: order.index(Objective.UNITS)]:
+            return FAR - 1
+        return next(more for more in count() if key <= least_with_more(least, order, more + 1))
+
+    def _proved(self, found: Outcome) -> Outcome:
+        assert found.costs is not None
+        assemble(self._how, self._reporter.warning)
+        self._reporter.tree(found.costs)
+        proofs = self._free.proof, found.proof
+        proof = next((each for each in proofs if each is not Proof.CUTS), Proof.CUTS)
+        return found._replace(proof=proof, cuts=(), cases=None)
+
+
+def _numbers(found: Outcome) -> list[int]:
+    return [*map(found.problem.network.unit_number, found.units or ())]
+
+
+def _unknown(near: Nearby, free: Outcome) -> Outcome:
+    """Give the bound of the best tree without rules, and no tree."""
+    first = levels(free.objectives)[0]
+    bounds = {each: bound for each, bound in free.bounds.items() if each == first}
+    blank = free._replace(status=Status.UNKNOWN, units=None, costs=None, proof=None, cuts=(), cases=None)
+    return blank._replace(problem=near.problem, bounds=bounds)

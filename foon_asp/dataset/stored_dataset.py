@@ -20,7 +20,9 @@ from foon_asp.network import (
     starting_nodes,
 )
 from foon_asp.problem import (
+    ContainerRule,
     Number,
+    Objective,
     Problem,
     UnitPricesNamed,
     Unpriced,
@@ -48,6 +50,7 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.proof.verify import Subject
+    from foon_asp.store.elsewhere import Elsewhere
 
 
 def read_stored(files: DataFiles, level: int) -> Dataset:
@@ -331,11 +334,27 @@ class StoredDataset(Dataset):
                 cone,
                 lambda cone: self._posed(cone, containers, None),
                 lambda: self.problem(goals, containers),
-                self._store.ready,
+                lambda units: self._asked(self._store.part(units, goals), goals, containers, None),
+                lambda objective: self._elsewhere(containers, objective),
                 lambda: self.subject(everything=False),
             ),
             lambda goals: self.nearby(goals, containers, None, first),
         )
+
+    def _elsewhere(self, containers: str, objective: Objective) -> "Elsewhere | None":
+        """Look at all units, unless all would have to be read to know what is at hand."""
+        from foon_asp.store.elsewhere import Elsewhere  # noqa: PLC0415 (few answers need numpy)
+
+        store = self._store
+        if self._starting:
+            return None
+        outline = store.outline
+        own = self._at_hand == store.in_kitchen
+        kitchen = outline.kitchen() if own else outline.nodes(self.kitchen)
+        implied = container_rule(containers) is ContainerRule.IMPLIED
+        skipped = outline.labelled(self.utensils if implied else ())
+        motions = [motion for motion, _ in store.motion_sources()]
+        return Elsewhere(outline, kitchen, skipped, motions, self.rates, objective)
 
     def _cone(
         self, goals: Sequence[int], containers: str, items: UsedUp | None, most: int | None = None
@@ -357,10 +376,12 @@ class StoredDataset(Dataset):
     def _posed(self, cone: Cone, containers: str, items: UsedUp | None) -> Problem:
         """Pose a question over what was found of a cone."""
         began = time.perf_counter()
-        part = self._store.part_of(cone)
-        problem = ask(self._part(part), _places(part, cone.goals), containers, self, items)
+        problem = self._asked(self._store.part_of(cone), cone.goals, containers, items)
         self.read_seconds += time.perf_counter() - began
         return problem
+
+    def _asked(self, part: Network, goals: Sequence[int], containers: str, items: UsedUp | None) -> Problem:
+        return ask(self._part(part), _places(part, goals), containers, self, items)
 
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()

@@ -45,3 +45,6 @@ from foon_asp.problem.relevance import relevant_to_plans as relevant_to_plans
 from foon_asp.problem.restriction import Contradiction as Contradiction
 from foon_asp.problem.restriction import Left as Left
 from foon_asp.problem.restriction import Restriction as Restriction
+from foon_asp.problem.trait import Having as Having
+from foon_asp.problem.trait import Trait as Trait
+from foon_asp.problem.trait import Wanted as Wanted

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
-from foon_asp.dataset.nearby_optimum import least_with_one_more, near_goals, solve_nearby
+from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
 from foon_asp.deadline import LimitError
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
@@ -158,7 +158,7 @@ def answered_under(
         from foon_asp.dataset.nearby_under_rules import solve_nearby_under  # noqa: PLC0415
 
         found = solve_nearby_under(problem, objectives, how, reporter)
-    if found is not None and (found.status is Status.OPTIMAL or found.stopped):
+    if found is not None and (found.proof is not None or found.stopped):
         return _noted(found)
     try:
         answer = _answered_reading(problem, objectives, how, reporter)
@@ -182,7 +182,7 @@ def _answered_reading(
         if free.status is Status.OPTIMAL and free.costs:
             here = find(problem, objectives, how, Reporter())
             order = levels(tuple(objectives))
-            least = least_with_one_more(free.costs, order)
+            least = least_with_more(free.costs, order)
             if here.status is Status.OPTIMAL and here.costs and here.costs.key(order) <= least:
                 return _noted(here)
             try:

@@ -10,7 +10,7 @@ from itertools import pairwise
 from foon_asp.bounds.coprime_base import coprime_base, powers
 from foon_asp.bounds.landmark_cuts import Cuts
 from foon_asp.bounds.lexicographic import Lexicographic
-from foon_asp.problem import Objective, Problem, multiplies
+from foon_asp.problem import Costs, Objective, Problem, multiplies
 
 _COARSE = 1000  # steps to 1 of -ln(rate) and of fractions, where a cost need not be exact
 _SCALE = 10**40  # steps of logarithms where rounding must not decide
@@ -149,6 +149,18 @@ class ExactCosts:
             for place, part in enumerate(vectors.of(action)):
                 proved[place] -= part
         return not _large(proved) and order.sign(proved) >= 0
+
+    def of(self, costs: Costs) -> int:
+        """Give what a tree costs, or more by the rounding."""
+        total = 0
+        for objective, factor in self._factors.items():
+            measure = Fraction(costs.measure(objective))
+            if objective in self._multiplied:
+                figure = _logarithm(measure.denominator) - _logarithm(measure.numerator) + _ROUNDED
+            else:
+                figure = math.ceil(measure * self._steps[objective])
+            total += figure * factor
+        return total * self._times
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
         """Give what an action costs by each objective, in steps; for ``success`` in rounded logarithms."""

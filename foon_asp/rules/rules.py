@@ -18,11 +18,11 @@ from foon_asp.grounding.parsing import parse
 from foon_asp.grounding.run import Run
 from foon_asp.grounding.stated import Stated
 from foon_asp.network import Source
-from foon_asp.problem import Contradiction, Problem, Restriction, reach
+from foon_asp.problem import Contradiction, Having, Problem, Restriction, Trait, Wanted, reach
 from foon_asp.rules.clause import Clause, Signature, literals, written
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.flat_answers import FlatAnswers
-from foon_asp.rules.flat_body import Asking, Constant, Fact, FlatBodies, NotFlatError, Way
+from foon_asp.rules.flat_body import Asking, Constant, Fact, FlatBodies, Item, Never, NotFlatError, Term, Way
 from foon_asp.rules.lifted_program import NOBODY, LiftedProgram, stands_alone
 from foon_asp.rules.limit import Limit, Limiting, limiting
 from foon_asp.rules.number_limits import number_checks
@@ -30,6 +30,12 @@ from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 
 _DELETING = {Kind.HELPER, Kind.FACT, Kind.DELETING}
 _SHRINKING = _DELETING | {Kind.SHRINKING}
+_KITCHEN = ("kitchen", 1)
+_HAVING = {
+    "motion": Having.MOTION,
+    **dict.fromkeys(("input", "needs"), Having.INPUT),
+    **dict.fromkeys(("output", "gives"), Having.OUTPUT),
+}
 
 
 class Told(NamedTuple):
@@ -184,25 +190,17 @@ class Rules:
         ]
 
     @property
-    def asked_for(self) -> frozenset[str]:
-        """The motions, labels and ingredients that rules name where they ask for a unit with them."""
-        facts = (fact for asking in self._askings for way in asking.helping for fact in _facts(way))
-        return frozenset(_named(facts, {"motion", "label", "ingredient"}))
+    def wanted(self) -> list[Wanted] | None:
+        """The units that are asked for.
 
-    @property
-    def motions_asked_for(self) -> list[list[str]] | None:
-        """The motions for each unit that is asked for, ``[]`` where it may have any.
-
-        ``None`` where rules see more than a tree, or do more than to rule units out and to ask for one.
+        ``None`` where rules see more than a tree, or do more than to rule units out and to ask for some.
         """
         if not self.local or self.rest or not self._flat.keys() >= set(self._settled):
             return None
-        found = []
-        for asking in self._askings:
-            of_unit = ([fact for fact in _facts(way) if fact.terms[0] == way.unit] for way in asking.helping)
-            motions = [_named(facts, {"motion"}) for facts in of_unit]
-            found.append([name for names in motions for name in names] if all(motions) else [])
-        return found
+        return [
+            Wanted([tuple(_traits(way)) for way in asking.helping if way.unit is not None], _always(asking))
+            for asking in self._askings
+        ]
 
     @property
     def _askings(self) -> list[Asking]:
@@ -377,10 +375,37 @@ def _facts(way: Way) -> list[Fact]:
     return [item for item in way.items if isinstance(item, Fact)]
 
 
+def _always(asking: Asking) -> bool:
+    """Whether a unit is asked for whatever the facts are."""
+    return not asking.when.items and all(way.unit is not None for way in asking.helping)
+
+
+def _traits(way: Way) -> Iterator[Trait]:
+    """Give what a unit has of which a way holds, as far as words of the rule say it."""
+    facts = _facts(way)
+    for (name, _), terms in facts:
+        if terms[0] == way.unit and name in _HAVING:
+            having, of_node = _HAVING[name], [fact for fact in facts if fact.terms[0] == terms[-1]]
+            if having is Having.INPUT and any(
+                _is_never(item, Fact(_KITCHEN, terms[-1:])) for item in way.items
+            ):
+                having = Having.MADE
+            said = _text(terms[-1]) if name == "motion" else _named(of_node, {"label", "ingredient"})
+            yield from (Trait(having, word) for word in said)
+
+
+def _is_never(item: Item, fact: Fact) -> bool:
+    """Whether an item says that a fact is not there, maybe with others."""
+    return isinstance(item, Never) and any(way.items == (fact,) for way in item.ways)
+
+
+def _text(term: Term) -> list[str]:
+    return [term.value] if isinstance(term, Constant) and isinstance(term.value, str) else []
+
+
 def _named(facts: Iterable[Fact], predicates: Collection[str]) -> list[str]:
     """Give the texts that facts of some predicates have in a rule."""
-    terms = (fact.terms[-1] for fact in facts if fact.signature[0] in predicates)
-    return [term.value for term in terms if isinstance(term, Constant) and isinstance(term.value, str)]
+    return [word for fact in facts if fact.signature[0] in predicates for word in _text(fact.terms[-1])]
 
 
 def _saying(statements: Iterable[AST]) -> list[AST]:

@@ -7,7 +7,7 @@ from zlib import crc32
 from foon_asp.text.json_value import read_json
 
 APPLICATION_ID = 0x464F4F4E  # "FOON", in SQLite's header
-VERSION = 5  # of what is in the tables; SQLite's user_version
+VERSION = 6  # of what is in the tables; SQLite's user_version
 
 _CHECKSUM = 4  # bytes in front of every block
 
@@ -18,7 +18,8 @@ class Table(StrEnum):
     ``about``: counts, and what stands beside the network. ``unit``, ``node``, ``producers``, ``motion``,
     ``origin``, ``kitchen``, ``price``: what belongs to the ids from ``number`` times :data:`SIZES` on.
     ``node_hash``: node ids by hash. ``label``: the labels in alphabetical order, with their first nodes.
-    ``trigram``: places of labels by three letters of them.
+    ``trigram``: places of labels by three letters of them. ``outline``: columns of bare numbers, see
+    :class:`~foon_asp.store.outline.Column`.
     """
 
     ABOUT = "about"
@@ -32,6 +33,7 @@ class Table(StrEnum):
     ORIGIN = "origin"
     KITCHEN = "kitchen"
     PRICE = "price"
+    OUTLINE = "outline"
 
 
 # How many values share a block: all of them are read to get one, and each block costs a row.
@@ -57,7 +59,7 @@ def seal(table: Table, number: int, value: object) -> bytes:
 
 
 def sealed(table: Table, number: int, content: bytes) -> bytes:
-    """Make a block of values that are written as JSON without blanks."""
+    """Make a block of its content: values that are written as JSON without blanks, or a column of numbers."""
     return _checksum(table, number, content) + content
 
 
@@ -68,9 +70,14 @@ def plain_text(value: object) -> bytes:
 
 def unseal(table: Table, number: int, block: object) -> object:
     """Give back what :func:`seal` wrote; raises :class:`ValueError` when this is not it."""
+    return read_json(unsealed(table, number, block).decode("ascii"))
+
+
+def unsealed(table: Table, number: int, block: object) -> bytes:
+    """Give back what :func:`sealed` was given; raises :class:`ValueError` when this is not it."""
     if not isinstance(block, bytes) or block[:_CHECKSUM] != _checksum(table, number, block[_CHECKSUM:]):
         raise ValueError(f"block {number} of {table} does not agree with its checksum")
-    return read_json(block[_CHECKSUM:].decode("ascii"))
+    return block[_CHECKSUM:]
 
 
 def _checksum(table: Table, number: int, content: bytes) -> bytes:

@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+import sys
 from array import array
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -11,8 +12,9 @@ from typing import Any
 
 from foon_asp.network import FunctionalUnit, ObjectNode, Source
 from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, seal, sealed, table_statement, unseal
-from foon_asp.store.label_index import LISTED, READY, trigram_blocks, trigram_values
+from foon_asp.store.label_index import LISTED, trigram_blocks, trigram_values
 from foon_asp.store.numbering import Numbering
+from foon_asp.store.outline import Column, word_hash
 from foon_asp.store.plain_values import (
     entry_values,
     node_hashes,
@@ -68,9 +70,6 @@ class StoreBuilder:
         self._motion_sources: list[Source] = []  # of the first unit with each
         self._motion_of = array("I")  # by unit
         self._without_outputs: list[int] = []  # units
-        # the first units that execute with what is in the kitchen: by motion, and by label of what they have
-        self._ready: list[list[int]] = []
-        self._ready_with: dict[int, list[int]] = {}
         self._origins: dict[tuple[str, tuple[str, ...]], int] = {}
         self._last_origin: tuple[str, tuple[str, ...]] | None = None
         self._last_number = -1
@@ -80,6 +79,12 @@ class StoreBuilder:
         self._hashed = array("I")  # the node with the hash at the same place
         self._makers = array("I")  # with the node at the same place in _made
         self._made = array("I")
+        self._outputs = array("I")  # by unit: how many
+        self._taken = array("I")  # nodes, unit by unit
+        self._inputs = array("I")  # by unit: how many
+        self._word_hashes = array("I")  # of labels, by node
+        self._held = array("I")  # hashes of ingredients, node by node
+        self._holds = array("I")  # by node: how many
         self._node_block: list[str] = []
         self._unit_block: list[list[Any]] = []
         self._later: defaultdict[int, list[int]] = defaultdict(list)  # sources of later copies, by unit
@@ -109,7 +114,6 @@ class StoreBuilder:
         motion_id = self._motions.setdefault(motion, len(self._motions))
         if motion_id == len(self._motion_sources):
             self._motion_sources.append(sources[0])
-            self._ready.append([])
             self._digests.add_motion(motion)
         places: list[int] = []
         for file, line, column, videos in sources:
@@ -130,8 +134,9 @@ class StoreBuilder:
                 self._without_outputs.append(unit)
             for o in ins:
                 self._needed[o] = 1
-            if all(map(self._at_hand.__getitem__, ins)):
-                self._note_ready(unit, motion_id, (*ins, *outs))
+            self._taken.extend(ins)
+            self._inputs.append(len(ins))
+            self._outputs.append(len(outs))
             self._made.extend(outs)
             self._makers.extend([unit] * len(outs))
             if len(block) == SIZES[Table.UNIT]:
@@ -190,6 +195,7 @@ class StoreBuilder:
         self._units, self._nodes = Numbering(), Numbering()  # makes room for what follows
         self._latest.clear()
         self._same.clear()
+        self._write_outline()
         producers = _by_key(self._made, self._makers, objects)
         self._write_values(Table.PRODUCERS, producers)
         hashes, hashed = self._hashes, self._hashed
@@ -202,7 +208,7 @@ class StoreBuilder:
         trigrams = trigram_blocks(labels)
         self._write_all(Table.TRIGRAM, trigram_values(trigrams))
         motions = (
-            [motion, *source[:3], self._ready[number], *lacking[0][number], *lacking[1][number]]
+            [motion, *source[:3], *lacking[0][number], *lacking[1][number]]
             for number, (motion, source) in enumerate(self.motion_sources())
         )
         self._write_values(Table.MOTION, motions)
@@ -277,9 +283,7 @@ class StoreBuilder:
             if counts[label] <= LISTED:
                 first[label].append(node)
         return (
-            [label, counts[number], first[number], self._ready_with.get(number, [])]
-            for label in labels
-            for number in (self._labels[label],)
+            [label, counts[number], first[number]] for label in labels for number in (self._labels[label],)
         )
 
     def _new_node(self, node: ObjectNode, number: int, texts: tuple[str, ...], content: bytes) -> None:
@@ -294,16 +298,14 @@ class StoreBuilder:
         self._label_of.append(self._labels.setdefault(node.label, len(self._labels)))
         self._needed.append(0)
         self._at_hand.append(in_kitchen)
+        self._word_hashes.append(word_hash(node.label))
+        ingredients = node.ingredients
+        self._holds.append(len(ingredients))
+        self._held.extend(map(word_hash, ingredients))
         self._digests.add_node(number, content, in_kitchen)
         self._node_block.append(node_values(texts, in_kitchen))
         if len(self._node_block) == SIZES[Table.NODE]:
             self._flush_nodes(number)
-
-    def _note_ready(self, unit: int, motion: int, nodes: Iterable[int]) -> None:
-        labels = {self._label_of[o] for o in nodes}
-        for ready in (self._ready[motion], *(self._ready_with.setdefault(each, []) for each in labels)):
-            if len(ready) < READY:
-                ready.append(unit)
 
     def _ids(self, nodes: Iterable[ObjectNode]) -> list[int]:
         # The reader gives one object for each node: knowing that object is quicker than comparing nodes.
@@ -356,6 +358,25 @@ class StoreBuilder:
     def _read(self, table: Table, number: int) -> Any:
         row = self._database.execute(f"SELECT content FROM {table} WHERE number = ?", (number,))
         return unseal(table, number, row.fetchone()[0])
+
+    def _write_outline(self) -> None:
+        columns = {
+            Column.MOTIONS: self._motion_of,
+            Column.INPUT_COUNTS: self._inputs,
+            Column.INPUTS: self._taken,
+            Column.OUTPUT_COUNTS: self._outputs,
+            Column.OUTPUTS: self._made,
+            Column.LABELS: self._word_hashes,
+            Column.INGREDIENT_COUNTS: self._holds,
+            Column.INGREDIENTS: self._held,
+            Column.KITCHEN: array("I", iter(self._at_hand)),
+        }
+        for number, column in columns.items():
+            if sys.byteorder == "big":
+                column.byteswap()
+            self._insert(Table.OUTLINE, number, sealed(Table.OUTLINE, number, column.tobytes()))
+            if sys.byteorder == "big":
+                column.byteswap()
 
     def _write_values(self, table: Table, values: Iterable[object]) -> None:
         waiting = iter(values)

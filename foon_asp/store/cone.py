@@ -27,12 +27,6 @@ class Cone:
         self._closed: set[int] = set()
         self._producers, self._needs, self._at_hand = producers, needs, at_hand
 
-    def add(self, units: Iterable[int]) -> None:
-        """Read units wherever they are; what they need is open unless it is at hand."""
-        for unit in units:
-            self.units.add(unit)
-            self.open.update(o for o in self._needs(unit) if o not in self._closed and not self._at_hand(o))
-
     @uncollected()
     def grow(self, objects: Iterable[int], most: int | None = None) -> None:
         """Read the producers of open nodes, then of what these need, the nearest first.

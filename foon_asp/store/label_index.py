@@ -12,7 +12,6 @@ from foon_asp.store.block import SIZES, Table
 from foon_asp.store.store_file import StoreFile
 
 LISTED = 12  # node ids kept with a label: as many as a message has room for
-READY = 12  # ids of units kept with a label or motion that execute with what is in the kitchen
 
 _TELLING = 5_000  # three letters that more labels have tell nothing: only how many do is kept
 _COMPARED = 300  # labels looked at closely when a similar one is wanted
@@ -69,16 +68,8 @@ class LabelIndex:
         place = self._place(label)
         if place == self._labels or self._at(place) != label:
             return 0, ()
-        _, count, first, _ = self._label(place)
+        _, count, first = self._label(place)
         return count, first
-
-    def ready_with(self, label: str) -> Sequence[int]:
-        """Give the first :data:`READY` units with a label that execute with what the kitchen has."""
-        place = self._place(label)
-        if place == self._labels or self._at(place) != label:
-            return ()
-        ready: Sequence[int] = self._label(place)[3]
-        return ready
 
     def beginning(self, start: str, most: int) -> list[str]:
         """Give labels that begin so, in alphabetical order, and not more of them than ``most``."""

@@ -1,12 +1,12 @@
 """A store, opened to ask questions: names, and the part of the network that a question is about."""
 
 from collections import Counter
-from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from foon_asp.garbage import uncollected
 from foon_asp.network import FunctionalUnit, Network, NodePattern, ObjectNode, Source
@@ -18,6 +18,9 @@ from foon_asp.store.label_index import LabelIndex
 from foon_asp.store.plain_values import entry_of, node_hashes, node_of, pattern_hash
 from foon_asp.store.store_file import StoreFile
 from foon_asp.text.object_list import ListedObject
+
+if TYPE_CHECKING:  # few answers need numpy
+    from foon_asp.store.outline import Outline
 
 
 class Store:
@@ -43,7 +46,6 @@ class Store:
         self._counts = about
         labels = LabelIndex(self._file, about["labels"], about["trigram_blocks"])
         self.labelled, self.beginning, self.near = labels.labelled, labels.beginning, labels.near
-        self._ready_with = labels.ready_with
         self._nodes: dict[int, ObjectNode] = {}
         # what there is of each by number
         tables = Table.UNIT, Table.NODE, Table.PRODUCERS, Table.MOTION, Table.ORIGIN, Table.PRICE
@@ -292,14 +294,13 @@ class Store:
         found: list[int] = self._makers(object_id)
         return found
 
-    def ready(self, words: Collection[str]) -> set[int]:
-        """Give some units that execute with what is in the kitchen that was imported, if there are any.
+    @cached_property
+    def outline(self) -> "Outline":
+        """Read the outline of the whole network: 40 bytes or so for each unit."""
+        from foon_asp.store.outline import Outline  # noqa: PLC0415 (few answers need numpy)
 
-        They have one of these words as their motion, or an object node with it as its label.
-        """
-        motions = map(self._motion, range(self._counts["motions"]))
-        found = {unit for motion, *_, ready, _, _, _, _ in motions if motion in words for unit in ready}
-        return found.union(*map(self._ready_with, words))
+        motions = [motion for motion, _ in self.motion_sources()]
+        return Outline(self._file.column, self.units, self.objects, motions, self._file.damaged)
 
     def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
         """Give the motion, the inputs, the outputs and the places of a unit."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from foon_asp.errors import UserError
-from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, table_statement, unseal
+from foon_asp.store.block import APPLICATION_ID, SIZES, VERSION, Table, table_statement, unseal, unsealed
 from foon_asp.store.block_shape import check_block, note_line_ends
 from foon_asp.text.plain_file import STORE_MAGIC, read_beginning
 
@@ -53,11 +53,14 @@ class StoreFile:
         known = self._blocks[table]
         found = known.get(number)
         if found is None:
-            row = self._guarded(lambda: self._row(table, number))
-            if row is None:
-                self.damaged(f"block {number} of {table} is missing")
-            found = known[number] = self._guarded(lambda: _opened(table, number, row[0]))
+            content = self._content(table, number)
+            found = known[number] = self._guarded(lambda: _opened(table, number, content))
         return found
+
+    def column(self, number: int) -> bytes:
+        """Read a column of the outline."""
+        content = self._content(Table.OUTLINE, number)
+        return self._guarded(lambda: unsealed(Table.OUTLINE, number, content))
 
     def values(self, table: Table) -> Callable[[int], Any]:
         """Make a function that gives what a table has under a number, among others in a block."""
@@ -88,9 +91,13 @@ class StoreFile:
         """Say that the store is of no use."""
         raise UserError(f"{self.file}: the store is damaged ({what}); import its source files again")
 
-    def _row(self, table: Table, number: int) -> Any:
+    def _content(self, table: Table, number: int) -> object:
         statement = f"SELECT content FROM {table} WHERE number = ?"
-        return self._database.execute(statement, (number,)).fetchone()
+        row = self._guarded(lambda: self._database.execute(statement, (number,)).fetchone())
+        if row is None:
+            self.damaged(f"block {number} of {table} is missing")
+        found: object = row[0]
+        return found
 
     def _guarded(self, read: Callable[[], Value]) -> Value:
         if not self._closing.alive:
