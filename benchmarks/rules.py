@@ -1,6 +1,7 @@
 """What rules of one's own cost: each ready-made constraint, against the question without it, in one run.
 
     python benchmarks/rules.py --family recipe-like --family deep --units 100000 --goals 5
+    python benchmarks/rules.py --family deep --units 1000000 --store      each asked of a store
     python benchmarks/rules.py DIR...      networks in folders, such as a universal FOON
 
 Prints a table in Markdown, a row for each network, objective and constraint, over all goals. One that deletes
@@ -11,13 +12,16 @@ at where units were read, a network without videos has one unit of 32 from anoth
 single video. What is allowed is
 1.2 times the other time for a rule that deletes, and 5 times for others, plus 0.1 s; *within* counts the
 goals that took no more, and *of allowed* is the median of what they took of that. Times are seconds of
-processors, after reading, those of clingo's own process included. ``--plain SECONDS`` solves each question
-with ``--reduce none`` as well, the plain program under the same options of clingo, in a process of its own
-for at most so many seconds of a processor. It compares the answers, and says how many were proved so and
-what they took, at the limit as well; the exit code is 1 where two differ.
+processors, after reading, those of clingo's own process included. With ``--store`` each network, also one
+written without units, is imported into a store, which every question opens anew: seconds are then from
+opening it to the answer, and no question has anything from one before. ``--plain SECONDS`` solves each
+question with ``--reduce none`` as well, the plain program under the same options of clingo, in a process of
+its own for at most so many seconds of a processor. It compares the answers, and says how many were proved so
+and what they took, at the limit as well; the exit code is 1 where two differ.
 """
 
 import argparse
+import gc
 import os
 import pickle
 import random
@@ -34,13 +38,17 @@ from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import assemble
+from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
 from foon_asp.deadline import Deadline
 from foon_asp.network import Network, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
 from foon_asp.python_process import _end_all
+from foon_asp.questions.answer import answered_under
 from foon_asp.reduce import NONE
-from foon_asp.text.data_folder import find_data, read_data
+from foon_asp.store.import_files import import_files
+from foon_asp.text.data_folder import DataFiles, find_data, read_data
 from foon_asp.text.goal_name import listed_nodes
+from foon_asp.text.writer import write_units
 
 COLUMNS = (
     "data",
@@ -78,6 +86,36 @@ class Asked(NamedTuple):
         return Settings((Path(self.name),), constants=self.constants)
 
 
+class Stores:
+    """Stores made of networks, in a folder; what stands beside the networks is that of some files."""
+
+    def __init__(self, folder: Path, files: DataFiles) -> None:
+        self._folder, self._files = folder, files
+
+    def add(self, network: Network, name: str) -> Path:
+        """Import a network, each of its units from the file and the videos that it has."""
+        texts: dict[tuple[str, tuple[str, ...]], list[int]] = {}
+        for unit, (source, *_) in enumerate(network.sources):
+            texts.setdefault((Path(source.file).name, source.videos), []).append(unit)
+        files = []
+        for number, ((file, videos), units) in enumerate(texts.items()):
+            path = self._folder / name / str(number) / file
+            path.parent.mkdir(parents=True)
+            written = write_units(map(network.unit, units), [f"Source:\t{video}" for video in videos])
+            path.write_text(written, encoding="utf-8")
+            files.append(path)
+        store = self._folder / f"{name}.foon"
+        import_files(self._files._replace(network=tuple(files)), store, lenient=True)
+        return store
+
+
+def opened(store: Path, problem: Problem) -> Problem:
+    """Ask a store for the same goals."""
+    dataset = read_stored(DataFiles((store,)), 3)
+    assert isinstance(dataset, StoredDataset)
+    return dataset.nearby(dataset.goals(problem.goal_nodes), problem.containers.value)
+
+
 class Measured(NamedTuple):
     """A question without a rule and with it: seconds, and the outcome with it."""
 
@@ -102,6 +140,7 @@ def main() -> int:
     parser.add_argument("--objectives", default="units,success")
     parser.add_argument("--containers", type=ContainerRule, default=ContainerRule.STRICT)
     parser.add_argument("--limit", type=float, default=60, metavar="SECONDS")
+    parser.add_argument("--store", action="store_true", help="ask stores made of the networks")
     parser.add_argument("--plain", type=float, metavar="SECONDS", help="also without reductions")
     arguments = parser.parse_args()
     print("| " + " | ".join(COLUMNS) + " |")
@@ -123,7 +162,8 @@ def main() -> int:
 
 
 def _folder(folder: Path, arguments: argparse.Namespace) -> int:
-    data = read_data(find_data(folder, (), None, None, None, None), lenient=True)
+    files = find_data(folder, (), None, None, None, None)
+    data = read_data(files, lenient=True)
     network, kitchen = data.network, data.kitchen
     if not any(source.videos for sources in network.sources for source in sources):
         network = _with_sources(network, random.Random(arguments.seed))
@@ -140,6 +180,9 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
         goals = goals[-arguments.goals :]
     problems = [posed(goal) for goal in goals]
     _ = problems[0].needs, problems[0].makers  # indexes of the network
+    stores = Stores(Path(tempfile.mkdtemp(dir=folder)), files) if arguments.store else None
+    store = stores.add(network, "whole") if stores else None
+    gc.freeze()  # a process that opens a store has no network in memory
     different = 0
     deadline = Deadline
     for name in arguments.objectives.split(","):
@@ -152,9 +195,9 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
         for asked, of in _constraints(trees, arguments.constraint):
             if arguments.constraint and asked.name not in arguments.constraint:
                 continue
-            row = [_asked(outcome, objectives, asked, arguments.limit) for outcome in of]
+            row = [_asked(outcome, objectives, asked, arguments.limit, store) for outcome in of]
             if asked.name in DELETING:
-                row = list(_without_units(row, objectives, asked, arguments.limit))
+                row = list(_without_units(row, objectives, asked, arguments.limit, stores))
             if arguments.plain:
                 both = [_with_plain(m, objectives, asked, arguments.plain) for m in row]
                 row = [measured for measured in both if measured is not None]
@@ -249,21 +292,24 @@ def _trees_left(asked: Asked, trees: list[Outcome]) -> tuple[int, int]:
     """Count of how many goals a tree is left, and then the units that are removed."""
     rules = assemble(asked.settings, lambda _: None).understood
     assert rules is not None
-    left = removed = 0
-    for outcome in trees:
-        found = rules.applied(outcome.problem)
-        if isinstance(found, Restriction):
-            problem = replace(outcome.problem, restriction=found)
-            left += bool(reach(problem).available[problem.goals[0]])
-            removed = (
-                sum(map(found.removed, range(len(problem.network)))) if outcome is trees[-1] else removed
-            )
-    return left, removed
+    problem = trees[-1].problem
+    found = rules.applied(problem)
+    if not isinstance(found, Restriction):
+        return 0, 0
+    available = reach(replace(problem, restriction=found)).available
+    left = sum(available[outcome.problem.goals[0]] for outcome in trees)
+    return left, sum(map(found.removed, range(len(problem.network))))
 
 
-def _timed(problem: Problem, objectives: tuple[Objective, ...], settings: Settings) -> tuple[float, Outcome]:
+def _timed(
+    problem: Problem, objectives: tuple[Objective, ...], settings: Settings, store: Path | None
+) -> tuple[float, Outcome]:
     began = _spent()
-    outcome = solve(problem, objectives, settings)
+    outcome: Outcome
+    if store is None:
+        outcome = solve(problem, objectives, settings)
+    else:
+        outcome = answered_under(opened(store, problem), objectives, settings)
     return _spent() - began, outcome
 
 
@@ -274,14 +320,21 @@ def _spent() -> float:
     return sum(each.ru_utime + each.ru_stime for each in found)
 
 
-def _asked(outcome: Outcome, objectives: tuple[Objective, ...], asked: Asked, limit: float) -> Measured:
-    without, _ = _timed(outcome.problem, objectives, Settings(deadline=Deadline(limit)))
-    with_, found = _timed(outcome.problem, objectives, asked.settings._replace(deadline=Deadline(limit)))
-    return Measured(without, with_, found, 5 * without + 0.1)
+def _asked(
+    outcome: Outcome, objectives: tuple[Objective, ...], asked: Asked, limit: float, store: Path | None
+) -> Measured:
+    problem = outcome.problem
+    without, _ = _timed(problem, objectives, Settings(deadline=Deadline(limit)), store)
+    with_, found = _timed(problem, objectives, asked.settings._replace(deadline=Deadline(limit)), store)
+    return Measured(without, with_, found._replace(problem=problem), 5 * without + 0.1)
 
 
 def _without_units(
-    row: list[Measured], objectives: tuple[Objective, ...], asked: Asked, limit: float
+    row: list[Measured],
+    objectives: tuple[Objective, ...],
+    asked: Asked,
+    limit: float,
+    stores: Stores | None,
 ) -> Iterator[Measured]:
     """Ask the same of the network written without the units that are removed."""
     whole = row[0].outcome.problem
@@ -295,6 +348,7 @@ def _without_units(
     network = builder.build()
     ids = [network.object_id(node) for node in whole.network.objects]
     kitchen = _same(whole.kitchen, whole.network, network)
+    store = stores.add(network, f"{objectives[0]} {asked.name}") if stores else None
     for measured in row:
         goal = ids[measured.outcome.problem.goals[0]]
         if goal is None:
@@ -302,7 +356,7 @@ def _without_units(
             continue
         problem = Problem(network, kitchen, (goal,), whole.rates, whole.utensils, whole.containers)
         _ = problem.needs, problem.makers
-        without, other = _timed(problem, objectives, Settings(deadline=Deadline(limit)))
+        without, other = _timed(problem, objectives, Settings(deadline=Deadline(limit)), store)
         assert other.status is measured.outcome.status
         if other.costs is not None and measured.outcome.costs is not None:
             by = levels(objectives)

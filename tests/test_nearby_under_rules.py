@@ -4,6 +4,7 @@ import random
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -291,6 +292,55 @@ def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(
     found = answered_under(problem, UNITS, WAVE)
     assert (found.status, found.units, found.costs, found.stopped) == (Status.UNKNOWN, None, None, "a limit")
     assert found.bounds == {Objective.UNITS: 3}
+
+
+def random_ways(rng: random.Random) -> list[tuple[str, str, str]]:
+    """Give two ways to what a wave needs, one of which looks as cheap as its longest branch.
+
+    What the wave gives leads to the stew by a long way; another wave needs many things, each close by.
+    """
+
+    def fan(name: str, item: str) -> tuple[list[tuple[str, str, str]], str]:
+        parts = [f"{name} {n}" for n in range(rng.randint(3, 7))]
+        return [("cut", item, part) for part in parts], "+".join(parts)
+
+    def chain(*nodes: str) -> list[tuple[str, str, str]]:
+        return [("heat", *pair) for pair in pairwise(nodes)]
+
+    parts, all_parts = fan("part", "bones")
+    others, all_others = fan("other", "water")
+    soaks = [f"soaked {n}" for n in range(rng.randint(1, 5))]
+    later = [f"kept {n}" for n in range(rng.randint(1, 8))]
+    more = [*parts, ("knead", all_parts, "x"), *chain("bones", *soaks, "x"), ("wave", "x", "waved")]
+    more += [*chain("waved", *later, "stew"), *others, ("wave", all_others, "waved too")]
+    if rng.random() < 0.3:
+        more.append(("turn", rng.choice(soaks), rng.choice(later)))
+    return more
+
+
+@SERIES
+def test_random_ways_to_what_rules_ask_for(
+    part: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(nearby_under_rules, "_TRIED", ((1, 0),))
+    proved = 0
+    for seed in range(100 if part == 1 else 30):
+        rng = random.Random(seed)
+        ways, first = random_ways(rng), rng.choice((1, 4, 20))
+        varied = ("cut", "heat", "wave", "knead", "turn")
+        rates = RATES.replace("wave\t0.92\n", "") + "".join(
+            f"{motion}\t{rng.choice((0.5, 0.9, 1))}\n" for motion in varied
+        )
+        objectives = rng.choice((UNITS, BY_SUCCESS, (Objective.UNITS, Objective.SUCCESS)))
+        problem = near_stew(tmp_path, *ways, first=first, rates=rates)
+        near = solve_nearby_under(problem, objectives, WAVE, Reporter())
+        expected = solve(replace(problem.whole, origin=None), objectives, WAVE)
+        assert expected.costs is not None
+        if near is not None and near.status is Status.OPTIMAL:
+            assert near.costs is not None
+            assert near.costs.key(levels(objectives)) == expected.costs.key(levels(objectives)), seed
+            proved += 1
+    assert proved > 10
 
 
 @SERIES
