@@ -26,11 +26,12 @@ import os
 import pickle
 import random
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
@@ -92,11 +93,18 @@ class Stores:
     def __init__(self, folder: Path, files: DataFiles) -> None:
         self._folder, self._files = folder, files
 
-    def add(self, network: Network, name: str) -> Path:
-        """Import a network, each of its units from the file and the videos that it has."""
+    def of(self, network: Network, name: str, removed: Callable[[int], bool] = lambda _: False) -> Path:
+        """Give the store of a network without the units removed, each from the file and videos it has.
+
+        It is made when it is asked for by this name first.
+        """
+        store = self._folder / f"{name}.foon"
+        if store.exists():
+            return store
         texts: dict[tuple[str, tuple[str, ...]], list[int]] = {}
         for unit, (source, *_) in enumerate(network.sources):
-            texts.setdefault((Path(source.file).name, source.videos), []).append(unit)
+            if not removed(unit):
+                texts.setdefault((Path(source.file).name, source.videos), []).append(unit)
         files = []
         for number, ((file, videos), units) in enumerate(texts.items()):
             path = self._folder / name / str(number) / file
@@ -104,8 +112,8 @@ class Stores:
             written = write_units(map(network.unit, units), [f"Source:\t{video}" for video in videos])
             path.write_text(written, encoding="utf-8")
             files.append(path)
-        store = self._folder / f"{name}.foon"
         import_files(self._files._replace(network=tuple(files)), store, lenient=True)
+        shutil.rmtree(self._folder / name)
         return store
 
 
@@ -180,20 +188,28 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
         goals = goals[-arguments.goals :]
     problems = [posed(goal) for goal in goals]
     _ = problems[0].needs, problems[0].makers  # indexes of the network
-    stores = Stores(Path(tempfile.mkdtemp(dir=folder)), files) if arguments.store else None
-    store = stores.add(network, "whole") if stores else None
+    with tempfile.TemporaryDirectory(dir=folder) as kept:
+        stores = Stores(Path(kept), files) if arguments.store else None
+        return _ask_all(folder.name, problems, stores, arguments)
+
+
+def _ask_all(data: str, problems: list[Problem], stores: Stores | None, arguments: argparse.Namespace) -> int:
+    only: list[str] = arguments.constraint
+    store = stores.of(problems[0].network, "whole") if stores else None
     gc.freeze()  # a process that opens a store has no network in memory
+    deleting: list[Asked] | None = None
     different = 0
-    deadline = Deadline
     for name in arguments.objectives.split(","):
         objectives = (Objective(name),)
         best = [
-            solve(problem, objectives, Settings(deadline=deadline(arguments.limit))) for problem in problems
+            solve(problem, objectives, Settings(deadline=Deadline(arguments.limit))) for problem in problems
         ]
         trees = [outcome for outcome in best if outcome.units]
+        if deleting is None:
+            deleting = list(_deleting(trees, only))
         rows: dict[str, list[Measured]] = {}
-        for asked, of in _constraints(trees, arguments.constraint):
-            if arguments.constraint and asked.name not in arguments.constraint:
+        for asked, of in (*((each, trees) for each in deleting), *_others(trees)):
+            if only and asked.name not in only:
                 continue
             row = [_asked(outcome, objectives, asked, arguments.limit, store) for outcome in of]
             if asked.name in DELETING:
@@ -204,10 +220,10 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
                 different += len(both) - len(row)
             rows.setdefault(asked.name, []).extend(row)
             if asked.name in DELETING:
-                _print(folder.name, objectives, asked, row)
+                _print(data, objectives, asked, row)
         for constraint, row in rows.items():
             if constraint not in DELETING:
-                _print(folder.name, objectives, Asked(constraint, ()), row)
+                _print(data, objectives, Asked(constraint, ()), row)
     return different
 
 
@@ -227,16 +243,11 @@ def _same(nodes: Iterable[int], before: Network, after: Network) -> frozenset[in
     return frozenset(o for o in found if o is not None)
 
 
-def _constraints(trees: list[Outcome], only: list[str]) -> Iterator[tuple[Asked, list[Outcome]]]:
-    """Give constraints with constants that matter, and the trees of whose goals they are asked."""
+def _deleting(trees: list[Outcome], only: list[str]) -> Iterator[Asked]:
+    """Give constraints that remove units, with constants that leave as many goals a tree as can be."""
     problem = trees[0].problem
     network = problem.network
-    motions = Counter(network.motions)
-    labels, ingredients = Counter[str](), Counter[str]()
-    for sides in zip(network.inputs, network.outputs, strict=True):
-        nodes = [network.objects[o] for side in sides for o in side]
-        labels.update({node.label for node in nodes})
-        ingredients.update({item for node in nodes for item in node.ingredients})
+    motions, labels, ingredients = _words(network)
     files = Counter(source.file for sources in network.sources for source in sources)
     rates = sorted(set((problem.rates or {}).values()))
     for name, constant, values in (
@@ -256,7 +267,24 @@ def _constraints(trees: list[Outcome], only: list[str]) -> Iterator[tuple[Asked,
         tied = ('tied_utensil="knife"',) if name == "motion_only_with" else ()
         asked = [Asked(name, (f"{constant}={value}", *tied)) for value in values]
         if asked and (not only or name in only):
-            yield max(asked, key=lambda each: _trees_left(each, trees)), trees
+            yield max(asked, key=lambda each: _trees_left(each, trees))
+
+
+def _words(network: Network) -> tuple[Counter[str], Counter[str], Counter[str]]:
+    """Count motions, and in how many units labels and ingredients are."""
+    labels, ingredients = Counter[str](), Counter[str]()
+    for sides in zip(network.inputs, network.outputs, strict=True):
+        nodes = [network.objects[o] for side in sides for o in side]
+        labels.update({node.label for node in nodes})
+        ingredients.update({item for node in nodes for item in node.ingredients})
+    return Counter(network.motions), labels, ingredients
+
+
+def _others(trees: list[Outcome]) -> Iterator[tuple[Asked, list[Outcome]]]:
+    """Give the other constraints with constants that matter, each with the tree of whose goal it is asked."""
+    problem = trees[0].problem
+    network = problem.network
+    motions, labels, ingredients = _words(network)
     for outcome in trees:
         used = Counter(network.motions[unit] for unit in outcome.units or ())
         [(often, uses)] = used.most_common(1)
@@ -340,28 +368,49 @@ def _without_units(
     whole = row[0].outcome.problem
     restriction = _restricted(whole, asked).restriction
     assert restriction is not None
+    by = levels(objectives)
+    for measured, problem in zip(row, _written(row, restriction, stores), strict=True):
+        if problem is None:
+            yield measured._replace(without=0.0, allowed=0.1)
+            continue
+        store = stores.of(whole.network, asked.name, restriction.removed) if stores else None
+        without, other = _timed(problem, objectives, Settings(deadline=Deadline(limit)), store)
+        if Status.UNKNOWN not in {other.status, measured.outcome.status}:
+            assert other.status is measured.outcome.status
+        if other.status is measured.outcome.status is Status.OPTIMAL:
+            assert other.costs is not None
+            assert measured.outcome.costs is not None
+            assert other.costs.key(by) == measured.outcome.costs.key(by)
+        yield measured._replace(without=without, allowed=1.2 * without + 0.1)
+
+
+def _written(
+    row: list[Measured], restriction: Restriction, stores: Stores | None
+) -> Iterator[Problem | None]:
+    """Give each question to the network without some units, ``None`` where the goal is not in it."""
+    whole = row[0].outcome.problem
+    left = [unit for unit in range(len(whole.network)) if not restriction.removed(unit)]
+    if stores:
+        there = {o for u in left for o in (*whole.network.inputs[u], *whole.network.outputs[u])}
+        for measured in row:
+            problem = measured.outcome.problem
+            yield problem if problem.goals[0] in there else None
+        return
     builder = NetworkBuilder()
-    for unit in range(len(whole.network)):
-        if not restriction.removed(unit):
-            kept = whole.network.unit(unit)
-            builder.add(kept.motion, list(kept.inputs), list(kept.outputs), whole.network.sources[unit][0])
+    for unit in left:
+        kept = whole.network.unit(unit)
+        builder.add(kept.motion, list(kept.inputs), list(kept.outputs), whole.network.sources[unit][0])
     network = builder.build()
     ids = [network.object_id(node) for node in whole.network.objects]
     kitchen = _same(whole.kitchen, whole.network, network)
-    store = stores.add(network, f"{objectives[0]} {asked.name}") if stores else None
     for measured in row:
         goal = ids[measured.outcome.problem.goals[0]]
         if goal is None:
-            yield measured._replace(without=0.0, allowed=0.1)
+            yield None
             continue
         problem = Problem(network, kitchen, (goal,), whole.rates, whole.utensils, whole.containers)
         _ = problem.needs, problem.makers
-        without, other = _timed(problem, objectives, Settings(deadline=Deadline(limit)), store)
-        assert other.status is measured.outcome.status
-        if other.costs is not None and measured.outcome.costs is not None:
-            by = levels(objectives)
-            assert other.costs.key(by) == measured.outcome.costs.key(by)
-        yield measured._replace(without=without, allowed=1.2 * without + 0.1)
+        yield problem
 
 
 def _with_plain(

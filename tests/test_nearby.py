@@ -218,6 +218,31 @@ def test_a_limit_while_all_is_read_gives_the_tree_in_hand(
     assert found.ending is Ending.LIMIT
 
 
+@pytest.mark.parametrize("limited", [True, False])
+def test_where_rules_leave_no_tree_one_without_them_is_not_optimized(
+    limited: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dataset = two_ways(tmp_path)
+    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    searched: list[Problem] = []
+
+    def counted(problem: Problem, *more: Any) -> Outcome:
+        searched.append(problem)
+        return solve(problem, *more)
+
+    def stopped(*asked: object, **named: object) -> None:
+        raise LimitError(Deadline(0))
+
+    monkeypatch.setattr(nearby_optimum, "solve", counted)
+    if limited:
+        monkeypatch.setattr(Nearby, "grow", stopped)
+    forbidden = Settings(
+        tuple(RuleText(f':- use(U), motion(U,"{each}").') for each in (SHORT[-1][0], LONG[-1][0]))
+    )
+    found = answered_nearby(near, [Objective.UNITS], forbidden)
+    assert (found.status, found.units, len(searched)) == (Status.INFEASIBLE, None, 1)
+
+
 def test_rows_of_a_batch_are_those_of_the_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     store = BatchData(two_ways(tmp_path))
     text = BatchData(foon_asp.load(tmp_path / "stew.txt", kitchen=tmp_path / "kitchen.txt")._dataset)

@@ -8,8 +8,8 @@ from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import hold_for_parts, leave_a_rest
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.deadline import LimitError
-from foon_asp.problem import Costs, Objective, Problem, executable_order, levels, multiplies
+from foon_asp.deadline import Deadline, LimitError
+from foon_asp.problem import Costs, Objective, Problem, executable_order, follow, levels, multiplies, reach
 from foon_asp.reduce import ALL
 
 if TYPE_CHECKING:  # plain answers do not need it
@@ -56,9 +56,8 @@ def solve_nearby(
         problem = near.problem
         found = solve(near.relaxed, objectives, alone, _OnlyWarnings(reporter), mattered)
         if found.status is Status.INFEASIBLE:
-            if without is None and how.constraints:
-                without = solve_nearby(near, objectives, free)
-            return None if without is None else found._replace(problem=near.problem)
+            rules_alone = without is not None or (bool(how.constraints) and _leads(near, deadline))
+            return found._replace(problem=near.problem) if rules_alone else None
         known += [bound for each, bound in found.bounds.items() if each == first]
         lacking = [] if found.units is None else near.lacking(found.units)
         if lacking and found.status is Status.OPTIMAL:
@@ -87,6 +86,24 @@ def solve_nearby(
             assert found.costs is not None
             reporter.tree(found.costs)
         return found
+
+
+def _leads(near: "Nearby", deadline: Deadline) -> bool:
+    """Say whether there is a tree without rules, or at a limit, whether there may be one."""
+    while True:
+        relaxed = near.relaxed
+        found = reach(relaxed)
+        tree = follow(relaxed.goals, found.makers, relaxed.needs, relaxed.kitchen)
+        if tree is None:
+            return False
+        lacking = near.lacking(unit for unit in found.units if unit in tree)
+        if not lacking:
+            return True
+        try:
+            with deadline.watched("reading"):
+                near.grow(lacking, quickly=True)
+        except LimitError:
+            return True
 
 
 def _fewest(near: "Nearby", how: Settings, mattered: set[int]) -> list[int]:
