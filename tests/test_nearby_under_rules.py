@@ -275,9 +275,8 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         last = answered_under(near_stew(tmp_path, *more), UNITS, WAVE)
         assert (last.status, last.costs, last.stopped) == (Status.FEASIBLE, found.costs, "a limit")
         patched.setattr(read, stopped)
-        patched.setattr(Elsewhere, "nearest", stopped)
         with pytest.raises(LimitError):
-            found = answered_under(near_stew(tmp_path, *more, first=20), UNITS, WAVED_BY_NONE)
+            answered_under(near_stew(tmp_path, *more), UNITS, OF_ANOTHER)
 
 
 def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(

@@ -8,7 +8,7 @@ from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import hold_for_parts, leave_a_rest
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.deadline import Deadline, LimitError
+from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective, Problem, executable_order, follow, levels, multiplies, reach
 from foon_asp.reduce import ALL
 
@@ -64,8 +64,9 @@ def solve_nearby(
             try:
                 with deadline.watched("reading"):  # and not late, so that there is time for a tree
                     near.grow(lacking, quickly=without is not None)
-            except LimitError as limit:
-                found = found._replace(proof=None, stopped=limit.stopped)
+            except KeyboardInterrupt:
+                deadline.interrupt()
+                found = found._replace(proof=None, stopped=deadline.stopped)
             else:
                 if without is not None and few is None:
                     few = [] if first is Objective.UNITS else _fewest(near, alone, mattered)
@@ -102,7 +103,8 @@ def _leads(near: "Nearby", deadline: Deadline) -> bool:
         try:
             with deadline.watched("reading"):
                 near.grow(lacking, quickly=True)
-        except LimitError:
+        except KeyboardInterrupt:
+            deadline.interrupt()
             return True
 
 
@@ -122,7 +124,8 @@ def _fewest(near: "Nearby", how: Settings, mattered: set[int]) -> list[int]:
         try:
             with how.begun.watched("reading"):
                 near.grow(lacking, quickly=True)
-        except LimitError:
+        except KeyboardInterrupt:
+            how.begun.interrupt()
             return []
 
 

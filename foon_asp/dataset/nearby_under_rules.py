@@ -18,7 +18,6 @@ from foon_asp.asp.assembly import ReachOfRules, assemble, reach_of_rules, varyin
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby import Nearby
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
-from foon_asp.deadline import LimitError
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.reduce import reduce
 from foon_asp.store.elsewhere import Elsewhere, most_cost
@@ -49,8 +48,9 @@ def solve_nearby_under(
     search = _Search(near, free, how, reporter)
     try:
         found = search.result()
-    except LimitError as limit:
-        return search.best._replace(stopped=limit.stopped)
+    except KeyboardInterrupt:  # a limit, too
+        how.begun.interrupt()
+        return search.best._replace(stopped=how.begun.stopped)
     if found is None or (found.units is None and not found.stopped and found.proof is None):
         return None
     return found

@@ -327,28 +327,29 @@ class StoredDataset(Dataset):
         if items is not None or not self.has_kitchen:
             return self.problem(goals, containers, items=items)
         cone = self._cone(goals, containers, None, first)
-        if not cone.open:
-            return self._posed(cone, containers, None)
         return NearbyProblem.of(
             Nearby(
                 cone,
                 lambda cone: self._posed(cone, containers, None),
-                lambda: self.problem(goals, containers),
+                lambda: self.problem(goals, containers) if cone.open else self._posed(cone, containers, None),
                 lambda units: self._asked(self._store.part(units, goals), goals, containers, None),
-                lambda objective: self._elsewhere(containers, objective),
+                lambda objective: self._elsewhere(containers, objective, cone.units),
                 lambda: self.subject(everything=False),
             ),
             lambda goals: self.nearby(goals, containers, None, first),
         )
 
-    def _elsewhere(self, containers: str, objective: Objective) -> "Elsewhere | None":
-        """Look at all units, unless all would have to be read to know what is at hand."""
+    def _elsewhere(self, containers: str, objective: Objective, near: Iterable[int]) -> "Elsewhere | None":
+        """Look at all units, unless all would have to be read to know what is at hand.
+
+        Those ``near`` the goals were read.
+        """
         from foon_asp.store.elsewhere import Elsewhere  # noqa: PLC0415 (few answers need numpy)
 
         store = self._store
         if self._starting:
             return None
-        outline = store.outline
+        outline = store.outline_with(near)
         own = self._at_hand == store.in_kitchen
         kitchen = outline.kitchen() if own else outline.nodes(self.kitchen)
         implied = container_rule(containers) is ContainerRule.IMPLIED

@@ -7,7 +7,6 @@ from foon_asp.asp import Outcome, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve as find
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
-from foon_asp.deadline import LimitError
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.questions.arguments import asked_with, read, reading
 from foon_asp.questions.caller import caller
@@ -162,10 +161,11 @@ def answered_under(
         return _noted(found)
     try:
         answer = _answered_reading(problem, objectives, how, reporter)
-    except LimitError as limit:
+    except KeyboardInterrupt:
         if found is None:
             raise
-        return _noted(found._replace(stopped=limit.stopped))
+        how.begun.interrupt()
+        return _noted(found._replace(stopped=how.begun.stopped))
     if found is not None and answer.status is Status.UNKNOWN:  # there is a tree already
         return _noted(found._replace(stopped=answer.stopped))
     return answer
@@ -188,11 +188,12 @@ def _answered_reading(
             try:
                 with how.begun.watched("reading"):  # and not late, since there may be a tree already
                     problem = asked_with(problem, how)
-            except LimitError as limit:
+            except KeyboardInterrupt:
                 if here.units is None:
                     raise
+                how.begun.interrupt()
                 bounds = {order[0]: free.costs.measure(order[0])}
-                here = here._replace(status=Status.FEASIBLE, proof=None, stopped=limit.stopped)
+                here = here._replace(status=Status.FEASIBLE, proof=None, stopped=how.begun.stopped)
                 return _noted(here._replace(bounds=bounds))
     return answered(asked_with(problem, how), objectives, how, reporter)
 

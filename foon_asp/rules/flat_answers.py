@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from clingo.ast import ComparisonOperator
 from clingo.symbol import Number, String, Symbol
 
-from foon_asp.encoding.facts import millionths, source_names
+from foon_asp.encoding.facts import millionths, quote, source_names
 from foon_asp.escapes import encodable
 from foon_asp.problem import Problem
 from foon_asp.rules.clause import Signature, compared
@@ -404,7 +404,10 @@ def _yes(_: _Values) -> bool:
 
 
 def _symbol(value: Any) -> Symbol:
-    """Give a value as clingo compares it."""
+    """Give a value as clingo compares it; raises :class:`UserError` for a name that it does not take."""
     if isinstance(value, Symbol):
         return value
-    return String(value) if isinstance(value, str) else Number(value)
+    if isinstance(value, str):
+        quote(value)  # clingo cannot be given half a character
+        return String(value)
+    return Number(value)

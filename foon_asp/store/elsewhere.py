@@ -56,18 +56,20 @@ class Elsewhere:
         """
         free, beyond = self._outline.units(there), more * self._step
 
-        def first(found: Distances, wanted: Sequence[Mask]) -> list[int]:
-            return [int(found[each].min(initial=FAR)) for each in wanted]
+        of_kinds = [np.flatnonzero(each) for each in wanted]
 
-        some = [each for each in wanted if each.any()]
+        some = [of_kind for of_kind in of_kinds if len(of_kind)]
+
+        def first(found: Distances, of_kinds: Sequence[NDArray[np.int64]]) -> list[int]:
+            return [int(found[of_kind].min(initial=FAR)) for of_kind in of_kinds]
+
         found = self._distances(free, FAR, lambda found: max(first(found, some), default=0) + beyond)
         few = np.zeros(len(free), dtype=np.bool_)
-        for each in wanted:
-            of_kind = np.flatnonzero(each)
+        for of_kind in of_kinds:
             few[of_kind[np.argsort(found[of_kind], kind="stable")[:most]]] = True
         among = found < FAR
         units = self._outline.leading_to(few & among, self._kitchen, among & ~free)
-        return np.flatnonzero(units).tolist(), first(found, wanted)
+        return np.flatnonzero(units).tolist(), first(found, of_kinds)
 
     def mattering(self, wanted: Sequence[Mask] | None, there: Collection[int], within: int) -> list[int]:
         """Give the units that cost no more than this and are wanted, or lead to one that is.

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from enum import IntEnum
+from functools import cached_property
+from typing import NoReturn
 from zlib import crc32
 
 import numpy as np
@@ -54,11 +56,13 @@ class Outline:
         units: int,
         nodes: int,
         motions: Sequence[str],
-        damaged: Callable[[str], object],
+        damaged: Callable[[str], NoReturn],
     ) -> None:
         def read(which: Column, size: int, below: int = 2**32) -> Numbers:
-            found = np.frombuffer(column(which), dtype="<u4")
-            if len(found) != size or (size and int(found.max()) >= below):
+            content = column(which)
+            whole = len(content) == size * np.dtype("<u4").itemsize
+            found = np.frombuffer(content if whole else b"", dtype="<u4")
+            if not whole or (size and int(found.max()) >= below):
                 damaged(f"column {which} of the outline has unexpected content")
             return found
 
@@ -74,6 +78,21 @@ class Outline:
         self._labels = read(Column.LABELS, nodes)
         self._read_lists = read_lists
         self._known: dict[str, Mask] = {}  # nodes by word
+
+    @cached_property
+    def _takers(self) -> "_Lists":
+        """The units that have each node as an input."""
+        return self.inputs.turned(self._nodes)
+
+    @cached_property
+    def _makers(self) -> "_Lists":
+        """The units that have each node as an output."""
+        return self.outputs.turned(self._nodes)
+
+    def has(self, unit: int, motion: str, inputs: Sequence[int], outputs: Sequence[int]) -> bool:
+        """Whether a unit is this one here, too."""
+        sides = self.inputs.entries_of(unit), self.outputs.entries_of(unit)
+        return self._names[self.motions[unit]] == motion and sides == (tuple(inputs), tuple(outputs))
 
     def kitchen(self) -> Mask:
         """Say of each node whether it is in the kitchen that was imported."""
@@ -156,9 +175,8 @@ class Outline:
             made = self.outputs.entries[places]
             before = nodes[made]
             np.minimum.at(nodes, made, found[makers])
-            changed = np.zeros(self._nodes, dtype=np.bool_)
-            changed[made[nodes[made] < before]] = True
-            units = np.flatnonzero(self.inputs.any(changed[self.inputs.entries]))
+            changed = np.unique(made[nodes[made] < before]).astype(np.int64)
+            units = self._takers.entries_of_all(changed)
             places, of = self.inputs.of(units)
             starts = np.flatnonzero(np.diff(of, prepend=-1))
             needed = nodes[self.inputs.entries[places]]
@@ -168,15 +186,12 @@ class Outline:
     def leading_to(self, units: Mask, there: Mask, among: Mask) -> Mask:
         """Give units, and those among others that make what these need, and so on, but for what is there."""
         found = units.copy()
-        needed = np.zeros(self._nodes, dtype=np.bool_)
         new = np.flatnonzero(found)
         while len(new):
-            places, _ = self.inputs.of(new)
-            needed[self.inputs.entries[places]] = True
-            needed &= ~there
-            makers = self.outputs.any(needed[self.outputs.entries]) & among & ~found
-            new = np.flatnonzero(makers)
-            found |= makers
+            needed = self.inputs.entries_of_all(new)
+            makers = self._makers.entries_of_all(needed[~there[needed]])
+            new = makers[among[makers] & ~found[makers]]
+            found[new] = True
         return found
 
 
@@ -192,13 +207,31 @@ class _Lists:
         self.entries = entries
         self._lengths = lengths
         self._starts = np.cumsum(lengths, dtype=np.int64) - lengths
-        self._of = np.repeat(np.arange(len(lengths), dtype=np.uint32), lengths)  # by entry
+
+    @cached_property
+    def owners(self) -> Numbers:
+        """By entry, the list that it is in."""
+        return np.repeat(np.arange(len(self._lengths), dtype=np.uint32), self._lengths)
+
+    def entries_of(self, place: int) -> tuple[int, ...]:
+        """Give one of the lists."""
+        start = int(self._starts[place])
+        return tuple(self.entries[start : start + int(self._lengths[place])].tolist())
 
     def any(self, entries: Mask) -> Mask:
         """Say of each list whether something holds of one of its entries at least."""
         found = np.zeros(len(self._lengths), dtype=np.bool_)
-        found[self._of[np.flatnonzero(entries)]] = True
+        found[self.owners[np.flatnonzero(entries)]] = True
         return found
+
+    def entries_of_all(self, lists: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Give the entries of some lists, ascending, each once."""
+        return np.unique(self.entries[self.of(lists)[0]]).astype(np.int64)
+
+    def turned(self, size: int) -> "_Lists":
+        """Give the lists in which each of so many numbers is, as a list for each of these."""
+        counts = np.bincount(self.entries, minlength=size).astype(np.uint32)
+        return _Lists(counts, self.owners[np.argsort(self.entries, kind="stable")])
 
     def of(self, lists: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Give the places of all entries of some lists, and for each of them the list that it is in."""

@@ -302,6 +302,17 @@ class Store:
         motions = [motion for motion, _ in self.motion_sources()]
         return Outline(self._file.column, self.units, self.objects, motions, self._file.damaged)
 
+    def outline_with(self, units: Iterable[int]) -> "Outline":
+        """Give the outline, which has to say the same of some units as the rest of the store."""
+        outline = self.outline
+        kitchen = outline.kitchen()
+        for unit in units:
+            motion, inputs, outputs, _ = self.unit_parts(unit)
+            held = all(bool(kitchen[o]) is self.in_kitchen(o) for o in (*inputs, *outputs))
+            if not held or not outline.has(unit, motion, inputs, outputs):
+                self._file.damaged(f"the outline has another unit {unit}")
+        return outline
+
     def unit_parts(self, unit: int) -> tuple[str, tuple[int, ...], tuple[int, ...], tuple[Source, ...]]:
         """Give the motion, the inputs, the outputs and the places of a unit."""
         motion, ins, outs, places = self._unit(unit)
