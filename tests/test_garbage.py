@@ -64,3 +64,22 @@ def test_lines_that_are_not_understood_leave_none(tmp_path: Path, lenient: bool)
     with uncollected(), nullcontext() if lenient else pytest.raises(UserError):
         read_data(DataFiles((file,)), lenient)
     assert gc.collect() < 100
+
+
+def test_very_many_new_objects_are_old_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:
+    with uncollected():
+        few = [[each] for each in range(100)]
+    assert any(each is few[0] for each in gc.get_objects(0))
+    monkeypatch.setattr("foon_asp.garbage._VERY_MANY", 10_000)
+    many: list[list[int]] = []
+    with pytest.raises(KeyboardInterrupt):
+        _interrupted(many)
+    assert gc.get_count()[0] < 10_000
+    assert any(each is many[0] for each in gc.get_objects(2))
+    assert gc.get_freeze_count() == 0
+
+
+def _interrupted(made: list[list[int]]) -> None:
+    with uncollected():
+        made.extend([each] for each in range(20_000))
+        raise KeyboardInterrupt

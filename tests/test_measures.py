@@ -24,6 +24,7 @@ from foon_asp.network import FunctionalUnit, NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives, reach
 from foon_asp.proof import verify
 from foon_asp.reduce import ALL, NONE
+from foon_asp.report.answer import figure_text
 from foon_asp.rules.measure import read_measures
 from foon_asp.rules.measure_rules import read_rules
 from foon_asp.text.diagnostics import InputError
@@ -234,6 +235,22 @@ def test_engines_agree(said: str) -> None:
     for seed in (1, 4):
         problem = measured(random_problem(seed, RULES[seed % 2]), SAID[said][0])
         cross_check(Asked(solve(problem, (MINE_OBJECTIVE,)), Settings()), None)
+
+
+@pytest.mark.parametrize(
+    ("sum_", "text"),
+    [
+        (Fraction(1234567), "1234567"),
+        (Fraction("30000000012.53"), "30000000012.53"),
+        (Fraction(1, 3), "≈ 0.3333"),
+        (Fraction("0.1234567890123456"), "≈ 0.1235"),
+        (Fraction(10) ** 40, "1e+40"),
+        (Fraction(1, 10**30), "1e-30"),
+        (Fraction(), "0"),
+    ],
+)
+def test_a_sum_is_shown_whole_where_it_is_short(sum_: Fraction, text: str) -> None:
+    assert figure_text(Objective.PRICE, sum_) == text
 
 
 def test_there_is_one_objective_of_a_name() -> None:

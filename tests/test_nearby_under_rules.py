@@ -1,7 +1,9 @@
 """Large stores under rules that may ask for units no goal needs: the answer of the whole, from less of it."""
 
 import random
-from collections.abc import Sequence
+import sqlite3
+from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -17,11 +19,14 @@ from foon_asp.dataset.nearby import NearbyProblem
 from foon_asp.dataset.nearby_under_rules import solve_nearby_under
 from foon_asp.dataset.stored_dataset import StoredDataset, read_stored
 from foon_asp.deadline import Deadline, LimitError
+from foon_asp.errors import UserError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.questions.answer import Answer, answered_under
 from foon_asp.rules.constraint import RuleText
+from foon_asp.store.block import Table, sealed, unsealed
 from foon_asp.store.elsewhere import Elsewhere
 from foon_asp.store.import_files import import_files
+from foon_asp.store.outline import Column
 from foon_asp.text.data_folder import DataFiles
 from tests.constraint_oracle import random_rule, settings_of
 from tests.random_problems import SERIES, random_problem
@@ -277,6 +282,54 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         patched.setattr(read, stopped)
         with pytest.raises(LimitError):
             answered_under(near_stew(tmp_path, *more), UNITS, OF_ANOTHER)
+
+
+def test_ctrl_c_keeps_the_tree_and_the_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*asked: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Elsewhere, "mattering", interrupted)
+    found = answered_under(near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved")), UNITS, WAVE)
+    assert found.costs is not None
+    assert (found.status, found.costs.units, found.bounds) == (Status.FEASIBLE, 4, {Objective.UNITS: 3})
+    assert found.stopped == "ctrl-C while reading"
+
+
+def test_a_goal_that_few_units_lead_to_reads_no_others(tmp_path: Path) -> None:
+    others = [("turn", f"other {n}", f"other {n + 1}") for n in range(40)]
+    more = ("wave", "water", "waved"), ("start", "bones", "other 0"), *others
+    problem = near_stew(tmp_path, *more, first=100)
+    found = answered_under(problem, UNITS, WAVE)
+    assert found.costs is not None
+    assert (found.status, found.costs.units, read_little(problem)) == (Status.OPTIMAL, 4, True)
+    assert len(found.problem.network) < 10
+
+
+@pytest.mark.parametrize(
+    ("column", "change"),
+    [
+        *((column, lambda content: content + bytes(1)) for column in Column),
+        *((column, lambda content: content + bytes(4)) for column in Column),
+        (Column.MOTIONS, lambda content: bytes(len(content) - 4) + content[:4]),
+        (Column.INPUTS, lambda content: content[4:] + content[:4]),
+        (Column.OUTPUTS, lambda content: bytes(len(content))),
+        (Column.OUTPUTS, lambda content: b"\xff" * len(content)),
+        (Column.KITCHEN, lambda content: bytes(len(content))),
+    ],
+)
+def test_an_outline_that_is_not_that_of_the_store_is_damage(
+    column: Column, change: Callable[[bytes], bytes], tmp_path: Path
+) -> None:
+    near_stew(tmp_path, ("wave", "boiled", "waved"))
+    with closing(sqlite3.connect(tmp_path / "stew.foon", isolation_level=None)) as database:
+        [[block]] = database.execute("SELECT content FROM outline WHERE number = ?", (column,))
+        changed = sealed(Table.OUTLINE, column, change(unsealed(Table.OUTLINE, column, block)))
+        database.execute("UPDATE outline SET content = ? WHERE number = ?", (changed, column))
+    dataset = read_stored(DataFiles((tmp_path / "stew.foon",)), 3)
+    assert isinstance(dataset, StoredDataset)
+    problem = dataset.nearby(dataset.goals(["stew"]), "strict")
+    with pytest.raises(UserError, match="the store is damaged"):
+        answered_under(problem, UNITS, LABEL)
 
 
 def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(

@@ -12,9 +12,9 @@ from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.session import Session
 from foon_asp.errors import UserError
 from foon_asp.grounding.exact import LARGEST
-from foon_asp.network import UnitPrices
+from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.rules.constraint import given_constraint
+from foon_asp.rules.constraint import RuleText, given_constraint
 from tests import oracle
 from tests.conftest import Cli
 from tests.random_problems import random_problem
@@ -201,3 +201,17 @@ def test_costs_that_a_question_has(cli: Cli, tmp_path: Path) -> None:
     network.write_text('{"id": "brew", "inputs": ["water"], "outputs": ["tea"], "price": 5}\n')
     for rule in (":- use(U), cost(price,U,N), N > 0.", ":- use(U), cost(_,U,N), N > 0."):
         assert cli("solve", network, "--goal", "tea", "--objective", "price", "--rule", rule).code == 1
+
+
+def test_half_a_character_is_refused_where_rules_compare_it() -> None:
+    builder = NetworkBuilder()
+    builder.add("boil", [ObjectNode.of("water")], [ObjectNode.of("stew")], Source("a.json", 1))
+    builder.add("turn", [ObjectNode.of("water")], [ObjectNode.of("b\ud83dx")], Source("a.json", 2))
+    network = builder.build()
+    water, stew = (network.object_id(ObjectNode.of(label)) for label in ("water", "stew"))
+    assert water is not None
+    assert stew is not None
+    problem = Problem(network, frozenset({water}), (stew,), None, frozenset())
+    rule = RuleText(':- not use(U) : output(U,O), label(O,L), L < "t".')
+    with pytest.raises(UserError, match="half a character, which the solver cannot be given"):
+        solve(problem, (Objective.UNITS,), Settings((rule,)))

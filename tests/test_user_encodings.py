@@ -42,6 +42,22 @@ def test_our_constraints_go_by_name_and_take_constants(cli: Cli) -> None:
     assert "the constant forbidden_motion is not set and the constraint has no effect" in unset.err
 
 
+@pytest.mark.parametrize(
+    ("rule", "constraint", "unset"),
+    [
+        ('allergen("salt").', "forbid_ingredient", False),
+        ('allowed("salad.txt").', "only_sources", False),
+        (":- use(U), allergen(U).", "forbid_ingredient", True),
+        ('heats("flambe").', "never_heated", True),  # what is not to be heated is still not said
+    ],
+)
+def test_a_constant_need_not_be_set_where_rules_say_the_same_in_another_way(
+    cli: Cli, rule: str, constraint: str, unset: bool
+) -> None:
+    ran = cli("solve", "--goal", "ice", "--rule", rule, "--constraint", constraint)
+    assert ("is not set and the constraint has no effect" in ran.err) is unset
+
+
 def test_a_constraint_may_ask_for_what_the_goal_does_not_need(cli: Cli) -> None:
     words = ["solve", "--goal", "ice", "--constraint", "require_motion", "-c", "required_motion=preheat"]
     ran = cli(*words, "--format", "json")

@@ -100,6 +100,14 @@ class Encoding:
                 named = first.ast_type == ASTType.SymbolicTerm and first.symbol.type is SymbolType.Function
                 yield symbol.name, first.symbol.name if named else ""
 
+    def saying(self, constant: str) -> set[Signature]:
+        """Give the predicates of which rules say that they hold of a constant."""
+        heads = (each.head for each in self.statements if each.ast_type == ASTType.Rule)
+        atoms = (
+            head.atom.symbol for head in heads if head.ast_type == ASTType.Literal and _is_atom(head.atom)
+        )
+        return {(atom.name, len(atom.arguments)) for atom in atoms if constant in map(str, atom.arguments)}
+
     def remark(self, severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
         """Make a diagnostic about a place in these rules, with its line."""
         return located(severity, code, message, source, [self.rules])
@@ -474,13 +482,18 @@ def string_constant(value: str) -> str:
 
 
 def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Warn about constants that have no effect until they are set: their default is "", #sup or #inf."""
+    """Warn about constants that have no effect until they are set: their default is "", #sup or #inf.
+
+    A constant that is only one way to say something has one where other rules say more of that, as
+    ``allergen("milk").`` does.
+    """
     given = {setting.partition("=")[0] for setting in constants}
     found = []
     for encoding in added:
         rules = encoding.rules
+        others = {each for other in added if other is not encoding for each in other.defined}
         for name, value in encoding.constants.items():
-            if value not in {'""', "#sup", "#inf"} or name in given:
+            if value not in {'""', "#sup", "#inf"} or name in given or encoding.saying(name) & others:
                 continue
             if isinstance(rules, Stated) and rules.file is not None:
                 called = dict(rules.renamed)[name]

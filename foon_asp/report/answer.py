@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from decimal import Context, Decimal
+from decimal import Context, Decimal, Inexact
 from fractions import Fraction
 
 from foon_asp.asp import Outcome, Proof, Status
@@ -22,16 +22,22 @@ from foon_asp.text.writer import write_units
 
 _DIGITS = 4  # of a success, if these tell several apart
 _MOST_DIGITS = 40
+_SUM_DIGITS = 15  # of a sum of costs, if it has no more
 _CIRCLE = 3  # object nodes of a cycle that are named after the first
 _NAMED = 6  # motions that are named of those that come, and of those that go
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:
-    """Write a value by an objective: whole, or with four digits and ``≈`` if rounded."""
+    """Write a value by an objective: exactly, or four digits after ``≈`` where that takes too many."""
     if multiplies(objective):
         return success_text(Fraction(figure))
-    shown = str(figure) if objective.row.whole else _four_digits(Fraction(figure))
-    return shown if Fraction(shown) == figure else f"≈ {shown}"
+    if objective.row.whole:
+        return str(figure)
+    context = Context(prec=_SUM_DIGITS)
+    exact = context.divide(*map(Decimal, Fraction(figure).as_integer_ratio()))
+    if context.flags[Inexact]:
+        return f"≈ {_four_digits(Fraction(figure))}"
+    return f"{exact if exact.adjusted() < _SUM_DIGITS else exact.normalize(context):g}"
 
 
 def bound_text(objective: Objective, bound: int | Fraction) -> str:
