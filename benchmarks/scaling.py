@@ -1,4 +1,4 @@
-"""Cost against size: reading, import into a store, indexing, cone, reductions and search, and how each grows.
+"""Cost against size: seconds of each step from reading to search, and peak memory; and how each grows.
 
     python benchmarks/scaling.py                                     a quick run
     python benchmarks/scaling.py --units 1000 --units 10000 --units 100000 --units 1000000 --plot FILE.svg
@@ -9,7 +9,10 @@ is what the plain program leaves, units that can run and that the goal can need;
 looks at all of the network to answer. *Reduction* is from the indexed network to what clingo gets, *search*
 is all after that, simulating the tree included.
 
-The exponent is the slope of a straight line through the logarithms of size and seconds, by least squares:
+Memory is the peak of a process, in MB: of *import* by itself; of a question to the *store*, its median over
+the same goals, each in a process of its own; and of all else, where the network is read from *text*.
+
+The exponent is the slope of a straight line through the logarithms of size and figures, by least squares:
 1 is linear, 0 a cost that does not grow.
 """
 
@@ -17,18 +20,22 @@ import argparse
 import gc
 import json
 import math
+import os
+import resource
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from contest.page import put, table
 from contest.plot import draw_growth
 from generate import Family, generate
 
+import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach, relevant
@@ -37,15 +44,19 @@ from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.goal_name import find_goal
 
 STEPS = ("reading", "import", "indexing", "cone", "reduction", "search")
+MEMORY = ("text", "import", "store")
 
 
 def measure(folder: Path, objective: Objective, limit: float) -> dict[str, float]:
-    """Give the seconds of each step on the network in a folder, and how many questions were not proved."""
+    """Give the seconds of each step on the network in a folder, what of memory, and what was not proved."""
     gc.set_threshold(100_000, 50, 50)  # as the program does
-    files = find_data(folder)
+    files, store = find_data(folder), folder / "network.foon"
+    entries = json.loads((folder / "goal_nodes.json").read_text(encoding="utf-8"))
+    entries = entries[(len(entries) + 1) // 2 :]
     start = time.perf_counter()
-    import_files(files, folder / "network.foon")
+    importing = peak(lambda: import_files(files, store))
     imported = time.perf_counter() - start
+    stored = [peak(partial(_ask, store, entry["label"], objective, limit)) for entry in entries]
     began = time.perf_counter()
     data = read_data(files)
     read = time.perf_counter()
@@ -53,10 +64,9 @@ def measure(folder: Path, objective: Objective, limit: float) -> dict[str, float
     network.producers, network.consumers, network.by_label  # noqa: B018 (made when first asked for)
     indexed = time.perf_counter()
     gc.freeze()  # the network stays; only what is made for a question is looked at for what to free
-    entries = json.loads((folder / "goal_nodes.json").read_text(encoding="utf-8"))
     steps: dict[str, list[float]] = {"cone": [], "reduction": [], "search": []}
     unproved = 0
-    for entry in entries[(len(entries) + 1) // 2 :]:
+    for entry in entries:
         goal = find_goal(entry["label"], network, data.goals)
         problem = Problem(network, data.kitchen, (goal,), data.rates, data.utensils)
         start = time.perf_counter()
@@ -70,12 +80,34 @@ def measure(folder: Path, objective: Objective, limit: float) -> dict[str, float
         steps["search"].append(whole - outcome.seconds["cut"])
     medians = {step: statistics.median(seconds) for step, seconds in steps.items()}
     once = {"reading": read - began, "import": imported, "indexing": indexed - read}
-    return {**once, **medians, "unproved": unproved}
+    text = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    memory = {"MB text": text, "MB import": importing, "MB store": statistics.median(stored)}
+    return {**once, **medians, **memory, "unproved": unproved}
+
+
+def peak(work: Callable[[], object]) -> float:
+    """Do work in a process forked from this one, and give its peak memory in MB."""
+    child = os.fork()
+    if not child:
+        code = 1
+        try:
+            work()
+            code = 0
+        finally:
+            os._exit(code)
+    _, status, usage = os.wait4(child, 0)
+    assert os.waitstatus_to_exitcode(status) == 0
+    return usage.ru_maxrss / 1024
+
+
+def _ask(store: Path, label: str, objective: Objective, limit: float) -> None:
+    with foon_asp.load(store) as foon:
+        foon_asp.solve(foon.problem(label), objective, time_limit=limit)
 
 
 def slope(points: Sequence[tuple[int, float]]) -> float:
     """Give the exponent of a power law, by least squares on logarithms; needs two sizes at least."""
-    xs, ys = [math.log(size) for size, _ in points], [math.log(seconds) for _, seconds in points]
+    xs, ys = [math.log(size) for size, _ in points], [math.log(figure) for _, figure in points]
     return statistics.linear_regression(xs, ys).slope
 
 
@@ -100,6 +132,7 @@ def main() -> None:
         return
 
     curves: dict[str, list[tuple[int, float]]] = {step: [] for step in STEPS}
+    memory: dict[str, list[tuple[int, float]]] = {name: [] for name in MEMORY}
     unproved = 0.0
     for size in sorted(options.units or [1000, 3000, 10_000]):
         with tempfile.TemporaryDirectory() as folder:
@@ -114,12 +147,17 @@ def main() -> None:
         unproved += found[0]["unproved"]
         for step in STEPS:
             curves[step].append((size, statistics.median(one[step] for one in found)))
+        for name in MEMORY:
+            memory[name].append((size, statistics.median(one[f"MB {name}"] for one in found)))
         print(f"{options.family}: {size} units measured", file=sys.stderr)
     sizes = [size for size, _ in curves["reading"]]
     header = ["step", *(f"{size:,} units" for size in sizes), "exponent"]
     lines = [
         [step, *(f"{seconds:.3g} s" for _, seconds in points), f"{slope(points):.2f}"]
         for step, points in curves.items()
+    ] + [
+        [f"memory, {name}", *(f"{megabytes:,.0f} MB" for _, megabytes in points), f"{slope(points):.2f}"]
+        for name, points in memory.items()
     ]
     title = f"{options.family}, {options.objective}"
     text = f"**{title}**, median of {options.runs} runs\n\n{table(header, lines)}"
@@ -129,7 +167,7 @@ def main() -> None:
     if options.page:
         put(options.page, options.section, text)
     if options.plot:
-        draw_growth(curves, title, options.plot)
+        draw_growth({"seconds": curves, "peak memory, MB": memory}, title, options.plot)
 
 
 if __name__ == "__main__":

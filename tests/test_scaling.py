@@ -30,4 +30,5 @@ def test_a_whole_run(tmp_path: Path) -> None:
     assert "| step | 300 units | 600 units | exponent |" in ran.stdout
     assert all(f"| {step} |" in ran.stdout for step in scaling.STEPS)
     assert ran.stdout.strip() in page.read_text(encoding="utf-8")
-    assert "seconds" in plot.read_text(encoding="utf-8")
+    assert all(f"| memory, {name} |" in ran.stdout for name in scaling.MEMORY)
+    assert all(each in plot.read_text(encoding="utf-8") for each in ("seconds", "peak memory, MB"))

@@ -28,20 +28,25 @@ _STYLE: dict[Any, Any] = {
 }
 
 
-def draw_growth(curves: Mapping[str, Sequence[tuple[int, float]]], title: str, file: Path) -> None:
-    """Draw seconds against units, both by powers of ten, a curve for each name."""
+Curves = Mapping[str, Sequence[tuple[int, float]]]
+
+
+def draw_growth(panels: Mapping[str, Curves], title: str, file: Path) -> None:
+    """Draw what is measured against units, both by powers of ten: a panel for each, a curve for each name."""
     from matplotlib import rc_context  # noqa: PLC0415 (an optional extra)
     from matplotlib.figure import Figure as Canvas  # noqa: PLC0415
 
     with rc_context(_STYLE):
-        canvas = Canvas(figsize=(5.0, 3.4), layout="constrained")
-        axes = canvas.add_subplot(xscale="log", yscale="log", xlabel="units in the network", ylabel="seconds")
-        axes.set_title(title, loc="left")
-        for place, (name, points) in enumerate(curves.items()):
-            sizes, seconds = zip(*points, strict=True)
-            color, mark = _COLORS[place % len(_COLORS)], _MARKS[place % len(_MARKS)]
-            axes.plot(sizes, seconds, color=color, marker=mark, markersize=4, label=name)
-        canvas.legend(loc="outside right upper")
+        canvas = Canvas(figsize=(4.2 * len(panels), 3.4), layout="constrained")
+        canvas.suptitle(title, x=0.0, ha="left", fontsize=8)
+        logarithmic: dict[str, Any] = {"xscale": "log", "yscale": "log", "xlabel": "units in the network"}
+        for number, (measured, curves) in enumerate(panels.items(), start=1):
+            axes = canvas.add_subplot(1, len(panels), number, ylabel=measured, **logarithmic)
+            for place, (name, points) in enumerate(curves.items()):
+                sizes, figures = zip(*points, strict=True)
+                color, mark = _COLORS[place % len(_COLORS)], _MARKS[place % len(_MARKS)]
+                axes.plot(sizes, figures, color=color, marker=mark, markersize=4, label=name)
+            axes.legend(loc="best")
         _save(canvas, file)
 
 
