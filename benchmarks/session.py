@@ -7,6 +7,7 @@ the processor, which other programs do not change.
 
     python benchmarks/session.py                  the bundled kitchen
     python benchmarks/session.py --data DIR --goals 20
+    python benchmarks/session.py --reduce none    with constraints, clingo searches all that can be made
 """
 
 import argparse
@@ -21,6 +22,7 @@ from foon_asp.asp import Settings, solve
 from foon_asp.asp.session import Session
 from foon_asp.compare.many import makeable
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.reduce import NONE
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
 
@@ -30,10 +32,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Measure what a session saves.")
     parser.add_argument("--data", type=Path, default=bundled_kitchen())
     parser.add_argument("--goals", type=int, default=20, help="the number of goals, drawn by chance")
+    parser.add_argument("--reduce", choices=("all", "none"), default="all", help="under the constraint")
     options = parser.parse_args()
     data = read_data(find_data(options.data))
     rng = random.Random(1)
     constraint = Settings(constraints=(Path("forbid_motion"),), constants=("forbidden_motion=fry",))
+    if options.reduce == "none":
+        constraint = constraint._replace(reductions=NONE)
     for rule in ContainerRule:
         one = Problem(data.network, data.kitchen, (0,), data.rates, data.utensils, rule)
         goals = makeable(one)

@@ -776,6 +776,14 @@ FAULTS: dict[str, tuple[Callable[[Foon], object], str]] = {
         lambda f: foon_asp.solve(f.problem("ice"), constraints="x"),
         "x: no such file; expected an encoding",
     ),
+    "empty constraint": (
+        lambda f: foon_asp.solve(f.problem("ice"), constraints=""),
+        "found an empty text for a constraint, expected a file, the name of a ready-made one, or a rule",
+    ),
+    "empty soft constraint": (
+        lambda f: foon_asp.solve_soft(f.problem("ice"), soft={" ": 1}),
+        "found an empty text for a constraint, expected a file, the name of a ready-made one, or a rule",
+    ),
     "constant": (
         lambda f: foon_asp.solve(f.problem("ice"), constants={"x": 1}),
         "no encoding in use has the constant 'x'",

@@ -374,14 +374,51 @@ def test_a_measure_needs_its_rules_and_the_rates_that_it_reads() -> None:
     problem = random_problem(1, RULES[0])
     with pytest.raises(UserError, match="the objective mine needs the rules of its measure"):
         solve(problem, (MINE_OBJECTIVE,))
-    with pytest.raises(UserError, match=r"found the objective 'mine', expected one of units, .*, price$"):
+    with pytest.raises(
+        UserError, match=r"found the objective 'mine', expected one of units, .*, price; give the"
+    ):
         foon_asp.solve(problem, "mine")
-    with pytest.raises(UserError, match=r"expected one of units, .*, price, mine$"):
+    with pytest.raises(UserError, match=r"expected one of units, .*, price, mine; give the"):
         foon_asp.solve(measured(problem, MINE), "yours")
     with pytest.raises(ValueError, match="no measure yours is known"):
         problem.measure("yours", 0)
     with pytest.raises(UserError, match="the rules read rate/2: give a rates file"):
         measured(replace(problem, rates=None), SAID["rate"][0]).measure("mine", 0)
+
+
+def test_an_unknown_objective_is_told_how_rules_are_given(cli: Cli) -> None:
+    ran = cli("solve", "--goal", "ice", "--objective", "mine")
+    assert ran.code == 2
+    assert "with --measure FILE or in Python load(..., measures=FILE)" in ran.err
+
+
+@pytest.mark.parametrize("given", ["", "  ", ["", MINE]])
+def test_an_empty_text_is_no_measure(given: str | list[str]) -> None:
+    foon, refused = foon_asp.load(), "found an empty text for a measure, expected a file, or rules"
+    with pytest.raises(UserError, match=refused):
+        foon_asp.load(measures=given)
+    with pytest.raises(UserError, match=refused):
+        foon.vary(measures=given)
+    with pytest.raises(UserError, match=refused):
+        foon_asp.build([("boil", "water", "tea")], measures=given)
+
+
+def test_lists_of_trees_show_what_each_costs_by_a_measure(tmp_path: Path, cli: Cli) -> None:
+    rules = tmp_path / "mine.lp"
+    rules.write_text(MINE, encoding="utf-8")
+    asked = ("--goal", "ice", "--objective", "mine", "--measure", str(rules))
+    for more in ((), ("--best", "2")):
+        assert "tree 1: 2 units, 6 inputs, success 0.644, mine 6\n" in cli("alternatives", *asked, *more).out
+    assert "proved (strict containers): 2 units, 6 inputs, success 0.644, mine 6\n" in (
+        cli("alternatives", *asked).out
+    )
+    tree = foon_asp.alternatives(foon_asp.load(measures=MINE).problem("ice"), "mine").task_trees[0]
+    assert "mine 6" in str(tree.drawing())
+    found = cli("optima", *asked, "--objective", "kitchen").out.splitlines()
+    assert found[1].split() == ["goal", "best", "by", "units", "inputs", "success", "mine", "kitchen",
+                                "status", "seconds"]  # fmt: skip
+    assert found[3].split()[:-1] == ["ice", "all", "2", "6", "0.6440", "6", "4", "optimal"]
+    assert "mine" not in cli("optima", "--goal", "ice", "--measure", str(rules)).out
 
 
 def test_two_files_may_not_name_the_same_measure(tmp_path: Path) -> None:

@@ -189,9 +189,11 @@ def test_which_rules_a_given_tree_breaks(tmp_path: Path, cli: Cli, stored: bool)
     assert checked.breaks is not None
     assert [rule.text for rule in checked.breaks] == [twist, beyond]
     assert (checked.executes, checked.ending) == (True, Ending.NEGATIVE)
+    assert repr(checked) == "<Checked: executes as listed (strict containers), but breaks 2 rules>"
     kept = foon_asp.check(problem, tree, constraints="forbid_motion", constants={"forbidden_motion": "fry"})
     assert (kept.breaks, kept.ending) == ((), Ending.DONE)
     assert kept.text().endswith("\nit keeps to the rules\n")
+    assert repr(kept) == "<Checked: executes as listed (strict containers)>"
     assert foon_asp.check(problem, tree).breaks is None
     half = foon_asp.check(problem, tree.units[1:], constraints=twist)
     assert half.breaks is None

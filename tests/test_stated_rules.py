@@ -262,7 +262,12 @@ def test_each_use_has_constants_of_its_own(cli: Cli) -> None:
     # -c is for what has no constants of its own
     ran = cli("solve", "--goal", "ice", "--constraint", crush, "-c", "forbidden_motion=pound")
     assert ran.code == 2
-    assert "no encoding in use has the constant 'forbidden_motion'" in ran.err
+    assert f"the constant 'forbidden_motion', but {crush} has values of its own: set it there" in ran.err
+    one = ("--constraint", "before:earlier_motion=rinse", "-c", "later_motion=chop")
+    assert "but before:earlier_motion=rinse has values of its own" in cli("solve", "--goal", "ice", *one).err
+    assert "no encoding in use has the constant 'x'" in (
+        cli("solve", "--goal", "ice", "--constraint", crush, "-c", "x=1").err
+    )
 
 
 def test_an_existing_path_of_that_name_wins(

@@ -50,7 +50,7 @@ def test_what_is_taken_on_trust_is_said_and_checked(cli: Cli, tmp_path: Path, te
     plain = cli("verify", file)
     assert plain.code == 0
     assert "among the trees that keep to mine.lp (SHA-256 " in plain.out
-    assert f"taken on trust: {said}" in plain.out
+    assert f"taken on trust (--with-clingo checks it): {said}" in plain.out
     checked = cli("verify", file, "--with-clingo")
     assert checked.code == 0
     assert f"checked with clingo: {said}" in checked.out
@@ -61,7 +61,7 @@ def test_what_is_taken_on_trust_is_said_and_checked(cli: Cli, tmp_path: Path, te
 def test_that_no_tree_keeps_to_rules_is_said_to_be_taken_on_trust(cli: Cli, tmp_path: Path) -> None:
     file = tmp_path / "proof.json"
     assert cli("certify", "--goal", "ice", "--rule", ":- unit(0).", "-o", file).code == 1
-    assert "; taken on trust: no tree keeps to them\n" in cli("verify", file).out
+    assert "; taken on trust (--with-clingo checks it): no tree keeps to them\n" in cli("verify", file).out
 
 
 def test_an_answer_that_rests_on_trust_is_not_called_certified(cli: Cli, tmp_path: Path) -> None:

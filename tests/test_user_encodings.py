@@ -43,6 +43,19 @@ def test_our_constraints_go_by_name_and_take_constants(cli: Cli) -> None:
 
 
 @pytest.mark.parametrize(
+    ("use", "set_"),
+    [
+        ("forbid_motion:forbidden_motion=", "forbid_motion:forbidden_motion=VALUE"),
+        ("before:earlier_motion=,later_motion=x", "before:earlier_motion=VALUE,later_motion=x"),
+        ("before:earlier_motion=rinse", "before:earlier_motion=rinse,later_motion=VALUE"),
+    ],
+)
+def test_how_to_set_a_value_of_a_use(cli: Cli, use: str, set_: str) -> None:
+    ran = cli("solve", "--goal", "ice", "--constraint", use)
+    assert ran.err.splitlines()[0].endswith(f"; set it with {set_}")
+
+
+@pytest.mark.parametrize(
     ("rule", "constraint", "unset"),
     [
         ('allergen("salt").', "forbid_ingredient", False),

@@ -497,7 +497,9 @@ def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list
                 continue
             if isinstance(rules, Stated) and rules.file is not None:
                 called = dict(rules.renamed)[name]
-                where, how = f"{rules.file} ({rules.written})", f"{rules.written},{called}=VALUE"
+                where = f"{rules.file} ({rules.written})"
+                how, empty = re.subn(rf"(?<=[:,]){called}=(?=,|$)", f"{called}=VALUE", rules.written)
+                how = how if empty else f"{rules.written},{called}=VALUE"
             else:
                 where = rules.place if isinstance(rules, Stated) else f"{rules}"
                 called, how = name, f"-c {name}=VALUE"

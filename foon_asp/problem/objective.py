@@ -209,7 +209,10 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
     for name in (part.strip() for item in names for part in item.split(",")):
         if name not in _BUILT_IN and name not in measures:
             known = ", ".join((*_BUILT_IN, *measures))
-            raise UserError(f"found the objective {name!r}, expected one of {known}")
+            raise UserError(
+                f"found the objective {name!r}, expected one of {known}; give the rules of one of your own, "
+                "with --measure FILE or in Python load(..., measures=FILE)"
+            )
         objective = Objective.of_measure(name) if name in measures else Objective(name)
         if objective in objectives:
             raise UserError(f"the objective {name!r} is listed twice")

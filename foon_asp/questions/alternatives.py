@@ -118,7 +118,7 @@ class Alternatives(Result):
     def task_trees(self) -> tuple[Tree, ...]:
         """The trees as values, in the same order."""
         return tuple(
-            Tree.of(self.problem, tree.units, f"tree {number}: {costs_text(tree.costs)}")
+            Tree.of(self.problem, tree.units, f"tree {number}: {costs_text(tree.costs, self.objectives)}")
             for number, tree in enumerate(self.trees, 1)
         )
 
@@ -404,7 +404,7 @@ def _optimal_lines(found: Alternatives) -> Iterator[str]:
     if not found.trees:
         yield _no_tree(found)
         return
-    costs = costs_text(found.trees[0].costs)
+    costs = costs_text(found.trees[0].costs, found.objectives)
     number = len(found.trees)
     if number == found.unproved:
         yield f"feasible, not proved best by {best} ({rule}; stopped at a limit): {costs}"
@@ -440,7 +440,7 @@ def _trees(found: Alternatives) -> Iterator[str]:
     """List the trees, each but the first by what it has instead."""
     first, network = found.trees[0], found.problem.network
     for number, tree in enumerate(found.trees[:_SHOWN], 1):
-        yield f"tree {number}: {costs_text(tree.costs)}"
+        yield f"tree {number}: {costs_text(tree.costs, found.objectives)}"
         if number == 1:
             yield from unit_lines(network, tree.units)
             continue

@@ -134,6 +134,10 @@ class Checked(Result):
     def _ids(self) -> list[int | None]:
         return [self.problem.network.unit_id(unit) for unit in self.tree.units]
 
+    def __repr__(self) -> str:
+        said = super().__repr__()
+        return f"{said[:-1]}, but breaks {counted(len(self.breaks), 'rule')}>" if self.breaks else said
+
     def _listed(self) -> Listed:
         return list(zip(self.tree.units, self.tree.places, strict=True))
 

@@ -124,7 +124,8 @@ def verified_text(
     ]
     own = trusted(content)
     if own is not None:
-        lines += _on_trust(own, verified.tree, "checked with clingo" if with_clingo else "taken on trust")
+        how = "checked with clingo" if with_clingo else "taken on trust (--with-clingo checks it)"
+        lines += _on_trust(own, verified.tree, how)
     lines += [f"not covered, so among all {trees}: {name}" for name in verified.not_covered]
     for measure in verified.trusted:
         what = (

@@ -1,5 +1,6 @@
 """The table of optima: one row for each tree that is best by something."""
 
+import itertools
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
@@ -11,7 +12,10 @@ from foon_asp.asp import Outcome, Status
 from foon_asp.escapes import escaped
 from foon_asp.network import ObjectNode
 from foon_asp.problem import Objective
+from foon_asp.report.answer import figure_text
 from foon_asp.report.stackable import Stackable
+
+_ALWAYS = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)  # columns; others where they are asked for
 
 _STYLES = {
     Status.OPTIMAL: "green",
@@ -43,14 +47,15 @@ def optima_table(outcomes: Sequence[Outcome]) -> Stackable:
     )
     table.add_column("goal", style="bold", no_wrap=True)
     table.add_column("best by")
-    for heading in ("units", "inputs", "success"):
+    asked = list(dict.fromkeys(outcome.objectives for outcome in outcomes))
+    more = [each for each in dict.fromkeys(itertools.chain(*asked)) if each not in _ALWAYS]
+    for heading in (*_ALWAYS, *more):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("  status", no_wrap=True)
     table.add_column("seconds", justify="right", no_wrap=True)
-    asked = list(dict.fromkeys(outcome.objectives for outcome in outcomes))
     for goal, rows in _by_goal(outcomes):
         for place, row in enumerate(rows):
-            table.add_row(Text(escaped(goal) if place == 0 else ""), *_cells(row, asked))
+            table.add_row(Text(escaped(goal) if place == 0 else ""), *_cells(row, asked, more))
     return Stackable(table)
 
 
@@ -66,13 +71,13 @@ def _by_goal(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, list[list[Outco
         yield " + ".join(labels), list(rows.values())
 
 
-def _cells(row: list[Outcome], every: list[tuple[Objective, ...]]) -> list[Text | str]:
+def _cells(row: list[Outcome], every: list[tuple[Objective, ...]], more: list[Objective]) -> list[Text | str]:
     status, costs = row[0].status, row[0].costs
     seconds = f"{sum(sum(outcome.seconds.values()) for outcome in row):.2f}"
     names = [" then ".join(outcome.objectives) for outcome in row]
     shown = Text("  ").append(status, style=_STYLES[status])
     if costs is None:
-        return ["", "", "", "", shown, seconds]
+        return ["", *("" for _ in (*_ALWAYS, *more)), shown, seconds]
     asked = {outcome.objectives[0] for outcome in row}
 
     def figure(text: str, objective: Objective) -> Text:
@@ -83,6 +88,10 @@ def _cells(row: list[Outcome], every: list[tuple[Objective, ...]]) -> list[Text 
         figure(str(costs.units), Objective.UNITS),
         figure(str(costs.inputs), Objective.INPUTS),
         "–" if costs.success is None else figure(_rate(costs.success), Objective.SUCCESS),
+        *(
+            figure(figure_text(each, costs.measures[each]), each) if each in costs.measures else "–"
+            for each in more
+        ),
         shown,
         seconds,
     ]

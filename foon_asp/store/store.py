@@ -296,7 +296,7 @@ class Store:
 
     @cached_property
     def outline(self) -> "Outline":
-        """Read the outline of the whole network: 40 bytes or so for each unit."""
+        """Read the outline of the whole network: 55 bytes or so for each unit."""
         from foon_asp.store.outline import Outline  # noqa: PLC0415 (few answers need numpy)
 
         motions = [motion for motion, _ in self.motion_sources()]
