@@ -73,6 +73,7 @@ DELETING = {
 _OFTEN, _VIDEOS = "often.txt", ("https://foon.example/1", "https://foon.example/2")
 _SELDOM = 1 / 32  # of the units are from elsewhere
 _TRIED = 8  # values of a constant, the most frequent ones, of which the one that leaves most trees is taken
+_MANY = 500_000  # units, of which all are looked at for each value: so two are tried
 
 
 class Asked(NamedTuple):
@@ -248,19 +249,20 @@ def _deleting(trees: list[Outcome], only: list[str]) -> Iterator[Asked]:
     problem = trees[0].problem
     network = problem.network
     motions, labels, ingredients = _words(network)
+    tried = _TRIED if len(network) < _MANY else 2
     files = Counter(source.file for sources in network.sources for source in sources)
     rates = sorted(set((problem.rates or {}).values()))
     for name, constant, values in (
-        ("forbid_motion", "forbidden_motion", [f'"{m}"' for m, _ in motions.most_common(_TRIED)]),
-        ("forbid_object", "forbidden_object", [f'"{m}"' for m, _ in labels.most_common(_TRIED)]),
-        ("forbid_ingredient", "forbidden_ingredient", [f'"{m}"' for m, _ in ingredients.most_common(_TRIED)]),
+        ("forbid_motion", "forbidden_motion", [f'"{m}"' for m, _ in motions.most_common(tried)]),
+        ("forbid_object", "forbidden_object", [f'"{m}"' for m, _ in labels.most_common(tried)]),
+        ("forbid_ingredient", "forbidden_ingredient", [f'"{m}"' for m, _ in ingredients.most_common(tried)]),
         (
             "never_heated",
             "unheated_ingredient",
-            [f'"{m}"' for m, _ in ingredients.most_common(_TRIED)],
+            [f'"{m}"' for m, _ in ingredients.most_common(tried)],
         ),
-        ("motion_only_with", "tied_motion", [f'"{m}"' for m, _ in motions.most_common(_TRIED)]),
-        ("least_rate", "least_rate", [str(int(rate * 10**6)) for rate in rates[1 : 1 + _TRIED]][::-1]),
+        ("motion_only_with", "tied_motion", [f'"{m}"' for m, _ in motions.most_common(tried)]),
+        ("least_rate", "least_rate", [str(int(rate * 10**6)) for rate in rates[1 : 1 + tried]][::-1]),
         ("only_sources", "allowed_source", [f'"{m}"' for m, _ in files.most_common(1)]),
         ("at_least_videos", "least_videos", ["2"]),
     ):

@@ -305,9 +305,9 @@ def test_a_goal_that_few_units_lead_to_reads_no_others(tmp_path: Path) -> None:
     assert len(found.problem.network) < 10
 
 
-@pytest.mark.parametrize(
-    ("column", "change"),
-    [
+def test_an_outline_that_is_not_that_of_the_store_is_damage(tmp_path: Path) -> None:
+    near_stew(tmp_path, ("wave", "boiled", "waved"))
+    cases: list[tuple[Column, Callable[[bytes], bytes]]] = [
         *((column, lambda content: content + bytes(1)) for column in Column),
         *((column, lambda content: content + bytes(4)) for column in Column),
         (Column.MOTIONS, lambda content: bytes(len(content) - 4) + content[:4]),
@@ -315,21 +315,18 @@ def test_a_goal_that_few_units_lead_to_reads_no_others(tmp_path: Path) -> None:
         (Column.OUTPUTS, lambda content: bytes(len(content))),
         (Column.OUTPUTS, lambda content: b"\xff" * len(content)),
         (Column.KITCHEN, lambda content: bytes(len(content))),
-    ],
-)
-def test_an_outline_that_is_not_that_of_the_store_is_damage(
-    column: Column, change: Callable[[bytes], bytes], tmp_path: Path
-) -> None:
-    near_stew(tmp_path, ("wave", "boiled", "waved"))
+    ]
+    update = "UPDATE outline SET content = ? WHERE number = ?"
     with closing(sqlite3.connect(tmp_path / "stew.foon", isolation_level=None)) as database:
-        [[block]] = database.execute("SELECT content FROM outline WHERE number = ?", (column,))
-        changed = sealed(Table.OUTLINE, column, change(unsealed(Table.OUTLINE, column, block)))
-        database.execute("UPDATE outline SET content = ? WHERE number = ?", (changed, column))
-    dataset = read_stored(DataFiles((tmp_path / "stew.foon",)), 3)
-    assert isinstance(dataset, StoredDataset)
-    problem = dataset.nearby(dataset.goals(["stew"]), "strict")
-    with pytest.raises(UserError, match="the store is damaged"):
-        answered_under(problem, UNITS, LABEL)
+        for column, change in cases:
+            [[block]] = database.execute("SELECT content FROM outline WHERE number = ?", (column,))
+            changed = sealed(Table.OUTLINE, column, change(unsealed(Table.OUTLINE, column, block)))
+            database.execute(update, (changed, column))
+            dataset = read_stored(DataFiles((tmp_path / "stew.foon",)), 3)
+            assert isinstance(dataset, StoredDataset)
+            with closing(dataset), pytest.raises(UserError, match="the store is damaged"):
+                answered_under(dataset.nearby(dataset.goals(["stew"]), "strict"), UNITS, LABEL)
+            database.execute(update, (block, column))
 
 
 def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(
