@@ -18,10 +18,12 @@ from foon_asp.encoding.facts import FACT_PREDICATES, READ_BY_OURS
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Contradiction, Objective, Problem, Restriction, levels
 from foon_asp.proof.constraint import LIBRARY
+from foon_asp.reduce import ALL, NONE, Reduction
 from foon_asp.resources import encodings_folder
 from foon_asp.rules import flat_answers
 from foon_asp.rules.constraint import given_constraint
 from foon_asp.rules.ready_made import READ, ReadyMade
+from tests.conftest import Cli
 from tests.constraint_oracle import HEATS, settings_of
 from tests.test_constraint_meanings import drawn, trees
 
@@ -82,8 +84,13 @@ def test_they_remove_and_require_the_same(seed: int, monkeypatch: pytest.MonkeyP
 @pytest.mark.sampled(24)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("objective", [Objective.UNITS, Objective.SUCCESS])
-def test_answers_are_the_same(seed: int, objective: Objective, monkeypatch: pytest.MonkeyPatch) -> None:
-    for problem, settings in asked(seed):
+@pytest.mark.parametrize("reductions", [ALL, frozenset({Reduction.FORCED})], ids=["all", "without bounds"])
+def test_answers_are_the_same(
+    seed: int, objective: Objective, reductions: frozenset[Reduction], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without bounds, clingo is asked about all constraints where it has to be asked about one."""
+    for problem, given in asked(seed):
+        settings = given._replace(reductions=reductions)
         posed = replace(
             problem, rates=problem.rates or dict.fromkeys(problem.network.motions, Fraction(1, 2))
         )
@@ -91,7 +98,9 @@ def test_answers_are_the_same(seed: int, objective: Objective, monkeypatch: pyte
         ours = solve(posed, (objective,), settings)
         with monkeypatch.context() as without:
             without.setattr("foon_asp.asp.solver.ready_made", lambda *_: None)
-            theirs = solve(posed, (objective,), settings)
+            theirs = solve(
+                posed, (objective,), given if reductions == ALL else given._replace(reductions=NONE)
+            )
         assert ours.status is theirs.status, settings
         assert ours.status in {Status.OPTIMAL, Status.INFEASIBLE}
         if ours.costs is not None:
@@ -99,14 +108,23 @@ def test_answers_are_the_same(seed: int, objective: Objective, monkeypatch: pyte
             assert ours.costs.key(levels((objective,))) == theirs.costs.key(levels((objective,)))
 
 
+@pytest.mark.parametrize(
+    "other", ["only_sources:allowed_source=FOON.txt", "require_ingredient:required_ingredient=salt"]
+)
+@pytest.mark.parametrize("reductions", ["all", "forced", "none"])
+def test_clingo_is_told_what_the_others_look_at(cli: Cli, other: str, reductions: str) -> None:
+    words = "--constraint", "before:earlier_motion=cook,later_motion=fry", "--constraint", other
+    ran = cli("solve", "--goal", "macaroni", *words, "--reduce", reductions, "--format", "json")
+    assert (ran.json["status"], ran.json["costs"]["units"]) == ("optimal", 9)
+
+
 def test_clingo_is_told_all_that_they_look_at() -> None:
     prices = {"at_most_price"}
     for name in LIBRARY:
         file = encodings_folder() / "constraints" / f"{name}.lp"
         used = {each for each in read_encoding(file).used if each[0] in FACT_PREDICATES}
-        if ready(name).rest:
-            assert used <= READ | READ_BY_OURS | ({("price", 2)} if name in prices else set())
-            assert used <= ready(name).looked_at | READ_BY_OURS
+        assert used <= READ | READ_BY_OURS | ({("price", 2)} if name in prices else set())
+        assert used <= ready(name).looked_at | READ_BY_OURS
 
 
 def ready(name: str, **values: str) -> ReadyMade:

@@ -27,8 +27,12 @@ from foon_asp.rules.constraint import Constraint, LibraryUse, find_constraint
 LISTED: Final = {"allergen": "forbidden_ingredient", "allowed": "allowed_source", "heats": ""}
 _PRICE = ("price", 2)
 
-# What those that may have to be asked of clingo look at, but for prices.
-READ: Final = frozenset({("motion", 2), ("input", 2), ("output", 2), ("label", 2), ("utensil", 1)})
+# What they look at beside what ours always do, but for prices. Where clingo is asked about one of them, it is
+# asked about all.
+READ: Final = frozenset(
+    {("motion", 2), ("input", 2), ("output", 2), ("label", 2), ("ingredient", 2), ("utensil", 1)}
+    | {("source", 2), ("video", 2), ("rate", 2)}
+)
 _HEATS = re.compile(r'heats\("([^"\\]*)"\)\.')
 _NUMBER = re.compile(r"-?(0|[1-9]\d{0,9})", re.ASCII)
 _TEXT = re.compile(r'("?)([^"\\]+)\1')
@@ -54,7 +58,7 @@ class ReadyMade:
 
     @property
     def looked_at(self) -> frozenset[tuple[str, int]]:
-        """The facts that those look at which may have to be asked of clingo, beside what ours always do."""
+        """The facts that they look at, beside what ours always do."""
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
     def applied(self, problem: Problem, deadline: Deadline | None = None) -> Restriction | Contradiction:
