@@ -209,8 +209,8 @@ def test_optima_of_several_goals(source: Path, cli: Cli) -> None:
     given = ["optima", "--goal", "ice", "--goal", "tea", *words, *data_words(source)]
     problem = foon_asp.load(source).problem("ice", "tea", containers="implied")
     best = foon_asp.optima(problem, ["inputs,success", "kitchen"])
-    assert [outcome.problem.goals for outcome in best.outcomes] == [
-        (goal,) for goal in problem.goals for _ in "ab"
+    assert [outcome.problem.goal_nodes for outcome in best.outcomes] == [
+        (goal,) for goal in problem.goal_nodes for _ in "ab"
     ]
     assert timeless(best.json()) == timeless(cli(*given, "--format", "json").json)
 

@@ -375,10 +375,11 @@ def test_a_measure_needs_its_rules_and_the_rates_that_it_reads() -> None:
     with pytest.raises(UserError, match="the objective mine needs the rules of its measure"):
         solve(problem, (MINE_OBJECTIVE,))
     with pytest.raises(
-        UserError, match=r"found the objective 'mine', expected one of units, .*, price; give the"
+        UserError,
+        match=r"found the objective 'mine', expected one of units, .*, price, or a measure",
     ):
         foon_asp.solve(problem, "mine")
-    with pytest.raises(UserError, match=r"expected one of units, .*, price, mine; give the"):
+    with pytest.raises(UserError, match=r"expected one of units, .*, price, mine, or a measure"):
         foon_asp.solve(measured(problem, MINE), "yours")
     with pytest.raises(ValueError, match="no measure yours is known"):
         problem.measure("yours", 0)
@@ -389,7 +390,7 @@ def test_a_measure_needs_its_rules_and_the_rates_that_it_reads() -> None:
 def test_an_unknown_objective_is_told_how_rules_are_given(cli: Cli) -> None:
     ran = cli("solve", "--goal", "ice", "--objective", "mine")
     assert ran.code == 2
-    assert "with --measure FILE or in Python load(..., measures=FILE)" in ran.err
+    assert "or a measure whose rules are given" in ran.err
 
 
 @pytest.mark.parametrize("given", ["", "  ", ["", MINE]])

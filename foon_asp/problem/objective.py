@@ -210,8 +210,7 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
         if name not in _BUILT_IN and name not in measures:
             known = ", ".join((*_BUILT_IN, *measures))
             raise UserError(
-                f"found the objective {name!r}, expected one of {known}; give the rules of one of your own, "
-                "with --measure FILE or in Python load(..., measures=FILE)"
+                f"found the objective {name!r}, expected one of {known}, or a measure whose rules are given"
             )
         objective = Objective.of_measure(name) if name in measures else Objective(name)
         if objective in objectives:
