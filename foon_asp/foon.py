@@ -95,7 +95,7 @@ def load(
         raise UserError("expected the path of a FOON, found an empty list")
     beside = [None if file is None else Path(file) for file in (kitchen, rates, utensils, goals, unit_prices)]
     with _limited(time_limit, cancel, "reading"):
-        known = read_measures(_given_measures(measures))
+        known = read_measures(measures)
         named = find_data(folder, () if folder else paths, *beside)
         with _counted(on_progress, size_of(named.network)) as tell, telling(tell):
             dataset = read_dataset(named, lenient, level).measured(known)
@@ -104,17 +104,6 @@ def load(
     for remark in foon.warnings:
         warn(remark)
     return foon
-
-
-def _given_measures(given: Files) -> list[File]:
-    """List files and rules; an empty text is neither: it would be the path of the current folder."""
-    listed = [given] if isinstance(given, str | PathLike) else list(given)
-    if any(isinstance(each, str) and not each.strip() for each in listed):
-        raise UserError(
-            "found an empty text for a measure, expected a file, or rules such as "
-            "cost(mine,U,N) :- inputs(U,N)."
-        )
-    return listed
 
 
 @contextlib.contextmanager
@@ -210,9 +199,7 @@ def build(
         at_hand = starting_nodes(network) if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(goals_from=LAST if goals is None else "")
-        dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(
-            read_measures(_given_measures(measures))
-        )
+        dataset = Dataset(data, 0.0, has_kitchen=kitchen is not None).measured(read_measures(measures))
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             listed = (as_entry(node, Source("the goals", number)) for number, node in enumerate(nodes, 1))
@@ -382,8 +369,7 @@ class Foon:
         Raises:
             UserError: for a name that means no object node or several, or a rate or price out of range.
         """
-        others = None if measures is None else _given_measures(measures)
-        varied = self._dataset.vary(Changes(kitchen, adding, without, rates, unit_prices, others))
+        varied = self._dataset.vary(Changes(kitchen, adding, without, rates, unit_prices, measures))
         return self if varied is self._dataset else Foon(varied, self._name)
 
     @property

@@ -102,7 +102,7 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
             warn(str(diagnostic))
         for message in encoding.unset_constants(extra, settings.constants):
             warn(message)
-        constants = _constant_arguments(settings.constants, parsed, extra)
+        constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
         theirs = [*extra, *(each for file, each in zip(base, parsed, strict=False) if not is_own(file))]
         looked_at = frozenset(signature for each in theirs for signature in each.used)
         named = frozenset(name for each in (*parsed, *extra) for name in each.constants)
@@ -168,31 +168,6 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
         looked_at=rules.looked_at,
     )
     return plain._replace(own=False, ready_made=rules, whole=whole)
-
-
-def _constant_arguments(
-    constants: Sequence[str], base: "Sequence[Encoding]", added: "Sequence[Encoding]"
-) -> list[str]:
-    """Turn settings of constants into arguments of clingo.
-
-    Raises :class:`UserError` for one that no encoding has, or only a ready-made constraint that is used with
-    values of its own.
-    """
-    from foon_asp.encoding import encoding  # noqa: PLC0415
-
-    names = {setting.partition("=")[0] for setting in constants}
-    names -= {name for each in (*base, *added) for name in each.constants}
-    for each in added:
-        use = each.rules
-        if not isinstance(use, Stated):
-            continue
-        for _, name in use.renamed:
-            if name in names:
-                raise UserError(
-                    f"found a value of the constant {name!r}, but {use.written} has values of its own: "
-                    "set it there"
-                )
-    return encoding.constant_arguments(constants, [*base, *added])
 
 
 def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:

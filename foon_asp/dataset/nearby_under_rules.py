@@ -5,8 +5,9 @@ relaxed question of :class:`~foon_asp.dataset.nearby.Nearby` without rules. A tr
 elsewhere has what leads to the goals, which costs at least c, and what leads to v. The outline of the store
 tells, for all units at once, what the dearest way to a unit costs besides all that was read. So a tree that
 costs less than some q has no unit with which this and c come to q or more. Where all others were read that
-rules may ask for, and all that leads to these, what was read of such a tree is one of the relaxed question
-that keeps to the rules: so nothing is better than the best of these, or than q.
+rules may ask for, and all that leads to what they ask for, near the goals as well, then what was read of such
+a tree is one of the relaxed question that keeps to the rules: so nothing is better than the best of these, or
+than q.
 """
 
 from collections.abc import Sequence

@@ -433,7 +433,8 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
     """Turn ``NAME=VALUE`` settings into clingo's, typed after the ``#const`` they set.
 
     Where the encoding's own value is a string the setting is one too, quotes or not; where it is a number
-    the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for an unknown name.
+    the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for an unknown name, and
+    for one that only a ready-made constraint has which is used with values of its own.
     """
     defaults = {
         name: value
@@ -447,6 +448,13 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
         if not equals:
             raise UserError(f"found the constant {setting!r}, expected NAME=VALUE")
         if name not in defaults:
+            uses = (each.rules for each in encodings if isinstance(each.rules, Stated))
+            for use in uses:
+                if name in dict(use.renamed).values():
+                    raise UserError(
+                        f"found a value of the constant {name!r}, but {use.written} has values of its own: "
+                        "set it there"
+                    )
             listed = ", ".join(sorted(defaults)) or "none: add a constraint with #const"
             raise UserError(f"no encoding in use has the constant {name!r}; known are {listed}")
         arguments += ["-c", f"{name}={constant_value(name, defaults[name], value)}"]

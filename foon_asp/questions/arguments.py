@@ -68,17 +68,7 @@ def settings(
 def given_constraints(given: Files) -> tuple[Constraint, ...]:
     """Read one constraint or several: paths, rules, and names of ready-made ones."""
     one = isinstance(given, str | PathLike)
-    return tuple(map(_constraint, [given] if one else given))  # type: ignore[arg-type]
-
-
-def _constraint(given: File | Constraint) -> Constraint:
-    """Read one, which an empty text is not: it would be the path of the current folder."""
-    if isinstance(given, str) and not given.strip():
-        raise UserError(
-            "found an empty text for a constraint, expected a file, the name of a ready-made one, or a rule "
-            'such as :- use(U), motion(U,"fry").'
-        )
-    return given_constraint(given)
+    return tuple(map(given_constraint, [given] if one else given))  # type: ignore[arg-type]
 
 
 def limits(time_limit: float | None, memory_limit: int | str | None) -> tuple[float | None, int | None]:
@@ -129,7 +119,7 @@ def constraint_weights(given: Mapping[File, int]) -> dict[Constraint, int]:
             raise UserError(
                 f"found the weight {weight!r} of {name}, expected a whole number from 1 to {GREATEST_WEIGHT}"
             )
-        constraint = find_constraint(_constraint(name))
+        constraint = find_constraint(given_constraint(name))
         if constraint in weights:
             raise UserError(f"{name} has two weights")
         weights[constraint] = weight

@@ -73,12 +73,18 @@ def given_constraint(given: str | PathLike[str] | Constraint) -> Constraint:
     """Read a constraint as Python gives it, or take one that was read.
 
     A text that has ``:-``, or ends in a full stop, is a rule, unless it is an existing path or the name of a
-    ready-made constraint; a path is always a path.
+    ready-made constraint; a path is always a path. An empty text is none of these: raises
+    :class:`UserError` for it.
     """
     if isinstance(given, RuleText | LibraryUse):
         return given
     if not isinstance(given, str):
         return Path(given)
+    if not given.strip():
+        raise UserError(
+            "found an empty text for a constraint, expected a file, the name of a ready-made one, or a rule "
+            'such as :- use(U), motion(U,"fry").'
+        )
     named = named_constraint(given)
     if isinstance(named, Path) and not exists(named) and (":-" in given or given.rstrip().endswith(".")):
         return RuleText(given)

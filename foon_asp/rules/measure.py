@@ -273,11 +273,17 @@ def read_measures(given: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
     """Read measures by name, from files and from texts; one or several.
 
     A text that has ``:-``, or ends in a full stop, is rules, unless it is an existing path; a path is always
-    a path. Raises :class:`UserError` for faults in them, and for a name that two of them have.
+    a path; an empty text is neither. Raises :class:`UserError` for faults in them, and for a name that two of
+    them have.
     """
     given = [given] if isinstance(given, str | PathLike) else list(given)
     if not given:
         return {}
+    if any(isinstance(each, str) and not each.strip() for each in given):
+        raise UserError(
+            "found an empty text for a measure, expected a file, or rules such as "
+            "cost(mine,U,N) :- inputs(U,N)."
+        )
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
     found: dict[str, Measure] = {}
