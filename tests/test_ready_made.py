@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.assembly import assemble, ready_made
+from foon_asp.asp.assembly import assemble, hold_for_parts, leave_a_rest, reach_of_rules, ready_made
 from foon_asp.asp.prepared import Prepared
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.encoding import read_encoding
@@ -26,6 +26,7 @@ from foon_asp.rules.ready_made import READ, ReadyMade
 from tests.conftest import Cli
 from tests.constraint_oracle import HEATS, settings_of
 from tests.test_constraint_meanings import drawn, trees
+from tests.test_nearby import near_of, stored
 
 SEEDS = range(48)
 ROOT = Path(__file__).resolve().parents[1]
@@ -129,11 +130,39 @@ def test_clingo_is_told_all_that_they_look_at() -> None:
 
 def ready(name: str, **values: str) -> ReadyMade:
     """Understand a constraint with all of its constants."""
-    problem, _, _ = drawn(0)
+    return known(drawn(0)[0], with_constants(name, **values))
+
+
+def with_constants(name: str, **values: str) -> Settings:
     encoding = read_encoding(encodings_folder() / "constraints" / f"{name}.lp")
     given = {constant: '"x"' if value == '""' else "3" for constant, value in encoding.constants.items()}
     written = ",".join(f"{constant}={values.get(constant, value)}" for constant, value in given.items())
-    return known(problem, Settings((given_constraint(f"{name}:{written}"),)))
+    return Settings((given_constraint(f"{name}:{written}"),))
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_how_far_they_reach_is_as_clingo_says(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = with_constants(name)
+
+    def reach() -> tuple[object, ...]:
+        return reach_of_rules(settings), hold_for_parts(settings), leave_a_rest(settings)
+
+    found = reach()
+    monkeypatch.setattr("foon_asp.asp.assembly._known", lambda _: None)
+    assert found == reach()
+
+
+def test_parts_of_stores_are_asked_about_without_clingo(tmp_path: Path) -> None:
+    """But not where the rest of the rules does not see all that is taken to be at hand."""
+    problem = drawn(5)[0]
+    near = near_of(stored(problem, tmp_path).nearby((0,), "strict", first=1))
+    assert near is not None
+    assert near.open_to(range(near.units))
+    prices = problem.unit_prices
+    part, relaxed = (replace(each, unit_prices=prices) for each in (near.problem, near.relaxed))
+    for name in LIBRARY:
+        assert ready_made(part, with_constants(name), silent)
+        assert bool(ready_made(relaxed, with_constants(name), silent)) is not ready(name).rest, name
 
 
 @pytest.mark.parametrize("name", LIBRARY)

@@ -18,6 +18,7 @@ from foon_asp.text.json_value import json_line
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.encoding.encoding import Encoding
+    from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
 
 # Core-guided search with shrunk cores did best on every objective measured; see docs/architecture.md.
@@ -149,15 +150,10 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
 
     ``None`` for other questions.
     """
-    encodings = settings.replaced or settings.relaxed or settings.bounded
-    if not settings.constraints or encodings or not settings.reductions:
+    if len(problem.network) > _SMALL or problem.items is not None:
         return None
-    if len(problem.network) > _SMALL or problem.network.object_numbers or problem.items is not None:
-        return None
-    from foon_asp.rules import ready_made as known  # noqa: PLC0415 (only of use with constraints)
-
-    rules = known.ready_made(settings.constraints, settings.constants, problem)
-    if rules is None:
+    rules = _known(settings)
+    if rules is None or not rules.fit(problem):
         return None
     plain = assemble(settings._replace(constraints=(), constants=()), warn)
     constants = [word for setting in rules.constants.items() for word in ("-c", "=".join(setting))]
@@ -168,6 +164,17 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
         looked_at=rules.looked_at,
     )
     return plain._replace(own=False, ready_made=rules, whole=whole)
+
+
+def _known(settings: Settings) -> "ReadyMade | None":
+    """Give the rules that are added where all are ready-made constraints; ``None`` for others."""
+    if not settings.constraints or not settings.reductions or settings.replaced is not None:
+        return None
+    if settings.relaxed is not None or settings.bounded is not None:
+        return None
+    from foon_asp.rules.ready_made import ready_made as known  # noqa: PLC0415 (only of use with constraints)
+
+    return known(settings.constraints, settings.constants)
 
 
 def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
@@ -210,7 +217,7 @@ class ReachOfRules(Enum):
 
 def reach_of_rules(settings: Settings) -> ReachOfRules:
     """Say which units the rules that are added are about; raises as :func:`assemble` does."""
-    rules = _understood(settings)
+    rules = _known(settings) or _understood(settings)
     if rules is None or not rules.local:
         return ReachOfRules.ALL
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
@@ -224,7 +231,7 @@ def hold_for_parts(settings: Settings) -> bool:
     """
     if settings.replaced is not None:
         return False
-    rules = varying_available(settings)
+    rules = _known(settings) or varying_available(settings)
     if rules is None:
         return not settings.constraints
     return rules.local and rules.shrinking
@@ -232,7 +239,7 @@ def hold_for_parts(settings: Settings) -> bool:
 
 def leave_a_rest(settings: Settings) -> bool:
     """Whether rules that are added say more than which units there are; raises as :func:`assemble` does."""
-    rules = _understood(settings)
+    rules = _known(settings) or _understood(settings)
     return rules is not None and bool(rules.rest)
 
 

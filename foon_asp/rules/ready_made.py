@@ -37,6 +37,7 @@ _HEATS = re.compile(r'heats\("([^"\\]*)"\)\.')
 _NUMBER = re.compile(r"-?(0|[1-9]\d{0,9})", re.ASCII)
 _TEXT = re.compile(r'("?)([^"\\]+)\1')
 _WITH_REST = {"before", "not_both_motions", *(name for name in LIBRARY if name.startswith("at_most"))}
+_ASKING = "require_"  # how the names of those begin that ask for units
 
 
 class ReadyMade:
@@ -44,8 +45,8 @@ class ReadyMade:
 
     They see no further than a tree, and none asks for units that lead to no goal but by sets of which it
     requires one. ``rest`` says that some do more than to remove and to require units: then a tree that keeps
-    to them still does when units are left out. ``constants`` are those of all
-    of them, as terms, and ``files`` are theirs.
+    to these still does when units are left out. It does to all of them where they are ``shrinking``.
+    ``constants`` are those of all of them, as terms, and ``files`` are theirs.
     """
 
     local: Final = True
@@ -53,13 +54,30 @@ class ReadyMade:
 
     def __init__(self, rules: Sequence[Rule], constants: Mapping[str, str], files: Sequence[Path]) -> None:
         self.rules, self.constants, self.files = tuple(rules), constants, tuple(files)
-        self.rest = any(rule["rule"] in _WITH_REST for rule in rules)
+        names = [rule["rule"] for rule in rules]
+        self.rest = not _WITH_REST.isdisjoint(names)
+        self.shrinking = not any(name.startswith(_ASKING) for name in names)
         self._last: tuple[Problem, tuple[Meaning, ...], Ruled] | None = None
 
     @property
     def looked_at(self) -> frozenset[tuple[str, int]]:
         """The facts that they look at, beside what ours always do."""
         return READ | {_PRICE} if "max_price" in self.constants else READ
+
+    def fit(self, problem: Problem) -> bool:
+        """Whether they say of a problem what they say to clingo.
+
+        That is not known of the rest where they do not see all that is at hand, and of prices that clingo
+        refuses.
+        """
+        if self.rest and problem.kitchen_seen != problem.kitchen:
+            return False
+        try:
+            if "max_price" in self.constants:
+                hundredths(problem, range(len(problem.network)), [_PRICE])
+        except UserError:
+            return False
+        return True
 
     def applied(self, problem: Problem, deadline: Deadline | None = None) -> Restriction | Contradiction:
         """Say what is left of a problem under what these remove and require."""
@@ -118,13 +136,11 @@ class ReadyMade:
         return self._last[1:]
 
 
-def ready_made(
-    constraints: Sequence[Constraint], settings: Sequence[str], problem: Problem
-) -> ReadyMade | None:
+def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> ReadyMade | None:
     """Understand constraints that are all ready-made, unchanged, and asked for once, with all constants set.
 
     ``settings`` set constants as ``NAME=VALUE`` for those that have none of their own. ``None`` for any other
-    constraints, and for values and prices that need a closer look.
+    constraints, and for values that need a closer look.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []
@@ -136,8 +152,6 @@ def ready_made(
                 return None
             files.append(file)
             uses.append((file.stem, each.constants if isinstance(each, LibraryUse) else shared))
-        if "at_most_price" in dict(uses):
-            hundredths(problem, range(len(problem.network)), [_PRICE])
         rules = _values(uses, shared)
         return None if rules is None or len(set(files)) < len(files) else ReadyMade(*rules, files)
     return None
