@@ -40,8 +40,13 @@ class Question(NamedTuple):
 
     def touching(self, nodes: Iterable[int]) -> Units:
         """Give the units that have one of some nodes among their inputs or outputs."""
-        network = self.network
-        return frozenset(unit for o in nodes for unit in (*network.producers[o], *network.consumers[o]))
+        touched, network = frozenset(nodes), self.network
+        sides = enumerate(zip(network.inputs, network.outputs, strict=True))
+        return frozenset(
+            unit
+            for unit, (inputs, outputs) in sides
+            if not (touched.isdisjoint(inputs) and touched.isdisjoint(outputs))
+        )
 
     def labelled(self, label: str) -> list[int]:
         """Give the nodes with a label."""
@@ -49,10 +54,11 @@ class Question(NamedTuple):
 
     def made_with(self, names: Collection[str]) -> list[int]:
         """Give the nodes that are labelled as one of some names, or contain one of them."""
+        wanted = frozenset(names)
         return [
             o
             for o, node in enumerate(self.network.objects)
-            if node.label in names or not set(names).isdisjoint(node.ingredients)
+            if node.label in wanted or not wanted.isdisjoint(node.ingredients)
         ]
 
 
@@ -157,9 +163,10 @@ def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -
 
 
 def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]) -> Meaning:
-    network = question.network
-    takers = {unit for o in question.made_with([unheated_ingredient]) for unit in network.consumers[o]}
-    return Meaning(frozenset(unit for unit in takers if network.motions[unit] in heats))
+    network, hot = question.network, frozenset(heats)
+    tainted = frozenset(question.made_with([unheated_ingredient]))
+    heating = (unit for unit, motion in enumerate(network.motions) if motion in hot)
+    return Meaning(frozenset(unit for unit in heating if not tainted.isdisjoint(network.inputs[unit])))
 
 
 def _require_motion(question: Question, required_motion: str) -> Meaning:
@@ -200,12 +207,14 @@ def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> M
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
-    labelled: dict[str, list[int]] = {label: [] for label in sorted(question.utensils)}
-    for o, node in enumerate(question.network.objects):
-        if node.label in labelled:
-            labelled[node.label].append(o)
+    network, utensils = question.network, question.utensils
+    labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
+    touching: dict[str, list[int]] = {label: [] for label in sorted(utensils)}
+    for unit, sides in enumerate(zip(network.inputs, network.outputs, strict=True)):
+        for label in {labels[o] for side in sides for o in side if o in labels}:
+            touching[label].append(unit)
     one = Fraction(1)
-    each = [(units, one) for nodes in labelled.values() if (units := question.touching(nodes))]
+    each = [(frozenset(units), one) for units in touching.values() if units]
     return Meaning(things=each, most=Fraction(max_utensils))
 
 
