@@ -124,6 +124,17 @@ def test_what_was_found_stands_when_time_is_up_or_ctrl_c_comes() -> None:
     assert found._replace(left={}) == (6, {}, ask(price, [3]).cuts[:2], False, True)
 
 
+def test_landmarks_of_many_members_end_the_search_for_more() -> None:
+    price = [2, 3, 1, 5, 4, 1]
+    cuts = ask(price, [3]).cuts
+    assert [len(each.members) for each in cuts[:2]] == [2, 2]
+    for most, found in ((0, 0), (1, 1), (2, 1), (3, 2), (4, 2), (5, 3)):
+        some = landmark_cuts(KITCHEN, [3], range(6), price.__getitem__, {}, lambda: False, None, most)
+        assert some.cuts == cuts[:found]
+        assert some.bound == sum(each.weight for each in some.cuts)
+        assert not some.interrupted
+
+
 def test_a_guide_is_asked_by_what_is_left_after_64_cuts_and_one_for_each_target() -> None:
     # targets that take three actions each, one after the other, and more targets that take one
     asked: list[list[int]] = []

@@ -12,7 +12,7 @@ from foon_asp.bounds import shared_costs
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.landmark_cuts import Cuts, WeightedCut
-from foon_asp.bounds.relaxation import Covering, Relaxed, Weighed
+from foon_asp.bounds.relaxation import Covering, Relaxed, UnsolvedError, Weighed
 from foon_asp.bounds.shared_costs import PARTS, SharedCosts, _Sharing, share_costs
 from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, levels
@@ -264,6 +264,7 @@ def test_weights_are_those_wanted_and_what_is_left_goes_to_the_greatest(
         {a: rest * PARTS for a, rest in left.items()},
         [(frozenset({place}), weight * PARTS) for place, weight in weights.items()],
         {0: 0.5, 1: 0.25, 2: 0.0, 3: 0.0, 4: 1.0},
+        [(frozenset({place}), row) for place, row in enumerate([(0, 1), (1, 2), (2, 3), (2,), (4,), (4,)])],
     )
     assert relaxation.rows == [(0, 1), (1, 2), (2, 3), (2,), (4,), (4,)]
 
@@ -311,13 +312,64 @@ def test_where_time_is_up_the_last_solution_counts(monkeypatch: pytest.MonkeyPat
     require_holds(graph, [*range(1, 6)], [10] * 5, found)
 
 
+def test_what_is_known_is_heard_of_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who hears of it says what is enough, and when that is all; cuts hit more than once are not tight."""
+    heard: list[SharedCosts] = []
+
+    def shared(*enough: int) -> tuple[SharedCosts | None, int]:
+        relaxation = Told([0.1 * n for n in range(40)], [0.0, 1.5, 0.0], [0.5])
+        answers = iter(enough)
+        heard.clear()
+
+        def hear(shared: SharedCosts) -> int:
+            heard.append(shared)
+            return next(answers)
+
+        with monkeypatch.context() as patched:
+            patched.setattr(shared_costs, "Covering", lambda _: relaxation)
+            graph = Hypergraph(4, [[]] * 3, [[1], [2], [3]], [0])
+            known = [({2}, (1,))]
+            found = share_costs(graph, [1, 2, 3], range(3), lambda _: 10, known, 99, lambda: False, hear)
+        return found, relaxation.solved
+
+    found, solved = shared(0)
+    assert (found, solved) == (heard[0], 8)
+    assert {objects for objects, _ in heard[0].tight} == {frozenset({1}), frozenset({3})}
+    found, solved = shared(99, 99, 0)
+    assert (found, solved, len(heard)) == (heard[-1], 24, 3)
+    found, solved = shared(8)  # which the ninth solution comes to
+    assert (solved, len(heard)) == (9, 1)
+    require_holds(Hypergraph(4, [[]] * 3, [[1], [2], [3]], [0]), [1, 2, 3], [10] * 3, heard[0])
+
+
+def test_where_highs_finds_nothing_what_is_known_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Lost(Told):
+        def solve(self, expired: Callable[[], bool]) -> Relaxed:
+            if self.solved == self.most:
+                raise UnsolvedError
+            return super().solve(expired)
+
+        most = 0
+
+    relaxation = Lost([0.0] * 9, [0.0], [0.5])
+    graph = Hypergraph(2, [[]], [[1]], [0])
+    monkeypatch.setattr(shared_costs, "Covering", lambda _: relaxation)
+    assert share_costs(graph, [1], [0], lambda _: 10, (), 99, lambda: False) is None
+    relaxation.most = 1
+    found = share_costs(graph, [1], [0], lambda _: 10, (), 99, lambda: False)
+    assert found is not None
+    require_holds(graph, [1], [10], found)
+
+
 @pytest.mark.parametrize("rule", ContainerRule)
 @pytest.mark.parametrize("seed", range(25))
 def test_answers_are_those_of_the_plain_program(
     seed: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reduction, "_SMALL", 0)
-    # all that the greedy cuts leave is left to the shared costs
+    # all that the greedy cuts leave is left to the shared costs, of which is heard each time
+    monkeypatch.setattr(shared_costs, "_OFTEN", 1)
+    monkeypatch.setattr(reduction, "_DENSE", seed % 2 / 600)  # hardly any member, or none
     monkeypatch.setattr(reduction, "_ROUNDS", 1)
     monkeypatch.setattr(reduction, "improved", lambda graph, few, tree, *_: tree)
     problem = random_problem(seed, rule, units=14)
@@ -370,7 +422,8 @@ class Course(Listener):
     def share(
         self, graph: Graph, goals: object, left: set[int], costs: object, known: object, *rest: Any
     ) -> SharedCosts | None:
-        enough, _ = rest
+        enough, _, heard = rest
+        assert heard
         assert (goals, enough, self.late) == (graph.goals, len(self.trees[-1]), False)
         told = self.told[len(self.left)]
         self.left.append(len(left))
@@ -465,7 +518,7 @@ def test_what_shared_costs_leave_more_of_than_is_to_be_gained_goes(
         assert {*found.units} >= FEW | MORE
         assert (found.settled, found.bound) == (False, 2)
         # what is left is shared out again while that helps, and once more when cuts were found anew
-        assert course.known == ([FIRST, [], FIRST] if goes else [FIRST])
+        assert course.known == ([FIRST, (), FIRST] if goes else [FIRST])
 
 
 def test_costs_are_shared_out_again_where_a_tenth_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -473,11 +526,11 @@ def test_costs_are_shared_out_again_where_a_tenth_is_gone(monkeypatch: pytest.Mo
     # 5 of 15 go, and then 1 of 10, which is not worth it, or 2
     course = Course((PARTS, drop), (PARTS, {12: 9 * PARTS}), None)
     found = course.reduce(monkeypatch, DEAR)
-    assert (course.left, course.known) == ([15, 10, 9], [FIRST, [], FIRST])
+    assert (course.left, course.known) == ([15, 10, 9], [FIRST, (), FIRST])
     assert {*found.units} == FEW | MORE | BOTH
     course = Course((PARTS, drop), (PARTS, {13: 9 * PARTS}), None, None)
     found = course.reduce(monkeypatch, DEAR)
-    assert (course.left, course.known) == ([15, 10, 8, 8], [FIRST, [], [], FIRST])
+    assert (course.left, course.known) == ([15, 10, 8, 8], [FIRST, (), (), FIRST])
     assert {*found.units} == FEW | MORE | TWIN
     # what is of no use then, as another one stands in for it, goes at once
     course = Course((PARTS, drop), None, None)
@@ -503,7 +556,7 @@ def test_costs_are_shared_out_where_nothing_else_helps_and_once(monkeypatch: pyt
     # without cuts none are known
     course = Course((PARTS, {}))
     found = course.reduce(monkeypatch, DOMINATED)
-    assert (course.known, course.bounds, found.cuts) == ([[]], [1], None)
+    assert (course.known, course.bounds, found.cuts) == ([()], [1], None)
 
 
 def test_a_better_tree_on_the_way_counts_at_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Iterable, Iterator
+from functools import partial
 
 import pytest
 
@@ -318,6 +319,17 @@ def test_chance_leads_where_no_estimate_does() -> None:
     assert varied(SETS, range(9), single, price, 0, never) is single
     assert varied(SETS, range(12), single, price, 9, never) is single
     assert 6 < sum(map(price, varied(SETS, range(12), single, price, 8, never))) <= 8
+
+
+def test_chance_goes_along_with_a_relaxed_solution() -> None:
+    """The three sets are the best whatever chance says, where a solution takes most of them."""
+    price, single = SET_COSTS.__getitem__, set(range(9))
+    shares = dict.fromkeys(range(9), 0.1) | dict.fromkeys(range(9, 12), 0.9)
+    for times, least in ((0.4, 6), (0.6, 9)):  # each other time
+        chances = iter([times, *[0.5] * 12])
+        chance = partial(next, chances, 0.999)
+        found = varied(SETS, range(12), single, price, 8, never, shares, chance, 1)
+        assert (sum(map(price, found)) == 6) == (least == 6)
 
 
 def test_what_chance_leads_to_is_a_tree_and_no_dearer() -> None:

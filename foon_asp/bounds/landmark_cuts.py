@@ -47,8 +47,11 @@ def landmark_cuts(
     dear: Mapping[int, int],
     expired: Callable[[], bool],
     guide: Callable[[Callable[[int], int]], Mapping[int, int]] | None = None,
+    most: float = math.inf,
 ) -> Cuts:
     """Find weighted cuts before the targets, until what is left of the costs gives them all for nothing.
+
+    Or until their landmarks have ``most`` members together, or about.
 
     Only ``allowed`` actions count, and all costs are above zero. ``dear`` says how dear each object is
     thought to be, those not in it dearer than all: a cut passes through the dearest object that an action
@@ -61,7 +64,7 @@ def landmark_cuts(
     left: dict[int, int] = {}
     free = _Free(graph)
     found: list[WeightedCut] = []
-    bound = 0
+    bound = effort = 0
 
     def rest_of(action: int) -> int:
         return left[action] if action in left else cost(action)
@@ -72,7 +75,7 @@ def landmark_cuts(
     remaining = deque(sorted(targets, key=dearness, reverse=True))
     fresh = max(_FRESH, len(remaining))
     try:
-        while remaining and not expired():
+        while remaining and effort < most and not expired():
             target = remaining.popleft()
             if target in free.objects:
                 continue
@@ -99,6 +102,7 @@ def landmark_cuts(
             cheapest = min(rests, key=rests.__getitem__)
             weight = rests[cheapest]
             bound += weight
+            effort += len(members)
             found.append(WeightedCut(frozenset(zone), members, cheapest, weight))
             for action, rest in rests.items():
                 left[action] = rest - weight

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from foon_asp.bounds.cut import Cutter
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.missed_cuts import missed_cuts
-from foon_asp.bounds.relaxation import Covering, Weighed
+from foon_asp.bounds.relaxation import Covering, UnsolvedError, Weighed
 
 PARTS = 720720  # of 1: most weights are simple fractions
 _CUTS = 40  # before all targets that one relaxed solution is asked for; of smaller ones there are more
@@ -23,6 +23,8 @@ _ALONE = 8  # times as many actions as there are, at most, for targets looked at
 _SMALL = 0.5  # of the actions, at most, that a target may need for this
 _STALLED = 8  # solutions, after which a bound that hardly grows counts as the best there is
 _GROWS = 0.01  # of what lacks, how much these have to bring
+_OFTEN = 8  # solutions, from one that is told of to the next
+_TWICE = 1.001  # a cut of a greater share is hit more than once
 _LARGE = 2**62  # sums that machine numbers do not hold
 _LOST = Fraction(1, 100)  # how much less than the solution the weights may add up to
 
@@ -32,12 +34,14 @@ class SharedCosts(NamedTuple):
 
     No derivation by the actions looked at costs less than ``bound``, in parts. ``left`` is what the cuts
     leave of the cost of each action, in parts, and ``shares`` is how much of each the relaxed solution takes.
+    ``tight`` are the cuts that it hits just once, with their landmarks: those to go on with.
     """
 
     bound: int
     left: dict[int, int]
     cuts: list[tuple[frozenset[int], int]]
     shares: dict[int, float]
+    tight: Sequence[tuple[frozenset[int], tuple[int, ...]]] = ()
 
 
 def share_costs(
@@ -48,14 +52,16 @@ def share_costs(
     known: Iterable[tuple[Collection[int], Collection[int]]],
     enough: int,
     expired: Callable[[], bool],
+    heard: Callable[[SharedCosts], int] | None = None,
 ) -> SharedCosts | None:
     """Find cuts before the targets, and the weights of the greatest sum that the costs allow.
 
     All of the actions can run, and those that cost nothing are taken as a whole. ``known`` are cuts to begin
-    with, their objects and their landmarks. A bound of ``enough`` is good enough. ``None`` where nothing can
+    with, their objects and their landmarks. A bound of ``enough`` is good enough. What is known is ``heard``
+    of now and then, which gives what is enough from then on, and nothing to end. ``None`` where nothing can
     be shared out.
     """
-    return _Sharing(graph, targets, actions, cost).share(known, enough, expired)
+    return _Sharing(graph, targets, actions, cost).share(known, enough, expired, heard)
 
 
 def renumbered(
@@ -126,40 +132,56 @@ class _Sharing:
         self._covering = Covering(self._relative)
         self._rows: list[tuple[int, ...]] = []
         self._cuts: list[frozenset[int]] = []
+        self._inside = True  # which is found sooner, until it is not exact enough
 
     def share(
         self,
         known: Iterable[tuple[Collection[int], Collection[int]]],
         enough: int,
         expired: Callable[[], bool],
+        heard: Callable[[SharedCosts], int] | None,
     ) -> SharedCosts | None:
         if self._cutter.hopeless or not self._cutter.targets:
             return None
         place = {a: n for n, a in enumerate(self._actions)}
         for objects, members in known:
             self._add(frozenset(objects), tuple(place[a] for a in members if a in place))
-        wanted = (100 * enough - 99) / (100 * self._dearest)  # costs are whole, and so are bounds
         values: list[float] = []
         last: Weighed | None = None
-        inside = True  # which is found sooner, until it is not exact enough
         while last is None or not expired():
-            found = self._covering.inside(expired) if inside else None
+            found = self._solved(expired)
             if found is None:
-                if last is not None and expired():
-                    break
-                inside = False
-                solved = self._covering.solve(expired)
-                found = Weighed(solved.value, solved.x, self._covering.weights())
+                break
             last = found
             values.append(found.value)
-            lacks = wanted - found.value
+            lacks = (100 * enough - 99) / (
+                100 * self._dearest
+            ) - found.value  # costs are whole, and so are bounds
             if lacks <= 0 or stalled(values, lacks) or not self._separate(found.x, expired):
                 shared = self._shared(found)
                 lost = Fraction(found.value) * self._dearest - Fraction(shared.bound, PARTS)
-                if not inside or lost < _LOST:
+                if not self._inside or lost < _LOST:
                     return shared
-                inside = False
-        return self._shared(last)
+                self._inside = False
+            elif heard is not None and len(values) % _OFTEN == 0:
+                shared = self._shared(found)
+                enough = heard(shared)
+                if not enough:
+                    return shared
+        return None if last is None else self._shared(last)
+
+    def _solved(self, expired: Callable[[], bool]) -> Weighed | None:
+        """Give a relaxed solution, or ``None`` where HiGHS finds none, or not by the time that is up."""
+        if self._inside:
+            found = self._covering.inside(expired)
+            if found is not None:
+                return found
+            self._inside = False
+        try:
+            solved = self._covering.solve(expired)
+        except UnsolvedError:
+            return None
+        return Weighed(solved.value, solved.x, self._covering.weights())
 
     def _add(self, objects: frozenset[int], row: tuple[int, ...]) -> None:
         self._cuts.append(objects)
@@ -210,9 +232,16 @@ class _Sharing:
         left = in_parts(self._costs)
         told = [*solved.weights] + [0.0] * (len(self._rows) - len(solved.weights))  # of rows that came later
         weights = shared_out(enumerate(told), self._dearest * PARTS, [*map(list, self._rows)], left)
+        shares = solved.x
+        tight = [
+            (cut, tuple(self._actions[place] for place in row))
+            for cut, row in zip(self._cuts, self._rows, strict=True)
+            if sum(shares[place] for place in row) < _TWICE
+        ]
         return SharedCosts(
             sum(weights.values()),
             dict(zip(self._actions, left.tolist(), strict=True)),
             [(cut, weights[row]) for row, cut in enumerate(self._cuts) if weights[row]],
-            {a: solved.x[n] for n, a in enumerate(self._actions)},
+            {a: shares[n] for n, a in enumerate(self._actions)},
+            tight,
         )

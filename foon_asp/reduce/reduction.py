@@ -1,6 +1,7 @@
 """A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
 
 import math
+import random
 from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
@@ -35,6 +36,9 @@ _ROUNDS = 24  # of cuts, trees and what they leave
 _FEW = 6  # of these, where other costs are tried
 _EFFORT = 3_000_000  # actions looked at while branching, before clingo is asked: some 20 s of a processor
 _NEAR = 4, 3  # of so many parts of what the tree costs, those that a bound has to reach for branching to pay
+_TRIES, _THOROUGH = 10, 40  # times all actions, looked at by chance for a better tree as costs are shared out
+_DENSE = 20  # members of landmarks for each action, after which relaxations tell more than greedy cuts
+_SPARSE = 50, 0.01  # members, or of the actions: landmarks of more make relaxations slow, and say little
 _WORTH = 0.9  # of the actions may be left for another time to be worth it
 
 
@@ -178,6 +182,8 @@ class _Reducer:
         self.cuts: Cuts | None = None
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
+        self.tight: Sequence[tuple[Collection[int], Collection[int]]] = ()  # cuts to share costs out among
+        self.chance = random.Random(0)
         self.cases: Cases = None
         self.brief = False  # whether cuts alone are wanted
         self.proved = False  # whether the tree is the best, as there is none better for the goals alone
@@ -383,25 +389,43 @@ class _Reducer:
 
     def _share_costs(self, costs: ExactCosts) -> bool:
         """Share costs out among all cuts at once, and leave out more; whether the tree is proved optimal."""
-        known = [(cut.objects, cut.members) for cut in self.cuts.cuts] if self.cuts else []
-        before, settled = math.inf, False
-        while not settled and self.small < len(self.left) < _WORTH * before and not self.expired():
-            from foon_asp.bounds.shared_costs import PARTS, share_costs  # noqa: PLC0415 (few questions need it)
+        from foon_asp.bounds.shared_costs import share_costs  # noqa: PLC0415 (few questions need it)
 
+        if not self.tight and self.cuts:
+            few, part = _SPARSE
+            most = max(few, part * len(self.left))
+            self.tight = [(cut.objects, cut.members) for cut in self.cuts.cuts if len(cut.members) <= most]
+        before, settled = math.inf, False
+
+        def heard(shared: "SharedCosts") -> int:
+            nonlocal settled
+            settled = self._followed(costs, shared)
+            return 0 if settled or len(self.left) < _WORTH * before else self._total(costs)
+
+        while not settled and self.small < len(self.left) < _WORTH * before and not self.expired():
             before = len(self.left)
             goals, total = self.graph.goals, self._total(costs)
-            shared = share_costs(self.graph, goals, self.left, costs, known, total, self.expired)
+            shared = share_costs(self.graph, goals, self.left, costs, self.tight, total, self.expired, heard)
             if shared is None:
                 break
-            known = []
-            tree = following(self.graph, self.left, self.tree, costs, shared)
-            least = -(-shared.bound // PARTS)
-            if least < sum(map(costs, tree)):
-                tree = varied(self.graph, self.left, tree, costs, least, self.expired)
-            if tree is not self.tree:
-                self._take(tree)
-            settled = self._shared(costs, shared)
+            self.tight = shared.tight
+            settled = settled or self._followed(costs, shared, _THOROUGH)
         return settled
+
+    def _followed(self, costs: ExactCosts, shared: "SharedCosts", tries: int = _TRIES) -> bool:
+        """Look for a better tree by a relaxed solution, and leave out more; whether it is proved optimal."""
+        from foon_asp.bounds.shared_costs import PARTS  # noqa: PLC0415 (few questions need it)
+
+        tree = following(self.graph, self.left, self.tree, costs, shared)
+        least = -(-shared.bound // PARTS)
+        if least < sum(map(costs, tree)):
+            tree = varied(
+                *(self.graph, self.left, tree, costs, least, self.expired),
+                *(shared.shares, self.chance.random, tries),
+            )
+        if tree is not self.tree:
+            self._take(tree)
+        return self._shared(costs, shared)
 
     def _shared(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
         """Note a bound, and leave out what is dear by it; whether the tree is proved optimal.
@@ -441,6 +465,7 @@ class _Reducer:
             guide,
             self.expired,
             None if lazy else lambda rest: derive(self.graph, self.left, rest, added=False).cost,
+            math.inf if self.rest or self.brief else _DENSE * max(_EASY, len(self.left)),
         )
         if self.wide is None and not cuts.interrupted and not self.extending:  # nothing was left out so far
             self.wide = Wide(self.problem, self.graph, self.left, costs, cuts, self.spare)
