@@ -736,8 +736,8 @@ PARTS = {
         ),
     ),
     "a unit with a forbidden node is removed": Part(
-        "for unit in (*network.producers[o], *network.consumers[o])",
-        "for unit in network.producers[o]",
+        "if not (touched.isdisjoint(inputs) and touched.isdisjoint(outputs))",
+        "if not touched.isdisjoint(outputs)",
         plain(rules=forbid([], ["start"])),
         constraint,
     ),

@@ -146,11 +146,12 @@ def assemble(settings: Settings, warn: Callable[[str], None], used_up: bool = Fa
 
 
 def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
-    """Give the program of a small question whose rules are all ready-made constraints, without clingo.
+    """Give the program of a small question, or to a store, whose rules are all ready-made, without clingo.
 
     ``None`` for other questions.
     """
-    if len(problem.network) > _SMALL or problem.items is not None:
+    network = problem.network  # to read a part of a store takes longer than to look through it
+    if problem.items is not None or (len(network) > _SMALL and not network.object_numbers):
         return None
     rules = _known(settings)
     if rules is None or not rules.fit(problem):

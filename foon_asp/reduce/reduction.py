@@ -39,6 +39,7 @@ _NEAR = 4, 3  # of so many parts of what the tree costs, those that a bound has 
 _TRIES, _THOROUGH = 10, 40  # times all actions, looked at by chance for a better tree as costs are shared out
 _DENSE = 20  # members of landmarks for each action, after which relaxations tell more than greedy cuts
 _SPARSE = 50, 0.01  # members, or of the actions: landmarks of more make relaxations slow, and say little
+_CLOSE = 0.98  # of what the tree costs: from such a bound on, branching tells sooner than more cuts
 _WORTH = 0.9  # of the actions may be left for another time to be worth it
 
 
@@ -355,8 +356,7 @@ class _Reducer:
 
         Where rounding may decide, and where rules decide what counts as a tree, that is left to clingo.
         """
-        only_better = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
-        if not only_better or costs.doubt or costs.limited or self.rest:
+        if not self._branches(costs):
             return False
         total, (parts, enough) = self._total(costs), _NEAR
         if len(self.left) <= _SMALL or self.effort <= 0 or self.bound * parts < total * enough:
@@ -387,6 +387,11 @@ class _Reducer:
             self._shared(costs, self.shared)
         return False
 
+    def _branches(self, costs: ExactCosts) -> bool:
+        """Whether branching may tell which tree is the best."""
+        only_better = Reduction.BOUNDS in self.reductions and self._total(costs) >= self.below
+        return only_better and not (costs.doubt or costs.limited or self.rest) and self.effort > 0
+
     def _share_costs(self, costs: ExactCosts) -> bool:
         """Share costs out among all cuts at once, and leave out more; whether the tree is proved optimal."""
         from foon_asp.bounds.shared_costs import share_costs  # noqa: PLC0415 (few questions need it)
@@ -395,14 +400,16 @@ class _Reducer:
             few, part = _SPARSE
             most = max(few, part * len(self.left))
             self.tight = [(cut.objects, cut.members) for cut in self.cuts.cuts if len(cut.members) <= most]
-        before, settled = math.inf, False
+        before, settled, near = math.inf, False, False
 
         def heard(shared: "SharedCosts") -> int:
-            nonlocal settled
+            nonlocal settled, near
             settled = self._followed(costs, shared)
-            return 0 if settled or len(self.left) < _WORTH * before else self._total(costs)
+            total = self._total(costs)
+            near = self._branches(costs) and self.bound > total * _CLOSE
+            return 0 if settled or near or len(self.left) < _WORTH * before else total
 
-        while not settled and self.small < len(self.left) < _WORTH * before and not self.expired():
+        while not (settled or near) and self.small < len(self.left) < _WORTH * before and not self.expired():
             before = len(self.left)
             goals, total = self.graph.goals, self._total(costs)
             shared = share_costs(self.graph, goals, self.left, costs, self.tight, total, self.expired, heard)
