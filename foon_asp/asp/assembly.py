@@ -150,11 +150,11 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
 
     ``None`` for other questions.
     """
-    network = problem.network  # to read a part of a store takes longer than to look through it
-    if problem.items is not None or (len(network) > _SMALL and not network.object_numbers):
-        return None
     rules = _known(settings)
-    if rules is None or not rules.fit(problem):
+    if rules is None or problem.items is not None:
+        return None
+    network = problem.network  # to read a part of a store takes longer than to look through it
+    if (len(network) > _SMALL and not network.object_numbers) or not rules.fit(problem):
         return None
     plain = assemble(settings._replace(constraints=(), constants=()), warn)
     constants = [word for setting in rules.constants.items() for word in ("-c", "=".join(setting))]

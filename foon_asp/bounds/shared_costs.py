@@ -154,9 +154,8 @@ class _Sharing:
                 break
             last = found
             values.append(found.value)
-            lacks = (100 * enough - 99) / (
-                100 * self._dearest
-            ) - found.value  # costs are whole, and so are bounds
+            above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
+            lacks = above / (100 * self._dearest) - found.value
             if lacks <= 0 or stalled(values, lacks) or not self._separate(found.x, expired):
                 shared = self._shared(found)
                 lost = Fraction(found.value) * self._dearest - Fraction(shared.bound, PARTS)

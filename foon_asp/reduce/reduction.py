@@ -359,7 +359,7 @@ class _Reducer:
         if not self._branches(costs):
             return False
         total, (parts, enough) = self._total(costs), _NEAR
-        if len(self.left) <= _SMALL or self.effort <= 0 or self.bound * parts < total * enough:
+        if len(self.left) <= _SMALL or self.bound * parts < total * enough:
             return False
         from foon_asp.bounds.branching import Branching  # noqa: PLC0415 (few questions need it)
 
