@@ -128,6 +128,7 @@ def test_all_rooms_have_mutants_and_every_mutant_is_python() -> None:
     assert len({mutant.rank for mutant in found}) == len(found)
     for mutant in found[:150]:
         compile(mutant.applied(files[mutant.file]), mutant.file, "exec")
+    assert equivalents() <= {place(mutant) for mutant in found}
 
 
 def test_the_list_of_equivalents_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ from foon_asp.problem import ContainerRule, Problem
 from foon_asp.problem.dead_ends import Cause
 from foon_asp.text.line_parser import parse_node
 from tests import oracle
-from tests.conftest import ROOT, STRUCK_WHILE_READING, Cli
+from tests.conftest import ROOT, Cli
 from tests.random_problems import random_problem
 
 pytestmark = pytest.mark.sampled(2)  # by default each second case of a test: there are many
@@ -221,13 +221,13 @@ def test_causes_that_are_not_shown_are_counted() -> None:
     assert "\n12 more behind other units; --format json lists all\n" in said
 
 
-@STRUCK_WHILE_READING
-def test_the_last_line_is_the_cheapest_fix(cli: Cli) -> None:
+def test_the_last_line_is_the_cheapest_fix(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     ran = cli("why-not", "--goal", "hot cocoa")
     fix = "cheapest fix: add cocoa tin; contains {cocoa powder} (foon-asp shopping-list says more)"
     assert ran.out.splitlines()[-1] == fix
     fix = cli("why-not", "--goal", "hot cocoa", "--format", "json").json["fix"]
     assert ([item["label"] for item in fix["items"]], fix["proved"]) == (["cocoa tin"], True)
+    monkeypatch.setattr("foon_asp.deadline._LATE", 60)  # the machine may be busy: nothing else ends it
     ran = cli("why-not", "--goal", "hot cocoa", "--time-limit", "0")
     assert ran.out.splitlines()[-1].startswith("foon-asp shopping-list with the same options")
 

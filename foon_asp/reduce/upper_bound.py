@@ -1,6 +1,5 @@
 """Trees that are good, found fast, with nothing in them that can be left out."""
 
-import random
 from collections.abc import Callable, Collection, Iterator, Mapping
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
@@ -13,7 +12,6 @@ if TYPE_CHECKING:  # few questions need it
     from foon_asp.bounds.shared_costs import SharedCosts
 
 _FINE = 1000  # steps of shares, and of costs that vary, that the estimates tell apart
-_TRIES = 40  # times all actions, at most, which are looked at by chance after the last better tree
 _MOST = 160  # trees that chance leads to
 
 
@@ -90,18 +88,18 @@ def varied(
     cost: Callable[[int], int],
     enough: int,
     expired: Callable[[], bool],
-    shares: Mapping[int, float] | None = None,
-    chance: Callable[[], float] | None = None,
-    tries: int = _TRIES,
+    shares: Mapping[int, float],
+    chance: Callable[[], float],
+    tries: int,
 ) -> set[int]:
     """Look for a cheaper tree by chance, down to a cost that is ``enough``; gives the same if none is found.
 
     Some of the actions of a tree cost nothing, any number of them, and each other one costs half as much more
     or less than it does; half of the times, only some of the others are there, which takes less time. A tree
-    that costs the same is the next to start from. With the ``shares`` that a relaxed solution takes, each
-    other time these cost nothing instead, of all actions.
+    that costs the same is the next to start from. Each other time, of all actions the ``shares`` that a
+    relaxed solution takes cost nothing instead. Each action may be looked at
+    ``tries`` times after the last better tree.
     """
-    chance = chance or random.Random(0).random
     best = last = tree
     total = sum(map(cost, tree))
     ordered = sorted(actions)
@@ -109,7 +107,7 @@ def varied(
     for _ in range(_MOST):
         if effort <= 0 or total <= enough or expired():
             break
-        if shares is not None and chance() < 0.5:
+        if chance() < 0.5:
             some = ordered
             price = {a: 1 + int(cost(a) * (1 - min(1.0, shares[a])) * _FINE * (0.5 + chance())) for a in some}
         else:
