@@ -1,7 +1,7 @@
 """Costs shared out among all cuts: bounds that hold whatever floats say, held against brute force."""
 
 import random
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -21,6 +21,10 @@ from foon_asp.reduce.graph import Graph
 from tests.plain_graphs import Action, plain_problem
 from tests.random_problems import random_problem
 from tests.test_reduction import after
+
+
+def never() -> bool:
+    return False
 
 
 def random_graph(rng: random.Random) -> Hypergraph:
@@ -99,7 +103,7 @@ def test_shares_are_halves_where_three_landmarks_overlap() -> None:
     assert (found.bound, found.left) == (PARTS * 3 // 2, dict.fromkeys(range(3), 0))
     assert sorted(map(sorted, (objects for objects, _ in found.cuts))) == [[1], [2], [3]]
     assert found.shares == pytest.approx(dict.fromkeys(range(3), 0.5))
-    known = [({1}, (0, 2))]
+    known = [{1}]
     late = share_costs(graph, [1, 2, 3], range(3), lambda _: 1, known, 2, lambda: True)
     assert late is not None
     assert (late.bound, late.cuts) == (PARTS, [(frozenset({1}), PARTS)])
@@ -126,8 +130,8 @@ class Told:
         self.solved, self.amid = 0, False
         self.rows: list[tuple[int, ...]] = []
 
-    def add(self, row: tuple[int, ...]) -> None:
-        self.rows.append(row)
+    def add(self, row: Sequence[int]) -> None:
+        self.rows.append(tuple(row))
 
     def inside(self, expired: Callable[[], bool]) -> Weighed | None:
         if not self.amid:
@@ -182,9 +186,9 @@ def test_cuts_are_looked_for_until_they_bring_little(monkeypatch: pytest.MonkeyP
     assert sorted(relaxation.rows) == sorted([(0,), (1,), (2,)] * 8)
     relaxation = Told([0.0], [0.999] * 3)
     assert (told(monkeypatch, 3, relaxation, 202), relaxation.rows) == (1, [])
-    sharing = _Sharing(Hypergraph(2, [[]], [[1]], [0]), [1], [0], lambda _: 1)
+    sharing = _Sharing(Hypergraph(2, [[]], [[1]], [0]), [1], [0], lambda _: 1, never)
     assert sharing._separate([0.0], lambda: True) is False
-    assert (sharing._separate([0.0], lambda: False), sharing._rows) == (True, [(0,)])
+    assert (sharing._separate([0.0], lambda: False), sharing._rows) == (True, [[0]])
 
 
 def test_each_target_that_needs_few_actions_has_cuts_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,11 +205,11 @@ def test_targets_are_looked_at_by_themselves_only_where_that_takes_little() -> N
     needs = [[], [], [], [], [1, 2, 3], [4], *[[6 + n] for n in range(31)]]
     gives = [[1], [2], [3], [4], *[[5 + n] for n in range(33)]]
     graph = Hypergraph(38, needs, gives, [0])
-    sharing = _Sharing(graph, [1, 2, 5, 37], range(37), lambda _: 1)
+    sharing = _Sharing(graph, [1, 2, 5, 37], range(37), lambda _: 1, never)
     assert [cutter.actions for cutter in sharing._alone] == [[0], [1], [0, 1, 2, 4]]
     assert [len(cutter.actions) for cutter in sharing._together] == [33]
     assert sharing._separate([1.0] * 36 + [0.0], lambda: False)
-    assert sharing._rows == [(36,)]
+    assert sharing._rows == [[36]]
 
 
 @pytest.mark.parametrize(
@@ -235,17 +239,17 @@ def test_how_many_targets_are_looked_at_by_themselves(
     targets = [sum(needed[: place + 1]) for place in range(len(needed))]
     needs += [[]] * (actions - len(needs))
     graph = Hypergraph(actions + 1, needs, [[a + 1] for a in range(actions)], [0])
-    sharing = _Sharing(graph, targets, range(actions), lambda _: 1)
+    sharing = _Sharing(graph, targets, range(actions), lambda _: 1, never)
     assert [len(cutter.actions) for cutter in sharing._alone] == alone
     assert [len(cutter.actions) for cutter in sharing._together] == together
 
 
 def test_dear_actions_are_cut_first() -> None:
     graph = Hypergraph(3, [[], [1], []], [[1], [2], [2]], [0])
-    sharing = _Sharing(graph, [2], range(3), [1, 4, 10**6].__getitem__)
+    sharing = _Sharing(graph, [2], range(3), [1, 4, 10**6].__getitem__, never)
     for _ in range(9):
         assert sharing._separate([0.0] * 3, lambda: False)
-    assert sharing._rows == [(1, 2)] * 9
+    assert sharing._rows == [[1, 2]] * 9
 
 
 def test_weights_are_those_wanted_and_what_is_left_goes_to_the_greatest(
@@ -253,20 +257,20 @@ def test_weights_are_those_wanted_and_what_is_left_goes_to_the_greatest(
 ) -> None:
     relaxation = Told([0.0], [0.5, 0.25, 0.0, 0.0, 1.0], [0.5, 0.75, -1.0, 0.0, 1 / 3, 2 / 3])
     monkeypatch.setattr(shared_costs, "Covering", lambda _: relaxation)
-    graph = Hypergraph(2, [[]] * 5, [[1]] * 5, [0])
-    rows: list[Collection[int]] = [(0, 1), (1, 2, 9), (2, 3), (2,), (4,), (4,)]
-    known = [({place}, members) for place, members in enumerate(rows)]
-    found = share_costs(graph, [1], range(5), lambda _: 12, known, 99, lambda: True)
+    graph = Hypergraph(7, [[]] * 5, [[1], [1, 2], [2, 3, 4], [3], [5, 6]], [0])
+    rows = [(0, 1), (1, 2), (2, 3), (2,), (4,), (4,)]
+    targets = range(1, 7)
+    found = share_costs(graph, targets, range(5), lambda _: 12, [{o} for o in targets], 99, lambda: True)
     weights = {0: 3, 1: 9, 2: 3, 4: 4, 5: 8}
     left = {0: 9, 1: 0, 2: 0, 3: 9, 4: 0}
     assert found == SharedCosts(
         27 * PARTS,
         {a: rest * PARTS for a, rest in left.items()},
-        [(frozenset({place}), weight * PARTS) for place, weight in weights.items()],
+        [(frozenset({place + 1}), weight * PARTS) for place, weight in weights.items()],
         {0: 0.5, 1: 0.25, 2: 0.0, 3: 0.0, 4: 1.0},
-        [(frozenset({place}), row) for place, row in enumerate([(0, 1), (1, 2), (2, 3), (2,), (4,), (4,)])],
+        [frozenset({o}) for o in targets],
     )
-    assert relaxation.rows == [(0, 1), (1, 2), (2, 3), (2,), (4,), (4,)]
+    assert relaxation.rows == rows
 
 
 def shared_of_five(relaxation: Told, enough: int, monkeypatch: pytest.MonkeyPatch) -> int:
@@ -274,7 +278,7 @@ def shared_of_five(relaxation: Told, enough: int, monkeypatch: pytest.MonkeyPatc
     with monkeypatch.context() as patched:
         patched.setattr(shared_costs, "Covering", lambda _: relaxation)
         graph = Hypergraph(6, [[]] * 5, [[n] for n in range(1, 6)], [0])
-        known = [({n + 1}, (n,)) for n in range(5)]
+        known = [{n + 1} for n in range(5)]
         found = share_costs(graph, range(1, 6), range(5), lambda _: 10, known, enough, lambda: False)
     assert found is not None
     return found.bound
@@ -304,7 +308,7 @@ def test_where_time_is_up_the_last_solution_counts(monkeypatch: pytest.MonkeyPat
     looks = iter([False] * 6)  # within the round of cuts that follows, and then time is up
     monkeypatch.setattr(shared_costs, "Covering", lambda _: relaxation)
     graph = Hypergraph(6, [[]] * 5, [[n] for n in range(1, 6)], [0])
-    known = [({1}, (0,))]
+    known = [{1}]
     found = share_costs(graph, range(1, 6), range(5), lambda _: 10, known, 50, lambda: next(looks, True))
     assert found is not None
     assert relaxation.solved == 1
@@ -328,13 +332,13 @@ def test_what_is_known_is_heard_of_now_and_then(monkeypatch: pytest.MonkeyPatch)
         with monkeypatch.context() as patched:
             patched.setattr(shared_costs, "Covering", lambda _: relaxation)
             graph = Hypergraph(4, [[]] * 3, [[1], [2], [3]], [0])
-            known = [({2}, (1,))]
+            known = [{2}]
             found = share_costs(graph, [1, 2, 3], range(3), lambda _: 10, known, 99, lambda: False, hear)
         return found, relaxation.solved
 
     found, solved = shared(0)
     assert (found, solved) == (heard[0], 8)
-    assert {objects for objects, _ in heard[0].tight} == {frozenset({1}), frozenset({3})}
+    assert {*heard[0].tight} == {frozenset({1}), frozenset({3})}
     found, solved = shared(99, 99, 0)
     assert (found, solved, len(heard)) == (heard[-1], 24, 3)
     found, solved = shared(8)  # which the ninth solution comes to
@@ -397,7 +401,7 @@ WAYS: list[Action] = [
 WAYS += [WAYS[6], ([50], [20, 30]), ([0], [50])]
 FEW, MORE, MOST, TWIN, BOTH = map(frozenset, ([0, 1, 2], [3, 4, 5, 6], [7, 8, 9, 10, 11], [12], [13, 14]))
 BOUNDS, DEAR, DOMINATED = (frozenset({r}) for r in (Reduction.BOUNDS, Reduction.DEAR, Reduction.DOMINATED))
-FIRST = [(frozenset({1}), (2, 6, 11, 12))]  # the cut that is known at first
+FIRST = [frozenset({1})]  # the cut that is known at first
 Answer = tuple[int, dict[int, int]] | None  # a bound, and what is left of some units, in parts
 
 
@@ -447,8 +451,8 @@ class Course(Listener):
         easy: int = 99,
         hand: frozenset[int] | None = None,
     ) -> Reduced:
-        [(objects, members)] = FIRST
-        first = Cuts(1, dict.fromkeys(members, 0), [WeightedCut(objects, members, members[0], 1)])
+        members = 2, 6, 11, 12
+        first = Cuts(1, dict.fromkeys(members, 0), [WeightedCut(FIRST[0], members, members[0], 1)])
         monkeypatch.setattr(reduction, "landmark_cuts", lambda *_: first)
         monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
         monkeypatch.setattr(reduction, "_SMALL", small)
@@ -574,3 +578,60 @@ def test_nothing_is_shared_out_when_time_is_up(monkeypatch: pytest.MonkeyPatch) 
         if not course.late:
             break
     assert calls > last > 9
+
+
+# For each of nine goals in rows of three a unit of its own, and for each row one unit: three are enough.
+ROWS: list[Action] = [*(([0], [n]) for n in range(1, 10)), *(([0], [n, n + 1, n + 2]) for n in (1, 4, 7))]
+GOALS = [*range(1, 10)]
+
+
+@pytest.mark.parametrize(
+    ("tries", "follows", "size"),
+    [((0, 0), False, 9), ((0, 99), False, 3), ((0, 0), True, 3)],
+)
+def test_a_relaxed_solution_leads_to_a_better_tree(
+    tries: tuple[int, int], follows: bool, size: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By what it takes, searched among with what is in hand; or by estimates that follow it."""
+    monkeypatch.setattr(reduction, "_SMALL", 0)
+    monkeypatch.setattr(reduction, "_EFFORT", 0)
+    monkeypatch.setattr(reduction, "_TRIES", tries[0])
+    monkeypatch.setattr(reduction, "_THOROUGH", tries[1])
+    monkeypatch.setattr(shared_costs, "_OFTEN", 1)
+    monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
+    monkeypatch.setattr(reduction, "without_spare", lambda _graph, tree, _cost: set(tree))
+    if not follows:
+        monkeypatch.setattr(reduction, "following", lambda *_: ())
+    found = reduce(plain_problem(ROWS, GOALS), levels((Objective.UNITS,)), BOUNDS)
+    assert found.tree is not None
+    assert len(found.tree) == size
+    assert found.bound == 3
+
+
+def test_dense_cuts_are_begun_with_where_they_are_few(monkeypatch: pytest.MonkeyPatch) -> None:
+    # the one that is known has 4 of 15 units
+    for twofold, few, part, known in (
+        (2, 0, 0.0, True),
+        (4 / 15, 0, 0.0, True),
+        (0.2, 0, 0.0, False),
+        (0.2, 3, 0.0, False),
+        (0.2, 4, 0.0, True),
+        (0.2, 0, 0.2, False),
+        (0.2, 0, 0.27, True),
+    ):
+        monkeypatch.setattr(reduction, "_TWOFOLD", twofold)
+        monkeypatch.setattr(reduction, "_SPARSE", (few, part))
+        course = Course((PARTS, {}))
+        course.reduce(monkeypatch, DEAR)
+        assert course.known == [FIRST if known else []]
+
+
+def test_many_units_are_shared_among_though_the_tree_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another turn of greedy cuts would take long; where a tenth is gone, it is worth it."""
+    for many, turns in ((15, 2), (14, 1)):
+        course = Course((PARTS, {}))
+        monkeypatch.setattr(reduction, "_MANY", many)
+        monkeypatch.setattr(reduction._Reducer, "_drop_dear", lambda *_: None)
+        monkeypatch.setattr(reduction._Reducer, "_improve", lambda self, *_: self._take(self.tree ^ {14}))
+        course.reduce(monkeypatch, DEAR)
+        assert course.left[:1] == ([15] if turns == 1 else [])

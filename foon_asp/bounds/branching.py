@@ -16,6 +16,7 @@ from heapq import heappop, heappush
 from typing import Any
 
 from foon_asp.bounds.cut import Cut, Cutter
+from foon_asp.bounds.first_achievers import FirstAchievers
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lower_bound import Branch, Cases, Hopeless, Packing, Proof
 from foon_asp.bounds.missed_cuts import missed_cuts
@@ -75,7 +76,9 @@ class Branching:
 
         self._np = np
         self._actions = sorted(actions)
-        self._graph, self._objects, self._targets = renumbered(graph, targets, self._actions)
+        plain, self._objects, self._targets = renumbered(graph, targets, self._actions)
+        self._achievers = FirstAchievers(plain)
+        self._graph = self._achievers.graph
         self._costs = [cost(a) for a in self._actions]
         self._unit = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
         self._dearest = max(self._costs, default=1)
@@ -150,7 +153,7 @@ class Branching:
 
     def _add(self, cut: frozenset[int]) -> None:
         """Add a row for a cut: all actions that cross it, whatever is forbidden just now."""
-        self._rows.append(self._np.array(sorted(self._crossing(cut)), dtype=self._np.int32))
+        self._rows.append(self._np.array(self._achievers.members(cut), dtype=self._np.int32))
         self._cuts.append(cut)
         self._asked.append(True)
         self._covering.add(self._rows[-1])
@@ -289,7 +292,7 @@ class Branching:
         """Give the proof of a place that is closed, and which of the forbidden actions it needs to be so."""
         if place.hopeless is not None:
             cut = frozenset(place.hopeless.objects)
-            return Hopeless(self._stated(cut, place)), self._crossing(cut) & place.forbidden
+            return Hopeless(self._stated(cut, place)), {*self._achievers.members(cut)} & place.forbidden
         if place.without is None or place.using is None or place.action is None:
             return self._packing(place)
         proof, barred = self._proof(place.without)
@@ -314,11 +317,6 @@ class Branching:
 
     def _stated(self, cut: frozenset[int], place: _Place) -> Cut:
         """Give a cut by the numbers of the whole graph, with what crosses it at a place."""
-        crossing = self._crossing(cut) - place.forbidden
-        return Cut(
-            tuple(sorted(self._objects[o] for o in cut)), tuple(sorted(self._actions[a] for a in crossing))
-        )
-
-    def _crossing(self, cut: frozenset[int]) -> set[int]:
-        graph = self._graph
-        return {a for o in cut for a in graph.makers[o] if cut.isdisjoint(graph.needs[a])}
+        crossing = (self._actions[a] for a in self._achievers.members(cut) if a not in place.forbidden)
+        wide = (self._objects[o] for o in self._achievers.widened(cut))
+        return Cut(tuple(sorted(wide)), tuple(sorted(crossing)))

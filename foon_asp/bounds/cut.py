@@ -168,20 +168,26 @@ class _Growth:
         where it is to the targets, the next action that gives it is refused at once.
         """
         waiting, missing, gives = self._waiting, self._missing, self._gives
-        reached, decisive = self.reached, self._decisive
+        reached, decisive, spread = self.reached, self._decisive, self._spread
         refused: list[int] = []
         for place in places:
             if missing[place]:
                 waiting[place] = True
                 continue
             new = [o for o in gives[place] if not reached[o]]
-            decided = any(decisive[o] for o in new)
-            if decided or self._spread(new) is None:
-                refused.append(place)
-                if len(refused) == most:
+            if not new:
+                continue
+            for o in new:
+                if decisive[o]:
                     break
-                if not decided:
+            else:
+                if spread(new) is not None:
+                    continue
+                if len(refused) < most - 1:  # else there is no next one
                     self._learn(new)
+            refused.append(place)
+            if len(refused) == most:
+                break
         return refused
 
     def _learn(self, refused: list[int]) -> None:

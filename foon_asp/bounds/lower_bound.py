@@ -300,7 +300,8 @@ class Prover:
             return 0 if action in used else int(self._costs[action][0] / step)
 
         enough = math.ceil(goal[0] / step)
-        shared = share_costs(self._graph, targets, cutter.actions, steps, cuts, enough, self._expired)
+        known = [cut.objects for cut in cuts]
+        shared = share_costs(self._graph, targets, cutter.actions, steps, known, enough, self._expired)
         found = (
             [(cutter.widened(cut), (weight * step / PARTS,)) for cut, weight in shared.cuts] if shared else []
         )

@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from foon_asp.bounds.cut import Cutter
+from foon_asp.bounds.first_achievers import FirstAchievers
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.missed_cuts import missed_cuts
 from foon_asp.bounds.relaxation import Covering, UnsolvedError, Weighed
@@ -34,14 +35,14 @@ class SharedCosts(NamedTuple):
 
     No derivation by the actions looked at costs less than ``bound``, in parts. ``left`` is what the cuts
     leave of the cost of each action, in parts, and ``shares`` is how much of each the relaxed solution takes.
-    ``tight`` are the cuts that it hits just once, with their landmarks: those to go on with.
+    ``tight`` are the cuts that it hits just once: those to go on with.
     """
 
     bound: int
     left: dict[int, int]
     cuts: list[tuple[frozenset[int], int]]
     shares: dict[int, float]
-    tight: Sequence[tuple[frozenset[int], tuple[int, ...]]] = ()
+    tight: Sequence[frozenset[int]] = ()
 
 
 def share_costs(
@@ -49,19 +50,19 @@ def share_costs(
     targets: Iterable[int],
     actions: Collection[int],
     cost: Callable[[int], int],
-    known: Iterable[tuple[Collection[int], Collection[int]]],
+    known: Iterable[Iterable[int]],
     enough: int,
     expired: Callable[[], bool],
     heard: Callable[[SharedCosts], int] | None = None,
 ) -> SharedCosts | None:
     """Find cuts before the targets, and the weights of the greatest sum that the costs allow.
 
-    All of the actions can run, and those that cost nothing are taken as a whole. ``known`` are cuts to begin
-    with, their objects and their landmarks. A bound of ``enough`` is good enough. What is known is ``heard``
+    All of the actions can run, and those that cost nothing are taken as a whole. ``known`` are the objects of
+    cuts to begin with. A bound of ``enough`` is good enough. What is known is ``heard``
     of now and then, which gives what is enough from then on, and nothing to end. ``None`` where nothing can
     be shared out.
     """
-    return _Sharing(graph, targets, actions, cost).share(known, enough, expired, heard)
+    return _Sharing(graph, targets, actions, cost, expired).share(known, enough, expired, heard)
 
 
 def renumbered(
@@ -120,9 +121,12 @@ class _Sharing:
         targets: Iterable[int],
         actions: Collection[int],
         cost: Callable[[int], int],
+        expired: Callable[[], bool],
     ) -> None:
         self._actions = sorted(actions)
-        small, self._objects, within = renumbered(graph, targets, self._actions)
+        plain, self._objects, within = renumbered(graph, targets, self._actions)
+        self._achievers = FirstAchievers(plain, expired)
+        small = self._achievers.graph
         self._cutter = Cutter(small, within)
         self._costs = [cost(a) for a in self._actions]
         self._dearest = max(self._costs, default=1)
@@ -130,22 +134,23 @@ class _Sharing:
         self._alone, self._together = ([], []) if self._cutter.hopeless else self._by_target(small)
         self._relative = [c / self._dearest for c in self._costs]  # the costs may be too great for floats
         self._covering = Covering(self._relative)
-        self._rows: list[tuple[int, ...]] = []
+        self._rows: list[list[int]] = []
         self._cuts: list[frozenset[int]] = []
+        self._stated: dict[int, frozenset[int]] = {}  # cuts by row, as they hold in the whole graph
         self._inside = True  # which is found sooner, until it is not exact enough
 
     def share(
         self,
-        known: Iterable[tuple[Collection[int], Collection[int]]],
+        known: Iterable[Iterable[int]],
         enough: int,
         expired: Callable[[], bool],
         heard: Callable[[SharedCosts], int] | None,
     ) -> SharedCosts | None:
         if self._cutter.hopeless or not self._cutter.targets:
             return None
-        place = {a: n for n, a in enumerate(self._actions)}
-        for objects, members in known:
-            self._add(frozenset(objects), tuple(place[a] for a in members if a in place))
+        number = {o: place for place, o in enumerate(self._objects)}
+        for objects in known:
+            self._add(frozenset(number[o] for o in objects if o in number))
         values: list[float] = []
         last: Weighed | None = None
         while last is None or not expired():
@@ -182,10 +187,10 @@ class _Sharing:
             return None
         return Weighed(solved.value, solved.x, self._covering.weights())
 
-    def _add(self, objects: frozenset[int], row: tuple[int, ...]) -> None:
-        self._cuts.append(objects)
-        self._rows.append(row)
-        self._covering.add(row)
+    def _add(self, cut: frozenset[int]) -> None:
+        self._cuts.append(cut)
+        self._rows.append(self._achievers.members(cut))
+        self._covering.add(self._rows[-1])
 
     def _separate(self, x: list[float], expired: Callable[[], bool]) -> bool:
         """Add cuts that a relaxed solution misses, each beside those before; whether there are any."""
@@ -206,7 +211,7 @@ class _Sharing:
                 if cut is None:
                     break
                 found = True
-                self._add(frozenset(self._objects[o] for o in cut.objects), cut.members)
+                self._add(frozenset(cut.objects))
         return found
 
     def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
@@ -230,17 +235,20 @@ class _Sharing:
     def _shared(self, solved: Weighed) -> SharedCosts:
         left = in_parts(self._costs)
         told = [*solved.weights] + [0.0] * (len(self._rows) - len(solved.weights))  # of rows that came later
-        weights = shared_out(enumerate(told), self._dearest * PARTS, [*map(list, self._rows)], left)
+        weights = shared_out(enumerate(told), self._dearest * PARTS, self._rows, left)
         shares = solved.x
-        tight = [
-            (cut, tuple(self._actions[place] for place in row))
-            for cut, row in zip(self._cuts, self._rows, strict=True)
-            if sum(shares[place] for place in row) < _TWICE
-        ]
+        tight = [row for row, members in enumerate(self._rows) if sum(shares[a] for a in members) < _TWICE]
         return SharedCosts(
             sum(weights.values()),
             dict(zip(self._actions, left.tolist(), strict=True)),
-            [(cut, weights[row]) for row, cut in enumerate(self._cuts) if weights[row]],
+            [(self._whole(row), weight) for row, weight in weights.items() if weight],
             {a: shares[n] for n, a in enumerate(self._actions)},
-            tight,
+            [self._whole(row) for row in tight],
         )
+
+    def _whole(self, row: int) -> frozenset[int]:
+        """Give the objects of a cut by their numbers in the whole graph, where it has the same landmark."""
+        if row not in self._stated:
+            wide = self._achievers.widened(self._cuts[row])
+            self._stated[row] = frozenset(self._objects[o] for o in wide)
+        return self._stated[row]

@@ -1,7 +1,6 @@
 """A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
 
 import math
-import random
 from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
@@ -19,7 +18,7 @@ from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
-from foon_asp.reduce.upper_bound import following, guessed, improved, varied, without_spare
+from foon_asp.reduce.upper_bound import following, guessed, improved, without_spare
 from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 if TYPE_CHECKING:  # few questions need it
@@ -36,10 +35,12 @@ _ROUNDS = 24  # of cuts, trees and what they leave
 _FEW = 6  # of these, where other costs are tried
 _EFFORT = 3_000_000  # actions looked at while branching, before clingo is asked: some 20 s of a processor
 _NEAR = 4, 3  # of so many parts of what the tree costs, those that a bound has to reach for branching to pay
-_TRIES, _THOROUGH = 10, 40  # times all actions, looked at by chance for a better tree as costs are shared out
+_TRIES, _THOROUGH = 20, 80  # times all actions, looked at for a better tree among a few
 _DENSE = 20  # members of landmarks for each action, after which relaxations tell more than greedy cuts
 _SPARSE = 50, 0.01  # members, or of the actions: landmarks of more make relaxations slow, and say little
+_TWOFOLD = 2  # members of landmarks for each action: with more, sparse ones are begun with
 _CLOSE = 0.98  # of what the tree costs: from such a bound on, branching tells sooner than more cuts
+_TAKEN = 1e-4  # of an action, from which share on a relaxed solution takes some of it
 _WORTH = 0.9  # of the actions may be left for another time to be worth it
 
 
@@ -183,8 +184,7 @@ class _Reducer:
         self.cuts: Cuts | None = None
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
-        self.tight: Sequence[tuple[Collection[int], Collection[int]]] = ()  # cuts to share costs out among
-        self.chance = random.Random(0)
+        self.tight: Sequence[frozenset[int]] = ()  # cuts to share costs out among
         self.cases: Cases = None
         self.brief = False  # whether cuts alone are wanted
         self.proved = False  # whether the tree is the best, as there is none better for the goals alone
@@ -341,7 +341,8 @@ class _Reducer:
             if not changed and Reduction.FORCED in self.reductions and len(self.left) <= _MANY:
                 self.left = beside_forced(self.graph, self.left)
                 changed = len(self.left) < before[0]
-            if not changed and costs is not None and not thorough:
+            slow = len(self.left) > max(_MANY, _WORTH * before[0])  # another turn would bring little
+            if (slow or not changed) and costs is not None and not thorough:
                 if self._share_costs(costs) or self._branch(costs):
                     return True
                 changed = (len(self.left), self.tree) != before
@@ -398,13 +399,14 @@ class _Reducer:
 
         if not self.tight and self.cuts:
             few, part = _SPARSE
-            most = max(few, part * len(self.left))
-            self.tight = [(cut.objects, cut.members) for cut in self.cuts.cuts if len(cut.members) <= most]
+            dense = sum(len(cut.members) for cut in self.cuts.cuts) > _TWOFOLD * len(self.left)
+            most = max(few, part * len(self.left)) if dense else math.inf
+            self.tight = [cut.objects for cut in self.cuts.cuts if len(cut.members) <= most]
         before, settled, near = math.inf, False, False
 
         def heard(shared: "SharedCosts") -> int:
             nonlocal settled, near
-            settled = self._followed(costs, shared)
+            settled = self._followed(costs, shared, _TRIES)
             total = self._total(costs)
             near = self._branches(costs) and self.bound > total * _CLOSE
             return 0 if settled or near or len(self.left) < _WORTH * before else total
@@ -419,20 +421,34 @@ class _Reducer:
             settled = settled or self._followed(costs, shared, _THOROUGH)
         return settled
 
-    def _followed(self, costs: ExactCosts, shared: "SharedCosts", tries: int = _TRIES) -> bool:
+    def _followed(self, costs: ExactCosts, shared: "SharedCosts", tries: int) -> bool:
         """Look for a better tree by a relaxed solution, and leave out more; whether it is proved optimal."""
         from foon_asp.bounds.shared_costs import PARTS  # noqa: PLC0415 (few questions need it)
 
-        tree = following(self.graph, self.left, self.tree, costs, shared)
+        among = {action for action, share in shared.shares.items() if share > _TAKEN} | self.tree
+        for tree in following(self.graph, self.left, costs, shared):
+            among |= tree
+            self._take_better(tree, costs)
         least = -(-shared.bound // PARTS)
-        if least < sum(map(costs, tree)):
-            tree = varied(
-                *(self.graph, self.left, tree, costs, least, self.expired),
-                *(shared.shares, self.chance.random, tries),
-            )
-        if tree is not self.tree:
-            self._take(tree)
+        if least < self._total(costs):
+            self._search_among(among, costs, [cut for cut, _ in shared.cuts], tries * len(self.left))
         return self._shared(costs, shared)
+
+    def _search_among(
+        self, actions: Collection[int], costs: ExactCosts, known: Sequence[frozenset[int]], effort: int
+    ) -> None:
+        """Look for a better tree among a few actions, by branching up to an effort."""
+        from foon_asp.bounds.branching import Branching  # noqa: PLC0415 (few questions need it)
+
+        graph = self.graph
+        able = derive(graph, actions, costs, added=False).before
+        search = Branching(
+            *(graph, graph.goals, able, costs, known, self._total(costs)),
+            lambda shares, without: guessed(graph, able, costs, shares, without),
+            lambda found: self._take_better(without_spare(graph, found, costs), costs),
+            lambda _: None,
+        )
+        search.search(effort, self.expired)
 
     def _shared(self, costs: ExactCosts, shared: "SharedCosts") -> bool:
         """Note a bound, and leave out what is dear by it; whether the tree is proved optimal.
@@ -457,9 +473,7 @@ class _Reducer:
     def _follow_added(self, costs: ExactCosts) -> None:
         """Take the tree to which estimates lead that add needs up, if it is better than the one in hand."""
         found = derive(self.graph, self.left, costs, added=True).tree(self.graph, self.graph.goals)
-        slim = without_spare(self.graph, found or self.tree, costs)
-        if sum(map(costs, slim)) < self._total(costs):
-            self._take(slim)
+        self._take_better(without_spare(self.graph, found or self.tree, costs), costs)
 
     def _bound(self, costs: ExactCosts, guide: dict[int, int]) -> Cuts:
         """Find cuts, and with them a bound: what is left always has a tree."""
@@ -509,6 +523,10 @@ class _Reducer:
     def _take(self, tree: set[int]) -> None:
         self.tree = tree
         self.listener.tree(self._units(tree))
+
+    def _take_better(self, tree: set[int], costs: ExactCosts) -> None:
+        if sum(map(costs, tree)) < self._total(costs):
+            self._take(tree)
 
     def _total(self, costs: ExactCosts) -> int:
         return sum(map(costs, self.tree))
