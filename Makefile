@@ -17,6 +17,8 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 CORES := -n auto --dist worksteal
 PAGE := --page docs/performance.md
+# hundreds of processes are started by the tests: each would compile everything anew
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: demo docs man test test-slow test-lowest coverage mutants tables lint bench bench-full clean
 

@@ -586,17 +586,24 @@ GOALS = [*range(1, 10)]
 
 
 @pytest.mark.parametrize(
-    ("tries", "follows", "size"),
-    [((0, 0), False, 9), ((0, 99), False, 3), ((0, 0), True, 3)],
+    ("tries", "among", "follows", "size"),
+    [
+        (0, 1.0, False, 9),
+        (99, 1.0, False, 3),  # nine of these twelve in hand, and the three others
+        (99, 0.99, False, 9),
+        (0, 1.0, True, 3),
+    ],
 )
 def test_a_relaxed_solution_leads_to_a_better_tree(
-    tries: tuple[int, int], follows: bool, size: int, monkeypatch: pytest.MonkeyPatch
+    tries: int, among: float, follows: bool, size: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By what it takes, searched among with what is in hand; or by estimates that follow it."""
+    monkeypatch.setattr(reduction, "_AMONG", among)
+    monkeypatch.setattr(reduction, "varied", lambda _graph, _actions, tree, *_: tree)
     monkeypatch.setattr(reduction, "_SMALL", 0)
     monkeypatch.setattr(reduction, "_EFFORT", 0)
-    monkeypatch.setattr(reduction, "_TRIES", tries[0])
-    monkeypatch.setattr(reduction, "_THOROUGH", tries[1])
+    monkeypatch.setattr(reduction, "_TRIES", 0)
+    monkeypatch.setattr(reduction, "_THOROUGH", tries)
     monkeypatch.setattr(shared_costs, "_OFTEN", 1)
     monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
     monkeypatch.setattr(reduction, "without_spare", lambda _graph, tree, _cost: set(tree))
@@ -635,3 +642,16 @@ def test_many_units_are_shared_among_though_the_tree_has_changed(monkeypatch: py
         monkeypatch.setattr(reduction._Reducer, "_improve", lambda self, *_: self._take(self.tree ^ {14}))
         course.reduce(monkeypatch, DEAR)
         assert course.left[:1] == ([15] if turns == 1 else [])
+
+
+def test_chance_leads_to_a_better_tree_where_a_solution_takes_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reduction, "_SMALL", 0)
+    monkeypatch.setattr(reduction, "_EFFORT", 0)
+    monkeypatch.setattr(reduction, "improved", lambda _graph, _actions, tree, *_: tree)
+    monkeypatch.setattr(reduction, "following", lambda *_: ())
+    for tries, size in ((0, 9), (40, 3)):
+        monkeypatch.setattr(reduction, "_TRIES", tries)
+        monkeypatch.setattr(reduction, "_THOROUGH", tries)
+        found = reduce(plain_problem(ROWS, GOALS), levels((Objective.UNITS,)), BOUNDS)
+        assert found.tree is not None
+        assert len(found.tree) == size

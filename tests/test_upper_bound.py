@@ -1,7 +1,8 @@
 """Trees found fast: nothing in them can be left out, and a better one is taken where one is found."""
 
 import random
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
+from functools import partial
 
 import pytest
 
@@ -9,7 +10,7 @@ from foon_asp.bounds.shared_costs import SharedCosts
 from foon_asp.reduce.derivation import derive
 from foon_asp.reduce.graph import Graph
 from foon_asp.reduce.support import Support
-from foon_asp.reduce.upper_bound import following, improved, without_spare
+from foon_asp.reduce.upper_bound import following, improved, varied, without_spare
 from tests.plain_graphs import executes, plain, random_graph
 
 
@@ -300,3 +301,59 @@ def test_the_rest_of_a_tree_is_completed_by_costs_that_add_up() -> None:
     price, rest = [6, 6, 5, 1, 3, 3].__getitem__, [0, 0, 9, 9, 9, 9].__getitem__
     asked = iter([False, False, True])  # without 0 there is no tree
     assert improved(graph, range(6), {0, 1}, price, rest, asked.__next__, thorough=True) == {0, 2}
+
+
+# three sets of three goals each for 2, of goals in rows, and for each goal an action of its own for 1
+SETS = plain(
+    [*[([0], [n]) for n in range(1, 10)], *[([0], [n, n + 1, n + 2]) for n in (1, 4, 7)]], range(1, 10), [0]
+)
+SET_COSTS = [1] * 9 + [2] * 3
+
+
+def by_chance(
+    graph: Graph,
+    actions: Collection[int],
+    tree: set[int],
+    price: Callable[[int], int],
+    enough: int,
+    expired: Callable[[], bool] = never,
+) -> set[int]:
+    """Look for a cheaper tree where a relaxed solution says nothing."""
+    nothing = dict.fromkeys(actions, 0.0)
+    return varied(graph, actions, tree, price, enough, expired, nothing, random.Random(0).random, 40)
+
+
+def test_chance_leads_where_no_estimate_does() -> None:
+    price, single = SET_COSTS.__getitem__, set(range(9))
+    for added in (True, False):
+        assert derive(SETS, range(12), price, added).tree(SETS, SETS.goals) == single
+    assert by_chance(SETS, range(12), single, price, 0) == {9, 10, 11}
+    assert by_chance(SETS, range(12), single, price, 0, lambda: True) is single
+    assert by_chance(SETS, range(9), single, price, 0) is single
+    assert by_chance(SETS, range(12), single, price, 9) is single
+    assert 6 < sum(map(price, by_chance(SETS, range(12), single, price, 8))) <= 8
+
+
+def test_chance_goes_along_with_a_relaxed_solution() -> None:
+    """The three sets are the best whatever chance says, where a solution takes most of them."""
+    price, single = SET_COSTS.__getitem__, set(range(9))
+    shares = dict.fromkeys(range(9), 0.1) | dict.fromkeys(range(9, 12), 0.9)
+    for times, least in ((0.4, 6), (0.6, 9)):  # each other time
+        chances = iter([times, *[0.5] * 12])
+        chance = partial(next, chances, 0.999)
+        found = varied(SETS, range(12), single, price, 8, never, shares, chance, 1)
+        assert (sum(map(price, found)) == 6) == (least == 6)
+
+
+def test_what_chance_leads_to_is_a_tree_and_no_dearer() -> None:
+    cheaper = 0
+    for graph, price, able in (*solvable(range(60)), *sharing(range(20))):
+        tree = without_spare(graph, able, lambda _: 1)  # not by what they cost
+        better = by_chance(graph, able, tree, price.__getitem__, 0)
+        total, least = (sum(map(price.__getitem__, some)) for some in (tree, better))
+        assert executes(graph, better)
+        assert better <= set(able)
+        assert better is tree or least < total
+        assert better == without_spare(graph, better, price.__getitem__) or better is tree
+        cheaper += least < total
+    assert cheaper > 5

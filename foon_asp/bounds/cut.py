@@ -183,8 +183,7 @@ class _Growth:
             else:
                 if spread(new) is not None:
                     continue
-                if len(refused) < most - 1:  # else there is no next one
-                    self._learn(new)
+                self._learn(new)
             refused.append(place)
             if len(refused) == most:
                 break

@@ -80,7 +80,7 @@ def _landmarks(graph: Hypergraph, among: int, expired: Callable[[], bool]) -> li
     (Keyder, Richter and Helmert 2010).
     """
     own = [1 << o if o < among else 0 for o in range(graph.size)]
-    found: list[int | None] = [0 if there else None for there in graph.at_start]
+    found: list[int | None] = [None] * graph.size
     missing = list(graph.missing)
     waiting = deque(action for action, count in enumerate(missing) if not count)
     queued = bytearray(not count for count in missing)

@@ -1,6 +1,7 @@
 """A question made small before it is searched: a good tree, a lower bound, and what is left between them."""
 
 import math
+import random
 from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
@@ -18,7 +19,7 @@ from foon_asp.reduce.graph import Graph, graph_of
 from foon_asp.reduce.narrow import narrow
 from foon_asp.reduce.near import near
 from foon_asp.reduce.reductions import ALL, Reduction
-from foon_asp.reduce.upper_bound import following, guessed, improved, without_spare
+from foon_asp.reduce.upper_bound import following, guessed, improved, varied, without_spare
 from foon_asp.reduce.wide import Wide, dear_left_out, rests
 
 if TYPE_CHECKING:  # few questions need it
@@ -40,6 +41,7 @@ _DENSE = 20  # members of landmarks for each action, after which relaxations tel
 _SPARSE = 50, 0.01  # members, or of the actions: landmarks of more make relaxations slow, and say little
 _TWOFOLD = 2  # members of landmarks for each action: with more, sparse ones are begun with
 _CLOSE = 0.98  # of what the tree costs: from such a bound on, branching tells sooner than more cuts
+_AMONG = 0.2  # of the actions are few enough to be searched among; of more, chance finds better trees
 _TAKEN = 1e-4  # of an action, from which share on a relaxed solution takes some of it
 _WORTH = 0.9  # of the actions may be left for another time to be worth it
 
@@ -185,6 +187,7 @@ class _Reducer:
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
         self.tight: Sequence[frozenset[int]] = ()  # cuts to share costs out among
+        self.chance = random.Random(0)
         self.cases: Cases = None
         self.brief = False  # whether cuts alone are wanted
         self.proved = False  # whether the tree is the best, as there is none better for the goals alone
@@ -430,8 +433,14 @@ class _Reducer:
             among |= tree
             self._take_better(tree, costs)
         least = -(-shared.bound // PARTS)
-        if least < self._total(costs):
+        if least < self._total(costs) and len(among) <= _AMONG * len(self.left):
             self._search_among(among, costs, [cut for cut, _ in shared.cuts], tries * len(self.left))
+        elif least < self._total(costs):
+            tree = varied(
+                *(self.graph, self.left, self.tree, costs, least, self.expired),
+                *(shared.shares, self.chance.random, tries),
+            )
+            self._take_better(tree, costs)
         return self._shared(costs, shared)
 
     def _search_among(

@@ -11,7 +11,8 @@ from foon_asp.reduce.support import Support
 if TYPE_CHECKING:  # few questions need it
     from foon_asp.bounds.shared_costs import SharedCosts
 
-_FINE = 1000  # steps of shares that the estimates tell apart
+_FINE = 1000  # steps of shares, and of costs that vary, that the estimates tell apart
+_MOST = 160  # trees that chance leads to
 
 
 def without_spare(graph: Graph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
@@ -69,6 +70,51 @@ def following(
             found = derive(graph, actions, price, added).tree(graph, graph.goals)
             if found is not None:
                 yield without_spare(graph, found, cost)
+
+
+def varied(
+    graph: Graph,
+    actions: Collection[int],
+    tree: set[int],
+    cost: Callable[[int], int],
+    enough: int,
+    expired: Callable[[], bool],
+    shares: Mapping[int, float],
+    chance: Callable[[], float],
+    tries: int,
+) -> set[int]:
+    """Look for a cheaper tree by chance, down to a cost that is ``enough``; gives the same if none is found.
+
+    Some of the actions of a tree cost nothing, any number of them, and each other one costs half as much more
+    or less than it does; half of the times, only some of the others are there, which takes less time. A tree
+    that costs the same is the next to start from. Each other time, of all actions the ``shares`` that a
+    relaxed solution takes cost nothing instead. Each action may be looked at
+    ``tries`` times after the last better tree.
+    """
+    best = last = tree
+    total = sum(map(cost, tree))
+    ordered = sorted(actions)
+    effort = tries * len(ordered)
+    for _ in range(_MOST):
+        if effort <= 0 or total <= enough or expired():
+            break
+        if chance() < 0.5:
+            some = ordered
+            price = {a: 1 + int(cost(a) * (1 - min(1.0, shares[a])) * _FINE * (0.5 + chance())) for a in some}
+        else:
+            share, part = chance(), 1.0 if chance() < 0.5 else chance() ** 2
+            some = [a for a in ordered if chance() < part or a in last]
+            price = {a: int(cost(a) * _FINE * (0.5 + chance())) for a in some}
+            price |= {a: 0 for a in sorted(last) if chance() < share}
+        effort -= len(some)
+        found = derive(graph, some, price, added=chance() < 0.5).tree(graph, graph.goals)
+        slim = without_spare(graph, found or last, cost)
+        slim_total = sum(map(cost, slim))
+        if slim_total < total:
+            best, effort = slim, tries * len(ordered)
+        if slim_total <= total:
+            last, total = slim, slim_total
+    return best
 
 
 def improved(
