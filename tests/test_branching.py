@@ -12,15 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foon_asp.asp import Proof, Reporter, Settings, solve
-from foon_asp.bounds import branching
-from foon_asp.bounds.branching import Branching, _Place
+from foon_asp.bounds import branching, lower_bound
+from foon_asp.bounds.branching import Branching, _nested, _Place, branched
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.landmark_cuts import Cuts
-from foon_asp.bounds.lower_bound import Branch, Hopeless, Packing
+from foon_asp.bounds.lower_bound import Branch, Hopeless, Packing, Prover
 from foon_asp.bounds.lower_bound import Proof as Proved
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.certificate import certify
 from foon_asp.problem import ContainerRule, Objective, levels
+from foon_asp.proof.verify import verify
 from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce, reduction
 from tests.gap_problem import gap_problem
 from tests.random_problems import random_problem
@@ -361,3 +362,62 @@ def test_what_branching_proves_is_told(ended: list[bool]) -> None:
     assert outcome.costs is not None
     assert ended == [True]
     assert told[-1] == (Objective.UNITS, outcome.costs.units)
+
+
+def test_a_proof_alone_is_of_a_total_that_no_derivation_is_below(monkeypatch: pytest.MonkeyPatch) -> None:
+    for size, best in ((4, 3 + 6), (5, 4 + 10)):
+        graph, targets, costs = corners(size)
+        everything = range(len(costs))
+
+        def proved(total: int, late: bool = False) -> Proved | None:
+            return branched(
+                *(graph, targets, everything, costs.__getitem__, [{targets[0]}], total),  # noqa: B023
+                lambda: late,
+            )
+
+        proof = proved(best)
+        assert proof is not None
+        require_proves(proof, graph, targets, costs, best)
+        depth = _nested(proof)
+        assert 0 < depth <= branches(proof)
+        assert proved(best + 1) is None
+        assert proved(best, late=True) is None
+        for nested, enough in ((depth, True), (depth - 1, False)):
+            with monkeypatch.context() as patched:
+                patched.setattr(branching, "_NESTED", nested)
+                assert (proved(best) is not None) == enough
+
+
+@pytest.mark.parametrize("prices", [[2] * 20, [0, *[1] * 19]])
+def test_costs_that_no_rounding_brings_to_the_total_are_not_proved(prices: list[int]) -> None:
+    graph, targets, costs = corners(3)
+    some = prices[: len(costs)]
+    assert branched(graph, targets, range(len(costs)), some.__getitem__, (), 5, lambda: False) is None
+
+
+def test_branches_are_counted_as_deep_as_they_are() -> None:
+    leaf = Packing(())
+    assert _nested(leaf) == 0
+    assert _nested(Branch(0, leaf, Branch(1, Branch(2, leaf, leaf), leaf))) == 3
+    assert _nested(Branch(0, Branch(1, leaf, leaf), leaf)) == 2
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_certificates_of_many_actions_branch_as_the_search_does(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing but the search is able to branch here."""
+    monkeypatch.setattr(lower_bound, "_MANY", 0)
+    monkeypatch.setattr(Prover, "_branch", lambda *_: pytest.fail("the search was not tried"))
+    monkeypatch.setattr(lower_bound, "share_costs", lambda *_: None)
+    problem = gap_problem(0, 7, 1.0) if seed == 0 else random_problem(seed, ContainerRule.STRICT, units=20)
+    by = levels((Objective.UNITS,))
+    outcome = solve(problem, by, Settings(reductions=NONE))
+    if outcome.units is not None:
+        certificate = certify(problem, by, outcome.units)
+        assert certificate is not None
+        verify(
+            *(certificate.content, problem.network, problem.kitchen, problem.rates, problem.utensils),
+            problem.unit_prices,
+        )
+        assert (seed != 0) or "branch" in certificate.content["proof"]

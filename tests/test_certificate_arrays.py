@@ -94,6 +94,19 @@ def test_items_are_numbered_by_their_place_in_the_kitchen() -> None:
     assert arrays.actions([1, 0]) == [1, 0, 2]
 
 
+def test_cases_are_numbered_anew() -> None:
+    """There, the taking of an object is numbered by the object, and here by its place in the kitchen."""
+    builder = NetworkBuilder()
+    builder.add("split", [ObjectNode.of("middle")], [ObjectNode.of("end")], Source("late", 1))
+    builder.add("mix", [ObjectNode.of("salt")], [ObjectNode.of("middle")], Source("late", 2))
+    late = Problem(builder.build(), frozenset({2}), (1,), None, frozenset())
+    arrays = Arrays(late, (KITCHEN,), Coverage())
+    assert arrays.cases(None) is None
+    assert arrays.cases((4, (1, None, None), (0, None, None))) == (2, (1, None, None), (0, None, None))
+    # there is no taking of what is not in the kitchen
+    assert arrays.cases((0, (2, None, None), (3, None, None))) == (0, None, None)
+
+
 def test_what_is_stated_has_a_part_for_each_objective() -> None:
     arrays = Arrays(RATED, (UNITS, SUCCESS, INPUTS), Coverage())
     assert [arrays.parts(objective) for objective in arrays.objectives] == [1, 2, 1]

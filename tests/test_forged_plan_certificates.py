@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source
+from foon_asp.network import Network, NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.network.level import network_at_level
 from foon_asp.proof import verify, verify_plan
 from tests.handmade_certificate import forbid
@@ -30,6 +30,7 @@ class Data(NamedTuple):
     kitchen: frozenset[int]
     rates: dict[str, Fraction] | None
     utensils: frozenset[str] = frozenset()
+    prices: UnitPrices | None = None
 
     def id(self, label: str) -> int:
         """Give the id of the node with a label."""
@@ -90,6 +91,11 @@ TWICE = data(
 SOUP = served()
 # The bread never succeeds.
 NEVER = PLAIN._replace(rates={**(PLAIN.rates or {}), "bake": Fraction(0)})
+PRICED = PLAIN._replace(
+    prices=UnitPrices(
+        {**dict.fromkeys(("mix", "dig", "buy", "melt"), Fraction(1, 2)), "bake": Fraction(1, 4)}, {}
+    )
+)
 LEVEL = PLAIN._replace(network=network_at_level(PLAIN.network, 2))
 
 
@@ -309,6 +315,14 @@ def test_a_right_certificate_passes() -> None:
     assert held(verify_plan, limited).claim == "infeasible"
     taken = plain(**FLOURED, tree=[3, 0, 1], costs=[1], proof=[floured("1")])
     assert held(verify_plan, taken).claim == "optimal"
+    nothing: dict[str, Any] = {"weights": [], "before": [], "limits": [], "levels": []}
+    assert held(verify_plan, plain(proof=[{**PROOF, **nothing}])).claim == "optimal"
+    unpriced = plain(
+        **NO_PLAN, rules=[{"rule": "at_most_price", "max_price": 100}], cuts=[[BREAD]], proof=[CUT]
+    )
+    assert held(verify_plan, unpriced).claim == "infeasible"
+    assert held(verify_plan, bound("3/4", BY_PRICE, objective=["price"], at=PRICED)).claim == "bound"
+    assert held(verify_plan, bound("1", {"weights": [[0, "1"]]}, **TWO_BAGS)).claim == "bound"
     tainted = [{"rule": "forbid_ingredient", "allergen": ["bread"]}]
     assert held(verify_plan, plain(**NO_PLAN, rules=tainted, unreached=[], proof=[{}])).claim == "infeasible"
 
@@ -339,6 +353,27 @@ def test_what_is_nested_too_deeply_is_refused() -> None:
         verify_plan.verify_plan(content, *PLAIN)
 
 
+def test_what_is_counted_is_below_a_billion() -> None:
+    def branched(most: int) -> Forged:
+        return plain(proof=[{"branch": {"unit": 1}, "most": most, "up_to": PROOF, "above": PROOF}])
+
+    for made in (lambda count: plain(items=items([[SALT, count]])), branched):
+        assert held(verify_plan, made(10**9 - 1)).claim == "optimal"
+        with pytest.raises(verify.RefusedError):
+            held(verify_plan, made(10**9))
+
+
+def test_a_part_that_is_divided_again_by_the_same_unit_is_no_larger() -> None:
+    def branch(most: int, up_to: Any, above: Any) -> Any:
+        return {"branch": {"unit": 1}, "most": most, "up_to": up_to, "above": above}
+
+    unbaked = branch(5, {"balance": [[BREAD, "9"]]}, {})  # still not at all, or else six times
+    assert held(verify_plan, bound("2", branch(0, unbaked, PROOF))).claim == "bound"
+    assert held(verify_plan, bound("2", branch(1, PROOF, branch(0, {}, {})))).claim == "bound"
+    with pytest.raises(verify.RefusedError, match="do not add up"):
+        held(verify_plan, bound("2", branch(0, PROOF, {})))
+
+
 def failure(by: Any, forged: Forged) -> str:
     """Give the kind of error with which a forged certificate is not accepted."""
     try:
@@ -361,6 +396,16 @@ class Part(NamedTuple):
 
 # Flour is taken: bread asks for dough, dough for flour.
 FLOURED: dict[str, Any] = {"objective": ["kitchen"], "cuts": [[BREAD], [DOUGH], [FLOUR]]}
+
+
+# Of flour, there are two bags, and one is all that is asked for.
+TWO_BAGS: dict[str, Any] = {
+    "objective": ["kitchen"],
+    "goals": goal("flour"),
+    "items": items([[FLOUR, 2]]),
+    "cuts": [[FLOUR]],
+}
+BY_PRICE = {"balance": [[DOUGH, "1/2"], [BREAD, "3/4"]]}
 
 
 def floured(weight: str) -> dict[str, Any]:
@@ -393,6 +438,16 @@ PARTS = {
         'if objective == "attempts" else every',
         "if objective == 0 else every",
         bound("3", {"balance": [[DOUGH, "4/3"], [BREAD, "17/6"]]}, objective=["attempts"]),
+    ),
+    "a bound is rounded up to what units are priced at": Part(
+        'every = self.prices if objective == "price" else []',
+        'every = self.prices if objective != "price" else []',
+        bound("1", BY_PRICE, objective=["price"], at=PRICED),
+    ),
+    "each copy that is taken crosses a cut": Part(
+        "self.used if member < len(check.network) else self.executed",
+        "self.used",
+        bound("1", {"weights": [[0, "2"]]}, **TWO_BAGS),
     ),
     "what a plan uses up is gone": Part(
         "copies.subtract(uses - self.endless)",

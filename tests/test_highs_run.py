@@ -27,6 +27,7 @@ class Endless:
         self.asked: list[bool] = []
         self.let_go = threading.Event()
         self.deaf = deaf
+        self.most_steps = 4000
 
     def getNumCol(self) -> int:  # noqa: N802
         return self.size[0]
@@ -36,6 +37,7 @@ class Endless:
 
     def setOptionValue(self, name: str, value: object) -> None:  # noqa: N802
         assert (name, value) == ("simplex_iteration_limit", highspy.kHighsIInf)
+        self.most_steps = highspy.kHighsIInf
 
     def setCallback(self, look: Look, _: object) -> None:  # noqa: N802
         self.asked_by = [look]
@@ -62,6 +64,7 @@ def test_it_ends_where_it_asks_when_time_is_up(columns: int, rows: int, whole: b
     assert not highs_run.run(highs, lambda: next(looks), whole)
     assert highs.let_go.is_set()
     assert highs.asked
+    assert highs.most_steps == highspy.kHighsIInf  # whatever it had when the program was small
 
 
 def test_where_it_does_not_end_nobody_waits_for_it(monkeypatch: pytest.MonkeyPatch) -> None:

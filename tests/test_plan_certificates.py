@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from decimal import ROUND_FLOOR, Decimal, localcontext
 from fractions import Fraction
 from functools import cache
 from itertools import islice
@@ -13,14 +14,16 @@ import pytest
 import foon_asp
 from foon_asp.asp import Outcome, Settings, Status
 from foon_asp.asp.optimum import solve
-from foon_asp.certificate import Certificate, certify_outcome
+from foon_asp.certificate import Certificate, Coverage, certify_no_plan, certify_outcome, certify_plan
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
+from foon_asp.network import ObjectNode, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp, levels
 from foon_asp.proof.verify import RefusedError, Verified, seal
-from foon_asp.proof.verify_plan import PlanCheck, verify_any
+from foon_asp.proof.verify_plan import FINE, Part, PlanCheck, verify_any
 from foon_asp.report.certified import certificate_lines
 from tests.conftest import Cli
+from tests.test_constraint_meanings import small
 from tests.test_verify import mutants
 from tests.used_up_oracle import key, plans, random_problem
 
@@ -223,7 +226,7 @@ def test_what_units_use_up_is_worked_out_as_the_solver_does() -> None:
             assert tuple(map(frozenset, flow)) == tuple(reading.flow(unit))
 
 
-def reader(problem: Problem) -> PlanCheck:
+def reader(problem: Problem, *objectives: str, kind: type[PlanCheck] = PlanCheck) -> PlanCheck:
     """Give the verifier of a certificate that claims that there is no plan, before it looks at the proof."""
     items = problem.items
     assert items is not None
@@ -234,13 +237,149 @@ def reader(problem: Problem) -> PlanCheck:
         "goals": [{"id": o, "node": str(problem.network.objects[o])} for o in problem.goals],
         "containers": str(problem.containers),
         "items": {"stock": sorted([ids[n], count] for n, count in items.stock.items()), "stays": told},
-        "objective": [],
+        "objective": list(objectives),
         "not_covered": [],
         "unreached": [],
         "cuts": [],
     }
     data = (problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
-    return PlanCheck(content, (), *data)
+    return kind(content, (), *data)
+
+
+def test_by_success_a_unit_costs_a_little_less_and_the_plan_in_hand_a_little_more() -> None:
+    half = Fraction(1, 2)
+    checking = reader(replace(HALVED, rates={"mix": half}), "success")
+    checking.least = {(0, half): Fraction(1)}
+    assert FINE * checking.kept(0, 0) == 693_147_180  # the logarithm of 2 is 0.69314718056
+    assert FINE * checking.limit(0) == 693_147_181
+
+
+def test_a_part_takes_a_step_more_for_each_count_that_it_is_about() -> None:
+    class Counting(PlanCheck):
+        def _prove_part(self, part: Part, level: int) -> None:
+            seen.append((len(part.least), len(part.most), self.steps))
+
+    def branch(unit: int, up_to: Any, above: Any) -> Any:
+        return {"branch": {"unit": unit}, "most": 0, "up_to": up_to, "above": above}
+
+    seen: list[tuple[int, int, int]] = []
+    problem = small("mix: start > a", "bake: a > end")
+    checking = reader(replace(problem, items=UsedUp()), kind=Counting)
+    begun = checking.steps
+    checking._prove([branch(0, {}, branch(1, {}, {}))], None)
+    # one for all plans, two for those above, three for each part of these, and two for the others
+    assert [(least, most, begun - left) for least, most, left in seen] == [(2, 0, 6), (1, 1, 9), (0, 1, 11)]
+
+
+# --- how much is proved
+
+HALVED = replace(small("mix: start > end"), rates={"mix": Fraction(1)}, items=UsedUp())
+NEAR = replace(small("roast: start, salt > end", "boil: start > end"), items=UsedUp())
+RELIABLE = Coverage(({"rule": "least_rate", "least_rate": 900_000},))
+
+
+def rate(cost: str) -> Fraction:
+    """Give a rate whose logarithm, below 0, has so many parts of a billion; it has 70 digits."""
+    with localcontext(prec=120):
+        exact = (-Decimal(cost) / FINE).exp()
+        return Fraction(exact.quantize(Decimal(1).scaleb(-70), rounding=ROUND_FLOOR))
+
+
+@pytest.mark.parametrize(("boil", "proved"), [("500000001.5", 1), ("500000002.5", 3)])
+def test_plans_that_are_nearly_as_good_by_success_are_taken_to_be_as_good(boil: str, proved: int) -> None:
+    """Then nothing is proved by what comes after it, of whatever that may be true."""
+    problem = replace(NEAR, rates={"roast": rate("500000000"), "boil": rate(boil)})
+    by = (Objective.SUCCESS, Objective.INPUTS, Objective.UNITS)
+    certificate = certify_plan(problem, by, (0,))
+    assert certificate is not None
+    assert (certificate.claim, certificate.certified) == ("optimal", by[:proved])
+
+
+def test_after_costs_that_are_too_fine_nothing_more_is_proved() -> None:
+    by = (Objective.UNITS, Objective.PRICE, Objective.INPUTS)
+    for fine, proved in ((9, 3), (10, 2)):
+        prices = UnitPrices({"boil": Fraction(1, 10**fine), "roast": Fraction(1)}, {})
+        certificate = certify_plan(replace(NEAR, unit_prices=prices), by, (1,))
+        assert certificate is not None
+        assert certificate.certified == by[:proved]
+
+
+def test_with_rates_of_their_own_nothing_is_proved_of_what_looks_at_rates() -> None:
+    own = replace(HALVED, own_rates={0: Fraction(1, 2)})
+    assert certify_plan(own, (Objective.UNITS,), (0,)) is not None
+    assert certify_plan(own, (Objective.UNITS, Objective.SUCCESS), (0,)) is None
+    assert (
+        certify_plan(own, (Objective.UNITS,), (0,), Coverage(({"rule": "at_most_units", "max_units": 1},)))
+        is None
+    )
+    assert certify_no_plan(own, RELIABLE) is None
+    assert certify_no_plan(replace(HALVED, rates={"mix": Fraction(1, 2)}), RELIABLE) is not None
+    assert certify_no_plan(replace(own, kitchen=frozenset())) is not None
+
+
+def test_with_a_rate_of_0_nothing_is_proved_by_success_and_what_comes_after_it() -> None:
+    never = replace(HALVED, rates={"mix": Fraction(0)})
+    assert certify_plan(never, (Objective.SUCCESS, Objective.UNITS), (0,)) is None
+    certificate = certify_plan(never, (Objective.UNITS, Objective.SUCCESS, Objective.INPUTS), (0,))
+    assert certificate is not None
+    assert certificate.certified == (Objective.UNITS,)
+    other = replace(NEAR, rates={"roast": Fraction(1, 2), "boil": Fraction(0)})
+    assert certify_plan(other, (Objective.SUCCESS,), (0,)) is None
+
+
+def test_when_time_is_up_what_is_proved_is_certified() -> None:
+    by = (Objective.UNITS, Objective.INPUTS)
+    for expired, proved in ((lambda: False, 2), (lambda: True, 1)):
+        certificate = certify_plan(HALVED, by, (0,), expired=expired)
+        assert certificate is not None
+        assert (certificate.claim, certificate.certified) == ("optimal", by[:proved])
+
+
+def test_that_there_is_no_plan_may_take_branching_for_which_there_has_to_be_time() -> None:
+    """Each side of two triangles is tied at one of its ends, and two of three have to be ready for that."""
+    corners, sides = "abcdef", ("ab", "bc", "ca", "de", "ef", "fd")
+    ready = (f"ready: start > {corner}" for corner in corners)
+    tied = (f"tie: {corner} > {side}" for side in sides for corner in side)
+    problem = small(*ready, *tied, f"bake: {', '.join(sides)} > end")
+    asked = replace(problem, items=UsedUp(dict.fromkeys(corners, True)))
+    for most, there_is in ((3, False), (4, True)):
+        rule = {"rule": "at_most_motion", "limited_motion": "ready", "max_uses": most}
+        certificate = certify_no_plan(asked, Coverage((rule,)))
+        assert (certificate is None) == there_is
+        assert certify_no_plan(asked, Coverage((rule,)), lambda: True) is None
+
+
+def test_that_a_rule_alone_allows_no_plan_takes_no_proof() -> None:
+    certificate = certify_no_plan(HALVED, Coverage(({"rule": "forbid_ingredient", "allergen": ["end"]},)))
+    assert certificate is not None
+    assert (certificate.claim, certificate.content["proof"]) == ("infeasible", [{}])
+
+
+def test_limits_count_each_execution() -> None:
+    """Each plan mixes twice, and has five executions of four units."""
+    problem = small("mix: start > a", "cut: a > b", "chop: a > c", "bake: b, c > end")
+    asked = replace(problem, items=UsedUp())
+    none = certify_no_plan(asked, Coverage(({"rule": "at_most_units", "max_units": 4},)))
+    assert none is not None
+    assert none.claim == "infeasible"
+    assert certify_no_plan(asked, Coverage(({"rule": "at_most_units", "max_units": 5},))) is None
+
+
+def test_copies_that_a_plan_takes_are_no_contradiction() -> None:
+    """Three eggs are needed, and the plan in hand takes salt as well, for nothing."""
+    problem = small("beat: egg > a", "mix: egg > b", "boil: egg > c", "bake: a, b, c > end", "melt: salt > x")
+    eggs = replace(problem, items=UsedUp(stock={ObjectNode.of("egg"): 4}))
+    best = solve(eggs, (Objective.KITCHEN,))
+    assert best.costs is not None
+    assert best.costs.kitchen == 3
+    units = (0, 1, 2, 4, 3)
+    stopped = best._replace(status=Status.FEASIBLE, units=units, costs=eggs.costs(units), proof=None)
+    _, certificate = certify_outcome(stopped, Settings())
+    assert certificate is not None
+    assert (certificate.claim, certificate.content["bound"]) == ("bound", ["3"])
+
+
+# --- answers at a limit
 
 
 def test_a_plan_that_was_found_at_a_limit_can_be_proved_the_best() -> None:
@@ -313,3 +452,13 @@ def test_a_stock_and_what_stays_are_part_of_the_claim(cli: Cli, tmp_path: Path) 
     assert "said to stay: mixing bowl" in shown
     said = json.loads(cli("verify", proof, "--format", "json").out)
     assert (said["items"], said["used_up"]["stock"]) == ("used-up", [{"node": "onion; whole", "copies": 1}])
+
+
+def test_what_a_rule_limits_is_not_executed_without_end() -> None:
+    """A limit that weights take from also says how often a plan can execute a unit."""
+    kitchen = small("mix: start > a", "cut: a > b", "chop: a > c", "bake: b, c > end")
+    problem = replace(kitchen, items=UsedUp())
+    for uses, none in ((1, True), (2, False)):  # one of a is cut, and one is chopped
+        rule = {"rule": "at_most_motion", "limited_motion": "mix", "max_uses": uses}
+        found = certify_no_plan(problem, Coverage((rule,)))
+        assert (found is not None) == none

@@ -398,6 +398,14 @@ def test_the_best_tree_without_the_rest_is_not_looked_for_again() -> None:
     assert quick.landmarks() == thorough.landmarks()
 
 
+def test_the_best_tree_without_the_rest_is_looked_for_unless_somebody_says_not_to() -> None:
+    settings = Settings((given_constraint(APART),))
+    heard = _Heard(LOOSE, (Objective.UNITS,), Reporter())
+    first = prepare(LOOSE, (Objective.UNITS,), settings, assemble(settings, print), heard)
+    assert first.reduced is not None
+    assert first.reduced.settled
+
+
 def test_of_units_that_mattered_before_those_that_rules_remove_are_gone() -> None:
     settings = Settings((given_constraint(f'{APART} :- use(U), motion(U,"cut").'),))
     heard = _Heard(LOOSE, (Objective.UNITS,), Reporter())

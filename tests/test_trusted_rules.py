@@ -3,15 +3,22 @@
 import hashlib
 import json
 import random
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from foon_asp import deadline
 from foon_asp.asp import Proof, Settings, Status, solve
+from foon_asp.asp.prepared import Prepared
+from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.certificate import Coverage, certify_outcome
 from foon_asp.certificate.coverage import coverage
+from foon_asp.certificate.own_limits import OwnLimits
 from foon_asp.certificate.own_rules import check_with_clingo, with_own_rules
+from foon_asp.deadline import Deadline
+from foon_asp.grounding.run import Run
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof.constraint import Rule
 from foon_asp.proof.verify import LimitError, RefusedError, seal, trusted, verify
@@ -335,6 +342,81 @@ def test_what_shrinking_rules_of_the_users_own_limit() -> None:
     own = trusted(found.content)
     assert own is not None
     assert (found.claim, own["limits"]) == ("infeasible", [[{"1": [0, 1, 2, 3, 4]}, 1]])
+
+
+def own_limits(*given: str) -> OwnLimits:
+    """Give what shrinking rules of the user's own limit, beside the covered ones."""
+    settings = Settings(tuple(map(given_constraint, given)))
+    covered = with_own_rules(coverage(settings), BOILED, settings)
+    assert covered is not None
+    assert covered.limits is not None
+    return covered.limits
+
+
+ONE_OF = ':- use(A), use(B), motion(A,"cut"), motion(B,"mix").'
+WHERE_JUNK = ':- use(A), use(B), motion(A,"boil"), motion(B,"mix"), unit(U), motion(U,"junk").'
+FEW_INPUTS = ":- #sum { N,U : use(U), inputs(U,N) } > 3."
+
+
+def at_most(most: int, *units: int) -> Limit:
+    """Give the limit that a tree has so many of some units at most."""
+    return dict.fromkeys(units, Fraction(1)), Fraction(most)
+
+
+ALL = range(5)
+
+
+def test_limits_are_found_of_the_fewest_units_that_break_a_rule() -> None:
+    limits = own_limits(ONE_OF)
+    assert limits.known == []
+    for kept in ({0}, {1, 2}, {0, 2, 3, 4}):
+        assert limits.exceeded(frozenset(kept)) is None
+    assert limits.known == []
+    assert limits.exceeded(frozenset({0, 1, 2, 4})) == at_most(1, 0, 1)
+    assert limits.known == [at_most(1, 0, 1)]
+
+
+def test_one_rule_that_sees_what_is_not_in_a_tree_is_asked_with_it() -> None:
+    limits = own_limits(ONE_OF, WHERE_JUNK)
+    assert limits.exceeded(frozenset({1, 2})) == at_most(1, 1, 2)
+    assert limits.exceeded(frozenset({0, 2})) is None
+
+
+def test_sums_are_limited_and_what_is_asked_for_is_not() -> None:
+    assert own_limits(FEW_INPUTS).known == [at_most(3, *ALL)]
+    # what counts for nothing is left out, and so is a rule of which nobody knows that it is shrinking
+    counted = ':- #sum { 1,U : use(U), motion(U,"cut"); 0,U : use(U), motion(U,"mix") } > 0.'
+    assert own_limits(counted).known == [at_most(0, 0)]
+    assert own_limits(":- #sum { 2*N-1,U : use(U), inputs(U,N) } > 3.").known == []
+    assert own_limits(ONE_OF, JUNK, ':- #count { U : use(U), motion(U,"junk") } < 1.').known == []
+    # without a shrinking rule, there is nothing to be found
+    asking = own_limits(':- #count { U : use(U), motion(U,"junk") } < 1.')
+    assert asking.exceeded(frozenset({0, 1})) is None
+    assert asking.known == []
+
+
+def test_limits_that_follow_from_ours_are_left_out() -> None:
+    known: list[Limit] = [at_most(3, *ALL)]
+    for most, left in ((2, []), (3, []), (4, known)):
+        assert own_limits(FEW_INPUTS, f"at_most_units:max_units={most}").known == left
+    # of the units, ours limits only one
+    assert own_limits(FEW_INPUTS, "at_most_motion:limited_motion=cut,max_uses=1").known == known
+
+
+def test_where_clingo_does_not_finish_nothing_is_said_to_keep_to_the_rules(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    limits = own_limits(ONE_OF)
+    monkeypatch.setattr(Prepared, "run", lambda *_: Run())
+    with pytest.raises(KeyboardInterrupt):
+        limits.exceeded(frozenset({0}))
+    monkeypatch.setattr(Prepared, "run", lambda *_: Run(exhausted=True))
+    assert limits.exceeded(frozenset({0})) is None
+    assert limits.known == []
+    monkeypatch.setattr(Prepared, "run", lambda *_: Run())
+    monkeypatch.setattr(Deadline, "passed", True)
+    with pytest.raises(deadline.LimitError):
+        limits.exceeded(frozenset({0}))
 
 
 def test_clingo_says_what_limits_are_not_true() -> None:

@@ -28,6 +28,9 @@ _CUTS = 40  # before the targets that one relaxed solution is asked for
 _ROUNDS = 3  # of cuts, at each place but the first
 _OFTEN = 10  # places, from one at which derivations are guessed to the next
 
+_LONG = 30_000_000  # actions looked at for a proof, at most
+_NESTED = 240  # branches within branches that a proof may have: what reads it follows each of them
+
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
 
 
@@ -320,3 +323,41 @@ class Branching:
         crossing = (self._actions[a] for a in self._achievers.members(cut) if a not in place.forbidden)
         wide = (self._objects[o] for o in self._achievers.widened(cut))
         return Cut(tuple(sorted(wide)), tuple(sorted(crossing)))
+
+
+def branched(
+    graph: Hypergraph,
+    targets: Iterable[int],
+    actions: Collection[int],
+    cost: Callable[[int], int],
+    known: Iterable[Collection[int]],
+    total: int,
+    expired: Callable[[], bool],
+) -> Proof | None:
+    """Prove that no derivation costs less than ``total``; arguments are those of :class:`Branching`.
+
+    What its weights add up to is above the next smaller cost, and to be rounded up. ``None`` where that takes
+    too long, where one costs less, and where an action costs nothing or all cost multiples of more than 1.
+    """
+    costs = [cost(action) for action in actions]
+    if math.gcd(*costs) != 1 or 0 in costs:
+        return None
+    cheaper: list[set[int]] = []
+    search = Branching(
+        *(graph, targets, actions, cost, known, total, lambda *_: (), cheaper.append, lambda _: None)
+    )
+    if not search.search(_LONG, expired) or cheaper:
+        return None
+    proof = search.proof()
+    return proof if _nested(proof) <= _NESTED else None
+
+
+def _nested(proof: Proof) -> int:
+    """Give how many branches are within each other at most."""
+    deepest, waiting = 0, [(proof, 0)]
+    while waiting:
+        part, depth = waiting.pop()
+        deepest = max(deepest, depth)
+        if isinstance(part, Branch):
+            waiting += [(part.without, depth + 1), (part.using, depth + 1)]
+    return deepest

@@ -84,6 +84,22 @@ class Rules(Protocol):
         """Give a limit that is not known yet and that a derivation exceeds; from then on it is known."""
 
 
+class Search(Protocol):
+    """Looks for a proof that no derivation costs less than a total, all costs being whole."""
+
+    def __call__(
+        self,
+        graph: Hypergraph,
+        targets: Iterable[int],
+        actions: Collection[int],
+        cost: Callable[[int], int],
+        known: Iterable[Collection[int]],
+        total: int,
+        expired: Callable[[], bool],
+    ) -> "Proof | None":
+        """Give the proof, whose weights are to be rounded up; ``None`` where there is none soon."""
+
+
 class CheaperError(Exception):
     """A derivation was found that costs less than the one to be proved best."""
 
@@ -102,7 +118,8 @@ class Prover:
     Derivations with an action of ``forbidden`` do not count, nor do those that go beyond one of the
     ``limits`` or break one of the ``rules``. ``expired`` says when to give up; it is asked between steps that
     take milliseconds on thousands of actions. What actions cost are multiples of those of ``multiples`` that
-    are above 0, coordinate by coordinate, so that bounds are rounded up.
+    are above 0, coordinate by coordinate, so that bounds are rounded up. ``search`` is tried where many
+    actions have whole costs, and weights alone do not suffice.
     """
 
     def __init__(
@@ -117,8 +134,9 @@ class Prover:
         limits: Sequence[Limit] = (),
         rules: Rules | None = None,
         multiples: Sequence[Fraction] = (),
+        search: Search | None = None,
     ) -> None:
-        self._multiples = multiples
+        self._multiples, self._search = multiples, search
         self._known, self._limits, self._rules = tuple(map(frozenset, known)), [*limits], rules
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
@@ -202,9 +220,10 @@ class Prover:
             cases = cases[2] if cases[0] in used else cases[1]
         widened: Sequence[Cut] = ()
         if left is not None:
-            packing, widened = self._packed(cutter, used, left, known, alone=cases is not None)
-            if packing is not None:
-                return packing
+            first = not used and forbidden == self._forbidden
+            found, widened = self._packed(cutter, used, left, known, cases is not None, first)
+            if found is not None:
+                return found
         if cases is not None:
             return self._branch(derivation, goal, used, forbidden, known, cases[0], cases[1:])
         while True:
@@ -280,21 +299,24 @@ class Prover:
         goal: Vector,
         known: Iterable[Iterable[int]],
         alone: bool,
-    ) -> tuple[Packing | None, Sequence[Cut]]:
+        first: bool,
+    ) -> tuple[Proof | None, Sequence[Cut]]:
         """Give weights that add up to ``goal``, if they are found without exact arithmetic, and all cuts.
 
-        Those of the ``known`` cuts are tried first, and ``alone`` that is all. Of many actions, and where all
-        costs are one number and multiples of one, so that bounds are rounded up, the weights of a relaxed
-        solution in floats are rounded.
+        Those of the ``known`` cuts are tried first, then the search where nothing is decided (``first``), and
+        ``alone`` that is all. Of many actions, and where all costs are one number and multiples of one, so
+        that bounds are rounded up, the weights of a relaxed solution in floats are rounded.
         """
         targets = set(cutter.targets)
         cuts = [cutter.widened(cut) for cut in known if not targets.isdisjoint(cut)]
         cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
         packing = self._share_out((cut, None) for cut in cuts)
-        step = self._multiples[0] if len(self._multiples) == len(goal) == 1 else Fraction(0)
-        told = self._limits or self._rules is not None or alone
-        if self._reaches(packing, goal) or told or not step or len(cutter.actions) <= _MANY:
-            return packing if self._reaches(packing, goal) else None, cuts
+        step = self._step(cutter)
+        if self._reaches(packing, goal):
+            return packing, cuts
+        searched = self._searched(cutter, goal, cuts) if first else None
+        if searched is not None or alone or not step:
+            return searched, cuts
 
         def steps(action: int) -> int:
             return 0 if action in used else int(self._costs[action][0] / step)
@@ -308,6 +330,35 @@ class Prover:
         found = [(cut, weight) for cut, weight in found if used.isdisjoint(cut.members)]
         packing = self._share_out(found)
         return packing if self._reaches(packing, goal) else None, [*cuts, *(cut for cut, _ in found)]
+
+    def _step(self, cutter: Cutter) -> Fraction:
+        """Give what all costs are multiples of, where they are one number each, of many actions; else 0."""
+        told = self._limits or self._rules is not None
+        one = len(self._multiples) == 1 == len(self._order.zero)
+        return self._multiples[0] if one and not told and len(cutter.actions) > _MANY else Fraction(0)
+
+    def _searched(self, cutter: Cutter, goal: Vector, known: Sequence[Cut]) -> Proof | None:
+        """Let the search find a proof, and state it with cuts that hold for all actions."""
+        step = self._step(cutter)
+        if self._search is None or not step:
+            return None
+        found = self._search(
+            *(self._graph, cutter.targets, cutter.actions),
+            *(lambda action: int(self._costs[action][0] / step), [cut.objects for cut in known]),
+            *(math.ceil(goal[0] / step), self._expired),
+        )
+
+        def stated(proof: Proof) -> Proof:
+            if isinstance(proof, Branch):
+                return Branch(proof.action, stated(proof.without), stated(proof.using))
+            if isinstance(proof, Hopeless):
+                return Hopeless(cutter.widened(proof.cut.objects))
+            assert isinstance(proof, Packing)
+            weights = [(cutter.widened(cut.objects), (weight[0] * step,)) for cut, weight in proof.weights]
+            _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+            return Packing(tuple(weights), rounded=rounded)
+
+        return None if found is None else stated(found)
 
     def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> Packing:
         """Give each cut in turn the weight that its members have left of their costs, or at most another."""

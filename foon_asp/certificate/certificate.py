@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from foon_asp.bounds.branching import branched
 from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.lexicographic import Vector
 from foon_asp.bounds.lower_bound import Broken, Cases, CheaperError, Hopeless, Packing, Proof, Prover
@@ -137,6 +138,7 @@ def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence
     return Prover(
         *(arrays.graph, arrays.goals, arrays.costs, arrays.order, arrays.forbidden),
         *(expired, cuts, arrays.limits, rules, arrays.multiples),
+        search=branched,
     )
 
 

@@ -326,11 +326,19 @@ class PlanCheck(Check):
             return min([*known, self.stock.get(o, 1)])
         if member in self.idle:
             return 0
+        known += self._allowed(member)
         if self.least is not None:
             known += (
                 cap for at in range(level + 1) if (cap := self.cap(member, at, at == level)) is not None
             )
         return min(known, default=None)
+
+    def _allowed(self, unit: int) -> Iterator[int]:
+        """Give how often limits allow a unit to be executed, those that nothing gives back to."""
+        for limit in self.ruled.limits.values():
+            amount = limit.amounts.get(unit, 0)
+            if amount > 0 and min(limit.amounts.values()) >= 0:
+                yield max(0, math.floor(limit.most / amount))
 
     def _cap(self, unit: int, level: int, less: bool) -> int | None:
         """Give how often a plan can execute a unit that costs no more by an objective, or less."""

@@ -36,7 +36,10 @@ _ROUNDS = 24  # of cuts, trees and what they leave
 _FEW = 6  # of these, where other costs are tried
 _EFFORT = 3_000_000  # actions looked at while branching, before clingo is asked: some 20 s of a processor
 _NEAR = 4, 3  # of so many parts of what the tree costs, those that a bound has to reach for branching to pay
-_TRIES, _THOROUGH = 20, 80  # times all actions, looked at for a better tree among a few
+_TRIES, _THOROUGH = (
+    10,
+    40,
+)  # times all actions, looked at by chance for better trees, or twice among few
 _DENSE = 20  # members of landmarks for each action, after which relaxations tell more than greedy cuts
 _SPARSE = 50, 0.01  # members, or of the actions: landmarks of more make relaxations slow, and say little
 _TWOFOLD = 2  # members of landmarks for each action: with more, sparse ones are begun with
@@ -434,7 +437,7 @@ class _Reducer:
             self._take_better(tree, costs)
         least = -(-shared.bound // PARTS)
         if least < self._total(costs) and len(among) <= _AMONG * len(self.left):
-            self._search_among(among, costs, [cut for cut, _ in shared.cuts], tries * len(self.left))
+            self._search_among(among, costs, [cut for cut, _ in shared.cuts], 2 * tries * len(self.left))
         elif least < self._total(costs):
             tree = varied(
                 *(self.graph, self.left, self.tree, costs, least, self.expired),
