@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from foon_asp.asp import Proof, Reporter, Settings, solve
 from foon_asp.bounds import branching, lower_bound
-from foon_asp.bounds.branching import Branching, _nested, _Place, branched
+from foon_asp.bounds.branching import Branching, TooLongError, _Place, branched
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.landmark_cuts import Cuts
 from foon_asp.bounds.lower_bound import Branch, Hopeless, Packing, Prover
@@ -99,6 +99,16 @@ class Run:
 
 def branches(proof: Proved | None) -> int:
     return 1 + branches(proof.without) + branches(proof.using) if isinstance(proof, Branch) else 0
+
+
+def length(proof: Proved) -> int:
+    """Give how many objects and members a proof names, and 5,000 for each set of weights."""
+    if isinstance(proof, Branch):
+        return length(proof.without) + length(proof.using)
+    if isinstance(proof, Hopeless):
+        return 0
+    assert isinstance(proof, Packing)
+    return 5000 + sum(len(cut.objects) + len(cut.members) for cut, _ in proof.weights)
 
 
 def corners(size: int, price: int = 1) -> tuple[Hypergraph, list[int], list[int]]:
@@ -378,13 +388,13 @@ def test_a_proof_alone_is_of_a_total_that_no_derivation_is_below(monkeypatch: py
         proof = proved(best)
         assert proof is not None
         require_proves(proof, graph, targets, costs, best)
-        depth = _nested(proof)
-        assert 0 < depth <= branches(proof)
+        names = length(proof)
+        assert names > 10_000
         assert proved(best + 1) is None
         assert proved(best, late=True) is None
-        for nested, enough in ((depth, True), (depth - 1, False)):
+        for most, enough in ((names, True), (names - 1, False)):
             with monkeypatch.context() as patched:
-                patched.setattr(branching, "_NESTED", nested)
+                patched.setattr(branching, "_LENGTH", most)
                 assert (proved(best) is not None) == enough
 
 
@@ -395,11 +405,16 @@ def test_costs_that_no_rounding_brings_to_the_total_are_not_proved(prices: list[
     assert branched(graph, targets, range(len(costs)), some.__getitem__, (), 5, lambda: False) is None
 
 
-def test_branches_are_counted_as_deep_as_they_are() -> None:
-    leaf = Packing(())
-    assert _nested(leaf) == 0
-    assert _nested(Branch(0, leaf, Branch(1, Branch(2, leaf, leaf), leaf))) == 3
-    assert _nested(Branch(0, Branch(1, leaf, leaf), leaf)) == 2
+def test_no_more_is_written_of_a_proof_when_time_is_up() -> None:
+    graph, targets, costs = corners(4)
+    search = Branching(
+        *(graph, targets, range(len(costs)), costs.__getitem__, (), 3 + 6),
+        *(lambda shares, without: (), lambda tree: None, lambda bound: None),
+    )
+    assert search.search(10**6, lambda: False)
+    assert isinstance(search.proof(), Branch)
+    with pytest.raises(TooLongError):
+        search.proof(expired=lambda: True)
 
 
 @pytest.mark.parametrize("seed", range(30))

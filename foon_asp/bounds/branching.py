@@ -29,9 +29,14 @@ _ROUNDS = 3  # of cuts, at each place but the first
 _OFTEN = 10  # places, from one at which derivations are guessed to the next
 
 _LONG = 30_000_000  # actions looked at for a proof, at most
-_NESTED = 240  # branches within branches that a proof may have: what reads it follows each of them
+_LENGTH = 2_000_000  # objects and members of cuts that a proof may name, one by one
+_PART = 5000  # of these, what each set of weights counts as: so many branches within each other can be read
 
 Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int]]]
+
+
+class TooLongError(Exception):
+    """A proof takes too long, or is."""
 
 
 @dataclass(slots=True, eq=False)
@@ -95,6 +100,9 @@ class Branching:
         self._asked: list[bool] = []  # rows that count at the place looked at
         self._now: tuple[frozenset[int], frozenset[int]] = frozenset(), frozenset()
         self.effort = 0
+        self._most: float = math.inf  # that a proof may name
+        self._expired: Callable[[], bool] = lambda: False
+        self._wide: dict[frozenset[int], tuple[int, ...]] = {}  # cuts as they hold in the whole graph
         self._first = _Place(frozenset(), frozenset(), 0, [])
         number = {o: place for place, o in enumerate(self._objects)}
         for cut in known:
@@ -130,8 +138,12 @@ class Branching:
             return False
         return True
 
-    def proof(self) -> Proof:
-        """Prove what a search came to."""
+    def proof(self, most: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
+        """Prove what a search came to.
+
+        Raises :class:`TooLongError` where time is up, and where it names more objects and members than that.
+        """
+        self._most, self._expired = most, expired
         return self._proof(self._first)[0]
 
     def cases(self) -> Cases:
@@ -311,18 +323,24 @@ class Branching:
         return proof, barred
 
     def _packing(self, place: _Place) -> tuple[Packing, set[int]]:
-        weights = [
-            (self._stated(self._cuts[row], place), (Fraction(weight, PARTS),))
-            for row, weight in self._carrying(place)
-        ]
+        weights: list[tuple[Cut, tuple[Fraction]]] = []
+        self._most -= _PART
+        for row, weight in self._carrying(place):
+            cut = self._stated(self._cuts[row], place)
+            self._most -= len(cut.objects) + len(cut.members)
+            if self._most < 0 or self._expired():
+                raise TooLongError
+            weights.append((cut, (Fraction(weight, PARTS),)))
         overloaded = set(self._np.flatnonzero(self._left(place) < 0).tolist())
         return Packing(tuple(weights)), overloaded & place.forbidden
 
     def _stated(self, cut: frozenset[int], place: _Place) -> Cut:
         """Give a cut by the numbers of the whole graph, with what crosses it at a place."""
         crossing = (self._actions[a] for a in self._achievers.members(cut) if a not in place.forbidden)
-        wide = (self._objects[o] for o in self._achievers.widened(cut))
-        return Cut(tuple(sorted(wide)), tuple(sorted(crossing)))
+        if cut not in self._wide:
+            wide = self._achievers.widened(cut)
+            self._wide[cut] = tuple(sorted(self._objects[o] for o in wide))
+        return Cut(self._wide[cut], tuple(sorted(crossing)))
 
 
 def branched(
@@ -348,16 +366,7 @@ def branched(
     )
     if not search.search(_LONG, expired) or cheaper:
         return None
-    proof = search.proof()
-    return proof if _nested(proof) <= _NESTED else None
-
-
-def _nested(proof: Proof) -> int:
-    """Give how many branches are within each other at most."""
-    deepest, waiting = 0, [(proof, 0)]
-    while waiting:
-        part, depth = waiting.pop()
-        deepest = max(deepest, depth)
-        if isinstance(part, Branch):
-            waiting += [(part.without, depth + 1), (part.using, depth + 1)]
-    return deepest
+    try:
+        return search.proof(_LENGTH, expired)
+    except TooLongError:
+        return None

@@ -13,7 +13,7 @@ import math
 import random
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import cmp_to_key
+from functools import cache, cmp_to_key
 from operator import mul
 from typing import NamedTuple, Protocol
 
@@ -348,13 +348,15 @@ class Prover:
             *(math.ceil(goal[0] / step), self._expired),
         )
 
+        widened = cache(cutter.widened)
+
         def stated(proof: Proof) -> Proof:
             if isinstance(proof, Branch):
                 return Branch(proof.action, stated(proof.without), stated(proof.using))
             if isinstance(proof, Hopeless):
-                return Hopeless(cutter.widened(proof.cut.objects))
+                return Hopeless(widened(proof.cut.objects))
             assert isinstance(proof, Packing)
-            weights = [(cutter.widened(cut.objects), (weight[0] * step,)) for cut, weight in proof.weights]
+            weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in proof.weights]
             _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
             return Packing(tuple(weights), rounded=rounded)
 
