@@ -28,7 +28,7 @@ _CUTS = 40  # before the targets that one relaxed solution is asked for
 _ROUNDS = 3  # of cuts, at each place but the first
 _OFTEN = 10  # places, from one at which derivations are guessed to the next
 
-_LONG = 30_000_000  # actions looked at for a proof, at most
+_LONG = 10_000_000  # actions looked at for a proof, at most: some minute of a processor
 _LENGTH = 2_000_000  # objects and members of cuts that a proof may name, one by one
 _PART = 5000  # of these, what each set of weights counts as: so many branches within each other can be read
 

@@ -303,9 +303,10 @@ class Prover:
     ) -> tuple[Proof | None, Sequence[Cut]]:
         """Give weights that add up to ``goal``, if they are found without exact arithmetic, and all cuts.
 
-        Those of the ``known`` cuts are tried first, then the search where nothing is decided (``first``), and
-        ``alone`` that is all. Of many actions, and where all costs are one number and multiples of one, so
-        that bounds are rounded up, the weights of a relaxed solution in floats are rounded.
+        Those of the ``known`` cuts are tried first, and ``alone`` that is all. Where nothing is decided so
+        far, which is the ``first`` of all, the search comes next. Of many actions, and where all costs are one
+        number and multiples of one, so that bounds are rounded up, the weights of a relaxed solution in floats
+        are rounded.
         """
         targets = set(cutter.targets)
         cuts = [cutter.widened(cut) for cut in known if not targets.isdisjoint(cut)]
@@ -314,7 +315,7 @@ class Prover:
         step = self._step(cutter)
         if self._reaches(packing, goal):
             return packing, cuts
-        searched = self._searched(cutter, goal, cuts) if first else None
+        searched = self._searched(cutter, goal, cuts) if first and not alone else None
         if searched is not None or alone or not step:
             return searched, cuts
 
