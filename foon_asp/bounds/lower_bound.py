@@ -304,9 +304,9 @@ class Prover:
         """Give weights that add up to ``goal``, if they are found without exact arithmetic, and all cuts.
 
         Those of the ``known`` cuts are tried first, and ``alone`` that is all. Where nothing is decided so
-        far, which is the ``first`` of all, the search comes next. Of many actions, and where all costs are one
-        number and multiples of one, so that bounds are rounded up, the weights of a relaxed solution in floats
-        are rounded.
+        far, which is the ``first`` of all, the search comes next. Of many actions, and where all costs are
+        one number and multiples of one, so that bounds are rounded up, the weights of a relaxed solution in
+        floats are rounded.
         """
         targets = set(cutter.targets)
         cuts = [cutter.widened(cut) for cut in known if not targets.isdisjoint(cut)]
