@@ -751,6 +751,10 @@ def test_the_front_of_plans(seed: int) -> None:
     assert hold_a_front(seed) > 1
 
 
+# On a busy machine, a limit strikes while clingo gives its memory back; it is taken for lost, and comes again.
+@pytest.mark.filterwarnings(
+    "ignore:Exception ignored in. <function Control.__del__:pytest.PytestUnraisableExceptionWarning"
+)
 @pytest.mark.slow
 def test_the_fronts_of_many_small_networks() -> None:
     found = Counter(map(hold_a_front, range(700)))
