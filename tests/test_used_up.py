@@ -751,7 +751,7 @@ def test_the_front_of_plans(seed: int) -> None:
     assert hold_a_front(seed) > 1
 
 
-# On a busy machine, a limit strikes while clingo gives its memory back; it is taken for lost, and comes again.
+# On a busy machine, a limit strikes while clingo gives its memory back: taken for lost, it comes again.
 @pytest.mark.filterwarnings(
     "ignore:Exception ignored in. <function Control.__del__:pytest.PytestUnraisableExceptionWarning"
 )
