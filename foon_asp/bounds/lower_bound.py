@@ -71,6 +71,22 @@ Proof = Packing | Hopeless | Broken | Branch
 Cases = tuple[int, "Cases", "Cases"] | None
 
 
+# Looks for a proof that no derivation of targets by some actions costs less than a total, all costs being
+# whole, with cuts to begin with, until it is expired. Weights are to be rounded up.
+Search = Callable[
+    [
+        Hypergraph,
+        Iterable[int],
+        Collection[int],
+        Callable[[int], int],
+        Iterable[Collection[int]],
+        int,
+        Callable[[], bool],
+    ],
+    Proof | None,
+]
+
+
 class Rules(Protocol):
     """Rules that derivations keep to, and that neither targets nor limits say."""
 
@@ -82,22 +98,6 @@ class Rules(Protocol):
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
         """Give a limit that is not known yet and that a derivation exceeds; from then on it is known."""
-
-
-class Search(Protocol):
-    """Looks for a proof that no derivation costs less than a total, all costs being whole."""
-
-    def __call__(
-        self,
-        graph: Hypergraph,
-        targets: Iterable[int],
-        actions: Collection[int],
-        cost: Callable[[int], int],
-        known: Iterable[Collection[int]],
-        total: int,
-        expired: Callable[[], bool],
-    ) -> "Proof | None":
-        """Give the proof, whose weights are to be rounded up; ``None`` where there is none soon."""
 
 
 class CheaperError(Exception):

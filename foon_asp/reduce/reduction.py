@@ -36,10 +36,7 @@ _ROUNDS = 24  # of cuts, trees and what they leave
 _FEW = 6  # of these, where other costs are tried
 _EFFORT = 3_000_000  # actions looked at while branching, before clingo is asked: some 20 s of a processor
 _NEAR = 4, 3  # of so many parts of what the tree costs, those that a bound has to reach for branching to pay
-_TRIES, _THOROUGH = (
-    10,
-    40,
-)  # times all actions, looked at by chance for better trees, or twice among few
+_TRIES, _THOROUGH = 10, 40  # times all actions, looked at for better trees: by chance, or twice among few
 _DENSE = 20  # members of landmarks for each action, after which relaxations tell more than greedy cuts
 _SPARSE = 50, 0.01  # members, or of the actions: landmarks of more make relaxations slow, and say little
 _TWOFOLD = 2  # members of landmarks for each action: with more, sparse ones are begun with
@@ -436,14 +433,16 @@ class _Reducer:
             among |= tree
             self._take_better(tree, costs)
         least = -(-shared.bound // PARTS)
-        if least < self._total(costs) and len(among) <= _AMONG * len(self.left):
-            self._search_among(among, costs, [cut for cut, _ in shared.cuts], 2 * tries * len(self.left))
-        elif least < self._total(costs):
-            tree = varied(
-                *(self.graph, self.left, self.tree, costs, least, self.expired),
-                *(shared.shares, self.chance.random, tries),
-            )
-            self._take_better(tree, costs)
+        if least < self._total(costs):
+            if len(among) <= _AMONG * len(self.left):
+                known, effort = [cut for cut, _ in shared.cuts], 2 * tries * len(self.left)
+                self._search_among(among, costs, known, effort)
+            else:
+                tree = varied(
+                    *(self.graph, self.left, self.tree, costs, least, self.expired),
+                    *(shared.shares, self.chance.random, tries),
+                )
+                self._take_better(tree, costs)
         return self._shared(costs, shared)
 
     def _search_among(

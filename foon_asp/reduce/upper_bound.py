@@ -88,8 +88,8 @@ def varied(
     Some of the actions of a tree cost nothing, any number of them, and each other one costs half as much more
     or less than it does; half of the times, only some of the others are there, which takes less time. A tree
     that costs the same is the next to start from. Each other time, of all actions the ``shares`` that a
-    relaxed solution takes cost nothing instead. Each action may be looked at
-    ``tries`` times after the last better tree.
+    relaxed solution takes cost nothing instead. Each action may be looked at ``tries`` times after the last
+    better tree.
     """
     best = last = tree
     total = sum(map(cost, tree))
