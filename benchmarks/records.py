@@ -299,7 +299,7 @@ def main() -> int:
         there = {row["engine"] for row in found if (row["instance"], row["limit"]) == (instance.name, limit)}
         engines = [OURS, *(() if options.quick else OPPONENTS[instance.kind])]
         engines += [GREEDY] * (instance.kind == "egraphs")
-        wanted = [e for e in options.engine or engines if e not in there]
+        wanted = [e for e in engines if e not in there and (not options.engine or e in options.engine)]
         for row in rows(instance, wanted, limit) if wanted else ():
             text = row.pop("certificate", None)
             fault = wrong(row, [other for other in found if other["instance"] == instance.name])

@@ -14,7 +14,17 @@ from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.exact_optimum import Limit
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic
-from foon_asp.bounds.lower_bound import Branch, Broken, CheaperError, Hopeless, Packing, Proof, Prover, _Node
+from foon_asp.bounds.lower_bound import (
+    Branch,
+    Broken,
+    CheaperError,
+    Dear,
+    Hopeless,
+    Packing,
+    Proof,
+    Prover,
+    _Node,
+)
 
 COUNT = Lexicographic([None])
 NOBODY: frozenset[int] = frozenset()
@@ -125,6 +135,7 @@ def hold(case: Case, proof: Proof, goal: Fraction | None, met: Counter[str]) -> 
         if isinstance(proof, Broken):
             assert not used.isdisjoint(bars[proof.rule])
             return
+        assert not isinstance(proof, Dear)  # under rules, nothing is left out as too dear
         gone = without.union(*bars.values())
         wanted = {*case.targets, *(o for a in used for o in case.graph.needs[a])}
         cuts = [proof.cut] if isinstance(proof, Hopeless) else [cut for cut, _ in proof.weights]

@@ -1,10 +1,11 @@
 """Branching over cuts: what it proves is held against brute force, whatever floats say."""
 
+import json
 import math
 import random
 from collections.abc import Callable, Collection, Iterable, Mapping
 from fractions import Fraction
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy
 import pytest
@@ -16,12 +17,12 @@ from foon_asp.bounds import branching, lower_bound
 from foon_asp.bounds.branching import Branching, TooLongError, _Place, branched
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.landmark_cuts import Cuts
-from foon_asp.bounds.lower_bound import Branch, Hopeless, Packing, Prover
+from foon_asp.bounds.lower_bound import Branch, Dear, Hopeless, Packing, Prover
 from foon_asp.bounds.lower_bound import Proof as Proved
 from foon_asp.bounds.relaxation import Covering, Relaxed
 from foon_asp.certificate import certify
-from foon_asp.problem import ContainerRule, Objective, levels
-from foon_asp.proof.verify import verify
+from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.proof.verify import RefusedError, seal, verify
 from foon_asp.reduce import ALL, NONE, SAFE, Reduction, reduce, reduction
 from tests.gap_problem import gap_problem
 from tests.random_problems import random_problem
@@ -54,16 +55,24 @@ def require_proves(
     elif isinstance(proof, Hopeless):
         assert not crossing(proof.cut.objects)
     else:
-        assert isinstance(proof, Packing)
+        packing = proof.packing if isinstance(proof, Dear) else proof
+        assert isinstance(packing, Packing)
         load = [Fraction(0)] * len(costs)
         proved = Fraction(sum(costs[a] for a in used))
-        for cut, (weight,) in proof.weights:
+        for cut, (weight,) in packing.weights:
             assert weight > 0
             proved += weight
             for action in crossing(cut.objects):
                 load[action] += weight
         assert all(carried <= (0 if a in used else costs[a]) for a, carried in enumerate(load))
-        assert math.ceil(proved) >= total
+        if isinstance(proof, Dear):
+            assert proof.actions
+            assert all(math.ceil(proved + costs[a] - load[a]) >= total for a in proof.actions)
+            others = without.union(proof.actions)
+            assert not others & used
+            require_proves(proof.others, graph, targets, costs, total, used, others)
+        else:
+            assert math.ceil(proved) >= total
 
 
 class Run:
@@ -98,6 +107,8 @@ class Run:
 
 
 def branches(proof: Proved | None) -> int:
+    if isinstance(proof, Dear):
+        return branches(proof.others)
     return 1 + branches(proof.without) + branches(proof.using) if isinstance(proof, Branch) else 0
 
 
@@ -105,6 +116,8 @@ def length(proof: Proved) -> int:
     """Give how many objects and members a proof names, and 5,000 for each set of weights."""
     if isinstance(proof, Branch):
         return length(proof.without) + length(proof.using)
+    if isinstance(proof, Dear):
+        return length(proof.packing) + length(proof.others)
     if isinstance(proof, Hopeless):
         return 0
     assert isinstance(proof, Packing)
@@ -417,6 +430,41 @@ def test_no_more_is_written_of_a_proof_when_time_is_up() -> None:
         search.proof(expired=lambda: True)
 
 
+@pytest.mark.parametrize("objective", [Objective.INPUTS, Objective.PRICE])
+def test_what_is_too_dear_is_left_out_of_certificates_by_one_set_of_weights(
+    objective: Objective, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Greedy weights leave out what they can, those of the relaxation more, and the search does the rest."""
+    monkeypatch.setattr(lower_bound, "_MANY", 0)
+    monkeypatch.setattr(lower_bound, "_WORTH", 0.0)
+    by, nested, dear, proved = (objective,), 0, 0, 0
+    for seed in range(40):
+        problem = random_problem(seed, ContainerRule.STRICT, units=24)
+        outcome = solve(problem, by, Settings(reductions=NONE))
+        if outcome.units is None:
+            continue
+        found = certify(problem, by, outcome.units)
+        assert found is not None
+        assert found.claim == "optimal"
+        proved += 1
+        content = found.content
+        verify_again(content, problem)
+        proof = content["proof"]
+        dear += "dear" in proof
+        nested += json.dumps(proof).count('"dear"') > 1
+        if "dear" in proof:
+            with pytest.raises(RefusedError):
+                verify_again({**content, "proof": {**proof, "others": {"weights": []}}}, problem)
+    assert proved > 20
+    assert dear > 5
+    assert nested > 0
+
+
+def verify_again(content: dict[str, Any], problem: Problem) -> None:
+    sealed = {**content, "seal": seal(content)}
+    verify(*(sealed, problem.network, problem.kitchen, problem.rates, problem.utensils), problem.unit_prices)
+
+
 @pytest.mark.parametrize("seed", range(30))
 def test_certificates_of_many_actions_branch_as_the_search_does(
     seed: int, monkeypatch: pytest.MonkeyPatch
@@ -424,7 +472,7 @@ def test_certificates_of_many_actions_branch_as_the_search_does(
     """Nothing but the search is able to branch here."""
     monkeypatch.setattr(lower_bound, "_MANY", 0)
     monkeypatch.setattr(Prover, "_branch", lambda *_: pytest.fail("the search was not tried"))
-    monkeypatch.setattr(lower_bound, "share_costs", lambda *_: None)
+    monkeypatch.setattr(lower_bound, "share_costs", lambda *_, often: None)
     problem = gap_problem(0, 7, 1.0) if seed == 0 else random_problem(seed, ContainerRule.STRICT, units=20)
     by = levels((Objective.UNITS,))
     outcome = solve(problem, by, Settings(reductions=NONE))

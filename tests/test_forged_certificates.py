@@ -369,6 +369,13 @@ FORGED: dict[str, Forged] = {
             "using": {"weights": []},
         }
     ),
+    "_prove: expected a proof for what is without the dear": plain(
+        proof={"dear": [{"unit": 1}], **LEAF}, stays=KIND
+    ),
+    "_dear: nothing is too dear": plain(proof={"dear": [], **LEAF, "others": LEAF}),
+    "_dear: what is dear is decided twice": plain(
+        proof={"dear": [{"unit": 1}, {"unit": 1}], **LEAF, "others": LEAF}
+    ),
     # the two ends cost 2; with a weight below zero on the cut that both units cross they seem to cost 3
     "_rounded: a multiple is stated for another objective": plain(
         proof={**LEAF, "multiples": {"inputs": "1"}}
@@ -615,12 +622,15 @@ class Part(NamedTuple):
 
 BRANCH = {"branch": {"unit": 0}, "without": {"weights": [[0, ["1"]], [1, ["1"]]]}, "using": LEAF}
 CUTS = [[END], sorted([END, MIDDLE])]
+# Without what is poured, the end costs 2; what is mixed costs 1 more than the end.
+DEAR = {"dear": [{"unit": 1}], **LEAF, "others": BRANCH["without"]}
+TWO: dict[str, Any] = {"claim": "bound", "tree": None, "costs": None, "bound": ["2"]}
 
 PARTS = {
     # the end costs 1; it seems to cost 2 where the unit that is used, and paid for, carries a weight as well
     "a unit that is used was paid for": Part(
-        "allowed = {} if member in used else self._cost(member)",
-        "allowed = self._cost(member)",
+        "most = {} if member in used else self._cost(member)",
+        "most = self._cost(member)",
         plain(tree=[1, 2], costs=[2], cuts=CUTS, proof=BRANCH),
     ),
     "a goal at hand needs nothing": Part(
@@ -657,14 +667,36 @@ PARTS = {
         "return self.members[place] - without - used",
         plain(tree=[1, 2], costs=[2], cuts=CUTS, proof=BRANCH),
     ),
+    "what is dear costs what its cuts do not carry": Part(
+        "for rest in [{}] if dear is None else map(left, dear)",
+        "for rest in [{}] if dear is None else map(self._cost, dear)",
+        plain(tree=[1, 2], costs=[2], cuts=CUTS, proof={**DEAR, "dear": [{"unit": 0}]}),
+    ),
+    "each of what is dear is": Part(
+        "map(left, dear)",
+        "map(left, dear[:1])",
+        plain(
+            **TWO, cuts=CUTS, proof={**DEAR, "dear": [{"unit": 1}, {"unit": 0}], "others": {"hopeless": 1}}
+        ),
+    ),
+    "the others are proved, too": Part(
+        'waiting.append((node["others"], used, without.union(dear)))',
+        "pass",
+        plain(**TWO, proof={**DEAR, "others": {"weights": []}}),
+    ),
+    "nothing was left out as too dear before version 5": Part(
+        ' and self.certificate["version"] >= _WITH_DEAR',
+        "",
+        plain(version=4, proof={**DEAR, "others": LEAF}),
+    ),
     "a unit is used once": Part(
         "members = [*units, *(",
         "members = [*units[:1], *(",
         plain(tree=[1, 2], costs=[1]),
     ),
     "the costs of used units count once": Part(
-        "*map(self._cost, used)]",
-        "*map(self._cost, [*used, *used])]",
+        "map(self._cost, used)",
+        "map(self._cost, [*used, *used])",
         plain(tree=[1, 2], costs=[2], cuts=CUTS, proof={**BRANCH, "using": {"weights": []}}),
     ),
     # of the end, the step and what it needs, the step's cost is none and it can carry nothing
@@ -715,8 +747,8 @@ PARTS = {
         ),
     ),
     "where nothing is to be bounded, a bound is above nothing": Part(
-        "self._sign(bound) > 0",
-        "self._sign(bound) >= 0",
+        "self._sign(self._sum(bound)) > 0",
+        "self._sign(self._sum(bound)) >= 0",
         plain(**NO_TREE, **NOTHING),
     ),
     "what a rule removes is no member": Part(
@@ -726,8 +758,8 @@ PARTS = {
     ),
     # baking on what is mixed is right where something is mixed
     "what a rule bars is told from the branch": Part(
-        "without = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))",
-        "without = without.union(*(self._barred(p, used, frozenset({1})) for p in self.ruled.barred))",
+        "barred = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))",
+        "barred = without.union(*(self._barred(p, used, frozenset({1})) for p in self.ruled.barred))",
         plain(
             **NO_TREE,
             rules=[{"rule": "before", "earlier_motion": "mix", "later_motion": "bake"}, *forbid(["pour"])],

@@ -404,11 +404,11 @@ NO_ID = "expected ids of the network"
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"version": 0}, "expected version 4 of the format"),
-        ({"version": 5}, "expected version 4 of the format"),
-        ({"version": True}, "expected version 4 of the format"),
-        ({"version": 2.0}, "expected version 4 of the format"),
-        ({"version": "2"}, "expected version 4 of the format"),
+        ({"version": 0}, "expected version 5 of the format"),
+        ({"version": 6}, "expected version 5 of the format"),
+        ({"version": True}, "expected version 5 of the format"),
+        ({"version": 2.0}, "expected version 5 of the format"),
+        ({"version": "2"}, "expected version 5 of the format"),
         ({"level": 2}, "not a claim about level 3"),
         ({"level": 3.0}, "not a claim about level 3"),
         ({"level": None}, "not a claim about level 3"),
@@ -770,11 +770,11 @@ def test_steps_of_branches(monkeypatch: pytest.MonkeyPatch) -> None:
     root = 1 + 0 + 1  # a look, those used, those left out
     using = 1 + 1 + 1
     without_bake = (1 + 1 + 2) + (1 + 1 + 1 + 2)  # a cut's number, its goal, those used, its members
-    using_bake = (1 + 2 + 1) + 5 + (1 + 1 + 2 + 1) + 5 + 15 + 10  # what is used is paid for twice
+    using_bake = (1 + 2 + 1) + 5 + (1 + 1 + 2 + 1) + 5 + 15 + 15  # what is used is paid for twice
     with_dig = using + without_bake + using_bake
     without = 1 + 0 + 2
     without_bake = (1 + 0 + 3) + (1 + 1 + 0 + 2)
-    using_bake = (1 + 1 + 2) + 5 + (1 + 1 + 1 + 1) + 5 + 10 + 10
+    using_bake = (1 + 1 + 2) + 5 + (1 + 1 + 1 + 1) + 5 + 10 + 15
     without_dig = without + without_bake + using_bake
     steps(monkeypatch, rule + cuts + root + with_dig + without_dig, PLAIN, **values)
 

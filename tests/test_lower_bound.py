@@ -18,6 +18,7 @@ from foon_asp.bounds.lower_bound import (
     Branch,
     Broken,
     CheaperError,
+    Dear,
     Hopeless,
     Packing,
     Proof,
@@ -25,6 +26,7 @@ from foon_asp.bounds.lower_bound import (
     _Node,
 )
 from foon_asp.bounds.relaxation import Covering, Relaxed
+from foon_asp.bounds.shared_costs import share_costs
 from foon_asp.errors import BugError
 
 COUNT = Lexicographic([None])
@@ -65,6 +67,10 @@ def check(
 ) -> Fraction | None:
     """Recompute what a proof proves: the least of its leaves, ``None`` where there is no derivation."""
 
+    def left(packing: Packing, action: int) -> Fraction:
+        load = sum((weight for cut, (weight,) in packing.weights if action in cut.members), Fraction(0))
+        return costs[action][0] - load
+
     def bound(proof: Proof, used: frozenset[int], without: frozenset[int]) -> Fraction | None:
         if isinstance(proof, Branch):
             sides = (
@@ -73,6 +79,13 @@ def check(
             )
             return min((side for side in sides if side is not None), default=None)
         assert not isinstance(proof, Broken)  # there are no rules
+        if isinstance(proof, Dear):
+            others = bound(proof.others, used, without.union(proof.actions))
+            least = bound(proof.packing, used, without)
+            assert least is not None
+            assert not used.intersection(proof.actions)
+            dear = [least + left(proof.packing, action) for action in proof.actions]
+            return min(dear if others is None else [*dear, others])
         wanted = {*targets, *(o for a in used for o in graph.needs[a])}
         cuts = [proof.cut] if isinstance(proof, Hopeless) else [cut for cut, _ in proof.weights]
         for cut in cuts:
@@ -82,8 +95,8 @@ def check(
             return None
         assert isinstance(proof, Packing)
         for action, (cost,) in enumerate(costs):
-            load = sum((weight for cut, (weight,) in proof.weights if action in cut.members), Fraction(0))
-            assert load <= (0 if action in used else cost) or action in without
+            more = cost if action in used else Fraction(0)
+            assert left(proof, action) >= more or action in without
         return sum((w for _, (w,) in proof.weights), Fraction(0)) + sum(
             (costs[a][0] for a in used), Fraction(0)
         )
@@ -441,9 +454,22 @@ def test_of_many_actions_rounded_weights_of_floats_come_before_exact_ones(
         Prover(graph, [1, 2, 3], each, COUNT, multiples=[Fraction(step)]).prove([0, 1])
 
 
-def test_rounded_weights_prove_each_of_the_cases_that_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("worth", "kind"), [(1.0, Branch), (0.0, Dear)])
+def test_rounded_weights_prove_each_of_the_cases_that_are_told_apart(
+    worth: float, kind: type, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(lower_bound, "_MANY", 0)
-    branched = 0
+    monkeypatch.setattr(lower_bound, "_WORTH", worth)
+
+    share: Any = share_costs
+
+    def with_some_decided(*asked: Any, often: int) -> object:
+        """At first, where all actions are there, the weights would be enough."""
+        at_first = len(asked[2]) == len(asked[0].needs)
+        return None if kind is Branch and at_first else share(*asked, often=often)
+
+    monkeypatch.setattr(lower_bound, "share_costs", with_some_decided)
+    met = 0
     for seed in range(12):
         chance = random.Random(seed)
         sets = [chance.sample(range(7), 2) for _ in range(9)]
@@ -460,8 +486,8 @@ def test_rounded_weights_prove_each_of_the_cases_that_are_told_apart(monkeypatch
             proved = check(graph, targets, prices, proof)
             assert proved is not None
             assert math.ceil(proved) == len(best)
-            branched += isinstance(proof, Branch)
-    assert branched > 8
+            met += isinstance(proof, kind)
+    assert met > 8
 
 
 def test_known_cuts_before_no_target_are_not_weighed() -> None:

@@ -271,7 +271,7 @@ def test_where_no_tree_is_nothing_is_left() -> None:
             met += 1
             for reductions in (ALL, NONE):
                 found = reduce(problem, (Objective.UNITS,), reductions)
-                assert found == (None, (), False, None, 0, None, False, None, None, None)
+                assert found == (None, (), False, None, 0, None, False, None, None, None, ())
     assert met > 2
 
 

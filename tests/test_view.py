@@ -13,7 +13,9 @@ import pytest
 
 import foon_asp
 from foon_asp import UserError
+from foon_asp.network import ObjectNode
 from foon_asp.report.page import WEB, Page
+from foon_asp.report.proof_cases import proof_json
 from foon_asp.search import find_searches
 from tests.conftest import CORPUS, Cli, valid
 
@@ -148,6 +150,28 @@ def test_without_a_tree_the_page_says_why() -> None:
     assert shown["shopping_list"]["lists"] == foon_asp.shopping_list(problem).json()["lists"]
     (case,) = shown["proof"]["cases"]
     assert (case["ends"], case["cuts"][0]["weight"], case["cuts"][0]["members"]) == ("hopeless", None, [])
+
+
+def test_what_is_too_dear_is_a_case_and_left_out_of_those_after_it() -> None:
+    units = [("pour", "start", "end"), ("mix", "start", "middle"), ("bake", "middle", "end")]
+    problem = foon_asp.build(units, kitchen="start", goals="end").problem()
+    end, middle = (problem.network.objects.index(ObjectNode.of(label)) for label in ("end", "middle"))
+    certificate = foon_asp.certify(problem).certificate
+    assert certificate is not None
+    dear = {"dear": [{"unit": 1}], "weights": [[0, ["1"]]], "others": {"hopeless": 1}}
+    proof = {"branch": {"unit": 0}, "without": dear, "using": {"weights": []}}
+    content = {**certificate.content, "cuts": [[end], sorted([end, middle])], "proof": proof}
+    using, first, others = proof_json(problem, content)["cases"]
+    left_out = {"kind": "unit", "id": 0, "taken": False}
+    assert (using["dear"], using["given"], using["paid"]) == ([], [{**left_out, "taken": True}], 1.0)
+    assert (first["dear"], first["given"], first["ends"]) == (
+        [{"kind": "unit", "id": 1}],
+        [left_out],
+        "weights",
+    )
+    assert first["cuts"] == [{"nodes": [end], "weight": 1.0, "members": [2]}]
+    assert (others["dear"], others["given"]) == ([], [left_out, {"kind": "unit", "id": 1, "taken": False}])
+    assert (others["ends"], others["cuts"][0]["members"]) == ("hopeless", [])
 
 
 @pytest.mark.parametrize(

@@ -763,9 +763,9 @@ class _Solver:
 
 
 def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
-    """Give the cuts of the best bound, and those that were found before anything was left out.
+    """Give the cuts of the best bound, those that were found before anything was left out, and those between.
 
-    What was left out may cross many of the first; of the others, all units count.
+    What was left out may cross many of the first; of the second, all units count.
     """
     if reduced is None:
         return []
@@ -773,4 +773,4 @@ def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
     if reduced.shared:
         best = [objects for objects, _ in reduced.shared.cuts]
     first = [cut.objects for cut in reduced.wide.cuts.cuts] if reduced.wide else []
-    return [*dict.fromkeys([*best, *first])]
+    return [*dict.fromkeys([*best, *first, *reduced.tight])]

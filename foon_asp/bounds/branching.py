@@ -10,7 +10,7 @@ no action carries more than it costs, or by a cut that nothing crosses. What HiG
 import math
 import random
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
 from typing import Any
@@ -18,7 +18,7 @@ from typing import Any
 from foon_asp.bounds.cut import Cut, Cutter
 from foon_asp.bounds.first_achievers import FirstAchievers
 from foon_asp.bounds.hypergraph import Hypergraph
-from foon_asp.bounds.lower_bound import Branch, Cases, Hopeless, Packing, Proof
+from foon_asp.bounds.lower_bound import Branch, Cases, Dear, Hopeless, Packing, Proof
 from foon_asp.bounds.missed_cuts import missed_cuts
 from foon_asp.bounds.relaxation import Covering, UnsolvedError
 from foon_asp.bounds.shared_costs import PARTS, in_parts, renumbered, shared_out, stalled
@@ -315,12 +315,11 @@ class Branching:
         proof = Branch(self._actions[place.action], proof, using)
         barred = (barred - {place.action}) | barred_too
         dear = sorted(barred & place.dear)
-        barred -= place.dear
-        for action in dear:
-            packing, overloaded = self._packing(replace(place, used=place.used | {action}))
-            proof = Branch(self._actions[action], proof, packing)
-            barred |= overloaded
-        return proof, barred
+        if not dear:
+            return proof, barred
+        packing, overloaded = self._packing(place)
+        proof = Dear(tuple(self._actions[a] for a in dear), packing, proof)
+        return proof, (barred - place.dear) | overloaded
 
     def _packing(self, place: _Place) -> tuple[Packing, set[int]]:
         weights: list[tuple[Cut, tuple[Fraction]]] = []

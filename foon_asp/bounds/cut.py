@@ -101,6 +101,11 @@ class Cutter:
         first = next(o for o in self.targets if not reached[o])
         return self._shrink(first, refused, reached, takers)
 
+    def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
+        """Give those of some actions that are not forbidden; ``None`` where one is not in :attr:`actions`."""
+        left = tuple(a for a in actions if a not in self._forbidden)
+        return left if self._places.keys() >= set(left) else None
+
     def widened(self, objects: Iterable[int]) -> Cut:
         """Give the cut of some objects before the targets, with more where that keeps its landmark small.
 

@@ -44,6 +44,11 @@ class Hypergraph:
         at_start = self.at_start
         return [sum(not at_start[o] for o in set(needed)) for needed in self.needs]
 
+    def crossing(self, objects: frozenset[int]) -> tuple[int, ...]:
+        """Give the actions that give one of some objects and need none of them, ascending."""
+        makers, needs = self.makers, self.needs
+        return tuple(sorted({a for o in objects for a in makers[o] if objects.isdisjoint(needs[a])}))
+
     def _owners(self, lists: Sequence[Sequence[int]]) -> list[list[int]]:
         owners: list[list[int]] = [[] for _ in range(self.size)]
         for action, members in enumerate(lists):

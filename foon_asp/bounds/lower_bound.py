@@ -11,9 +11,9 @@ of it may carry more weight, and what all that there is carries is taken from th
 
 import math
 import random
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache, cmp_to_key
+from functools import cache, cmp_to_key, partial
 from operator import mul
 from typing import NamedTuple, Protocol
 
@@ -22,7 +22,7 @@ from foon_asp.bounds.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.bounds.hypergraph import Hypergraph
 from foon_asp.bounds.lexicographic import Lexicographic, Vector, minus, times
 from foon_asp.bounds.relaxation import Covering
-from foon_asp.bounds.shared_costs import PARTS, share_costs
+from foon_asp.bounds.shared_costs import PARTS, SharedCosts, share_costs
 
 _HIT = 0.999999  # a landmark of a greater share is taken to be hit
 _STEP = 0.99  # of what costs are multiples of: bounds are rounded up
@@ -30,6 +30,8 @@ _BESIDE = 40  # cuts that are grown beside each other for one solution
 _ORDERS = 3  # in how many orders cuts are grown before the relaxation counts as the best there is
 _FINER = 1e-4  # how much less a level counts than the one before, in floats
 _MANY = 1000  # actions from which on rounded weights are looked for before exact ones
+_GREEDY = 200  # known cuts that get weights one after the other; all others only with all at once
+_WORTH = 0.5  # of the actions: so many that are too dear are left out before anything else
 
 _DEAR = 1000  # times what is to be proved: what it costs a relaxed solution to go beyond a limit
 
@@ -66,10 +68,21 @@ class Branch(NamedTuple):
     using: "Proof"
 
 
-Proof = Packing | Hopeless | Broken | Branch
+class Dear(NamedTuple):
+    """Weights by which a derivation with any of some actions costs too much, and a proof for all others."""
+
+    actions: tuple[int, ...]
+    packing: Packing
+    others: "Proof"
+
+
+Proof = Packing | Hopeless | Broken | Branch | Dear
 # An action, and the cases without it and with it, told apart further.
 Cases = tuple[int, "Cases", "Cases"] | None
 
+
+# Proves the same of derivations with none of some actions, with some cuts to begin with.
+Others = Callable[[frozenset[int], Collection[frozenset[int]]], Proof]
 
 # Looks for a proof that no derivation of targets by some actions costs less than a total, all costs being
 # whole, with cuts to begin with, until it is expired. Weights are to be rounded up.
@@ -141,6 +154,7 @@ class Prover:
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(0)
+        self._members = cache(graph.crossing)
         floats = [order.approximate(cost) for cost in set(costs)]
         scale, self._scales = 1.0, list[float]()
         for level, rates in enumerate(order.levels):
@@ -163,7 +177,7 @@ class Prover:
         actions = frozenset(derivation)
         try:
             goal, nothing = self._total(actions), frozenset[int]()
-            return self._prove(actions, goal, nothing, self._forbidden, self._known, cases)
+            return self._prove(actions, goal, nothing, self._forbidden, self._known, cases, first=True)
         except _TimeUpError:
             return None
 
@@ -201,10 +215,12 @@ class Prover:
         forbidden: frozenset[int],
         known: Collection[frozenset[int]] = (),
         cases: Cases = None,
+        first: bool = False,
     ) -> Proof:
         """Prove that derivations with the used actions and none of the forbidden cost at least ``goal``.
 
         ``None`` as the goal is more than any costs: there is none. Cuts that are ``known`` are tried first.
+        ``first`` is where nothing is told apart so far, but for what is too dear.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
         bars = self._bars(used, forbidden)
@@ -220,8 +236,14 @@ class Prover:
             cases = cases[2] if cases[0] in used else cases[1]
         widened: Sequence[Cut] = ()
         if left is not None:
-            first = not used and forbidden == self._forbidden
-            found, widened = self._packed(cutter, used, left, known, cases is not None, first)
+
+            def others(dear: frozenset[int], known: Collection[frozenset[int]]) -> Proof:
+                return self._prove(derivation, goal, used, forbidden | dear, known, cases, first)
+
+            many = len(cutter.actions) > _MANY or (first and forbidden != self._forbidden)
+            step = self._step() if many else Fraction(0)
+            alone = cases is not None and not first
+            found, widened = self._packed(cutter, used, left, known, others, step, alone, first)
             if found is not None:
                 return found
         if cases is not None:
@@ -297,50 +319,101 @@ class Prover:
         cutter: Cutter,
         used: frozenset[int],
         goal: Vector,
-        known: Iterable[Iterable[int]],
+        known: Collection[frozenset[int]],
+        others: Others,
+        step: Fraction,
         alone: bool,
         first: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
-        """Give weights that add up to ``goal``, if they are found without exact arithmetic, and all cuts.
+        """Give a proof of ``goal``, if one is found without exact arithmetic, and all cuts.
 
-        Those of the ``known`` cuts are tried first, and ``alone`` that is all. Where nothing is decided so
-        far, which is the ``first`` of all, the search comes next. Of many actions, and where all costs are
-        one number and multiples of one, so that bounds are rounded up, the weights of a relaxed solution in
-        floats are rounded.
+        The weights of the ``known`` cuts are tried first. Where many actions cost multiples of a ``step``,
+        what is too dear by them is left out, if it is worth it, with a proof for ``others``. The same is done
+        with the weights of a relaxed solution in floats, rounded, if not ``alone``. The search comes last,
+        where nothing is told apart so far.
         """
         targets = set(cutter.targets)
-        cuts = [cutter.widened(cut) for cut in known if not targets.isdisjoint(cut)]
+        known = [cut for cut in known if not targets.isdisjoint(cut)]
+        cuts = [self._widened(cutter, cut) for cut in known[:_GREEDY]]
         cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
-        packing = self._share_out((cut, None) for cut in cuts)
-        step = self._step(cutter)
+        packing, rests = self._share_out((cut, None) for cut in cuts)
         if self._reaches(packing, goal):
             return packing, cuts
-        searched = self._searched(cutter, goal, cuts) if first and not alone else None
-        if searched is not None or alone or not step:
-            return searched, cuts
+        found = self._narrowed(cutter, used, goal, packing, rests, others, known, step)
+        if found is not None or alone or not step:
+            return found, cuts
 
         def steps(action: int) -> int:
             return 0 if action in used else int(self._costs[action][0] / step)
 
         enough = math.ceil(goal[0] / step)
-        known = [cut.objects for cut in cuts]
-        shared = share_costs(self._graph, targets, cutter.actions, steps, known, enough, self._expired)
-        found = (
-            [(cutter.widened(cut), (weight * step / PARTS,)) for cut, weight in shared.cuts] if shared else []
-        )
-        found = [(cut, weight) for cut, weight in found if used.isdisjoint(cut.members)]
-        packing = self._share_out(found)
-        return packing if self._reaches(packing, goal) else None, [*cuts, *(cut for cut, _ in found)]
 
-    def _step(self, cutter: Cutter) -> Fraction:
-        """Give what all costs are multiples of, where they are one number each, of many actions; else 0."""
+        def heard(shared: SharedCosts) -> int:
+            spare = (enough - 1) * PARTS - shared.bound
+            dear = sum(rest > spare for rest in shared.left.values())
+            return 0 if dear > _WORTH * len(cutter.actions) else enough
+
+        shared = share_costs(
+            *(self._graph, targets, cutter.actions, steps, known, enough, self._expired, heard),
+            often=1,
+        )
+        if shared is not None:
+            told = [(self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts]
+            told = [(cut, weight) for cut, weight in told if used.isdisjoint(cut.members)]
+            packing, rests = self._share_out(told)
+            if self._reaches(packing, goal):
+                return packing, cuts
+            found = self._narrowed(cutter, used, goal, packing, rests, others, shared.tight, step)
+            if found is not None:
+                return found, cuts
+            cuts += [cut for cut, _ in told]
+        return self._searched(cutter, goal, cuts, step) if first else None, cuts
+
+    def _step(self) -> Fraction:
+        """Give what all costs are multiples of, where they are one number each; else 0."""
         told = self._limits or self._rules is not None
         one = len(self._multiples) == 1 == len(self._order.zero)
-        return self._multiples[0] if one and not told and len(cutter.actions) > _MANY else Fraction(0)
+        return self._multiples[0] if one and not told else Fraction(0)
 
-    def _searched(self, cutter: Cutter, goal: Vector, known: Sequence[Cut]) -> Proof | None:
+    def _narrowed(
+        self,
+        cutter: Cutter,
+        used: frozenset[int],
+        goal: Vector,
+        packing: Packing,
+        rests: Mapping[int, Vector],
+        others: Others,
+        known: Collection[frozenset[int]],
+        step: Fraction,
+    ) -> Proof | None:
+        """Leave out what is too dear by weights that leave ``rests`` of costs, where it is a good part.
+
+        A derivation with an action costs at least what the weights add up to and what they leave of it.
+        """
+        if not step:
+            return None
+        spare = (math.ceil(goal[0] / step) - 1) * step - sum(weight[0] for _, weight in packing.weights)
+        costs = ((a, rests.get(a, self._costs[a])[0]) for a in cutter.actions if a not in used)
+        dear = frozenset(a for a, rest in costs if rest > spare)
+        if len(dear) <= _WORTH * len(cutter.actions):
+            return None
+        proof = others(dear, known)
+        needed = dear.intersection(self._crossing(proof))
+        return Dear(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
+
+    def _crossing(self, proof: Proof) -> Iterator[int]:
+        """Give the actions that cross cuts of a proof, those that are left out somewhere with them."""
+        for objects in {cut.objects for cut in _cuts(proof)}:
+            yield from self._members(frozenset(objects))
+
+    def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
+        """Give a cut with more objects, if any action crosses it that cannot run."""
+        inside = frozenset(o for o in objects if not self._graph.at_start[o])
+        members = cutter.among(self._members(inside))
+        return cutter.widened(inside) if members is None else Cut(tuple(sorted(inside)), members)
+
+    def _searched(self, cutter: Cutter, goal: Vector, known: Sequence[Cut], step: Fraction) -> Proof | None:
         """Let the search find a proof, and state it with cuts that hold for all actions."""
-        step = self._step(cutter)
         if self._search is None or not step:
             return None
         found = self._search(
@@ -349,22 +422,30 @@ class Prover:
             *(math.ceil(goal[0] / step), self._expired),
         )
 
-        widened = cache(cutter.widened)
+        widened = cache(partial(self._widened, cutter))
+
+        def packed(packing: Packing) -> Packing:
+            weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
+            _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+            return Packing(tuple(weights), rounded=rounded)
 
         def stated(proof: Proof) -> Proof:
             if isinstance(proof, Branch):
                 return Branch(proof.action, stated(proof.without), stated(proof.using))
             if isinstance(proof, Hopeless):
                 return Hopeless(widened(proof.cut.objects))
+            if isinstance(proof, Dear):
+                return Dear(proof.actions, packed(proof.packing)._replace(rounded=0), stated(proof.others))
             assert isinstance(proof, Packing)
-            weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in proof.weights]
-            _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
-            return Packing(tuple(weights), rounded=rounded)
+            return packed(proof)
 
         return None if found is None else stated(found)
 
-    def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> Packing:
-        """Give each cut in turn the weight that its members have left of their costs, or at most another."""
+    def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
+        """Give each cut in turn the weight that its members have left of their costs, or at most another.
+
+        Also give what is left of the costs of all members.
+        """
         left: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []
         for cut, most in cuts:
@@ -375,7 +456,7 @@ class Prover:
                 weights.append((cut, weight))
                 left.update((a, minus(rest, weight)) for a, rest in rests.items())
         _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
-        return Packing(tuple(weights), rounded=rounded)
+        return Packing(tuple(weights), rounded=rounded), left
 
     def _reaches(self, packing: Packing, goal: Vector) -> bool:
         """Whether weights add up to a goal, rounded up."""
@@ -384,6 +465,21 @@ class Prover:
 
     def _total(self, actions: Iterable[int]) -> Vector:
         return self._order.total(self._costs[a] for a in actions)
+
+
+def _cuts(proof: Proof) -> Iterator[Cut]:
+    """Give the cuts of a proof."""
+    waiting = [proof]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Branch):
+            waiting += [part.without, part.using]
+        elif isinstance(part, Dear):
+            waiting += [part.packing, part.others]
+        elif isinstance(part, Hopeless):
+            yield part.cut
+        elif isinstance(part, Packing):
+            yield from (cut for cut, _ in part.weights)
 
 
 class _Node:

@@ -54,15 +54,16 @@ def share_costs(
     enough: int,
     expired: Callable[[], bool],
     heard: Callable[[SharedCosts], int] | None = None,
+    often: int = _OFTEN,
 ) -> SharedCosts | None:
     """Find cuts before the targets, and the weights of the greatest sum that the costs allow.
 
     All of the actions can run, and those that cost nothing are taken as a whole. ``known`` are the objects of
-    cuts to begin with. A bound of ``enough`` is good enough. What is known is ``heard``
-    of now and then, which gives what is enough from then on, and nothing to end. ``None`` where nothing can
+    cuts to begin with. A bound of ``enough`` is good enough. What is known is ``heard`` of ``often``, once in
+    so many solutions, which gives what is enough from then on, and nothing to end. ``None`` where nothing can
     be shared out.
     """
-    return _Sharing(graph, targets, actions, cost, expired).share(known, enough, expired, heard)
+    return _Sharing(graph, targets, actions, cost, expired).share(known, enough, expired, heard, often)
 
 
 def renumbered(
@@ -145,6 +146,7 @@ class _Sharing:
         enough: int,
         expired: Callable[[], bool],
         heard: Callable[[SharedCosts], int] | None,
+        often: int,
     ) -> SharedCosts | None:
         if self._cutter.hopeless or not self._cutter.targets:
             return None
@@ -161,13 +163,17 @@ class _Sharing:
             values.append(found.value)
             above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
             lacks = above / (100 * self._dearest) - found.value
-            if lacks <= 0 or stalled(values, lacks) or not self._separate(found.x, expired):
+            ends = lacks <= 0 or stalled(values, lacks)
+            if ends or not self._separate(found.x, expired):
+                if self._inside and not ends:
+                    self._inside = False
+                    continue
                 shared = self._shared(found)
                 lost = Fraction(found.value) * self._dearest - Fraction(shared.bound, PARTS)
                 if not self._inside or lost < _LOST:
                     return shared
                 self._inside = False
-            elif heard is not None and len(values) % _OFTEN == 0:
+            elif heard is not None and len(values) % often == 0:
                 shared = self._shared(found)
                 enough = heard(shared)
                 if not enough:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from foon_asp.bounds.branching import branched
 from foon_asp.bounds.cut import Cut
 from foon_asp.bounds.lexicographic import Vector
-from foon_asp.bounds.lower_bound import Broken, Cases, CheaperError, Hopeless, Packing, Proof, Prover
+from foon_asp.bounds.lower_bound import Broken, Cases, CheaperError, Dear, Hopeless, Packing, Proof, Prover
 from foon_asp.certificate.arrays import Arrays, written
 from foon_asp.certificate.coverage import NOTHING, Coverage, needed
 from foon_asp.errors import BugError
@@ -165,20 +165,26 @@ def _write(
         place = places[row]
         return len(covered.rules) + of_own.setdefault(place, len(of_own)) if place in own else place
 
+    def packed(packing: Packing) -> dict[str, object]:
+        weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in packing.weights)
+        limits = sorted((limit(row), arrays.stated(weight)) for row, weight in packing.limits)
+        found: dict[str, object] = {"weights": [list(pair) for pair in weights]}
+        if limits:
+            found["limits"] = [list(pair) for pair in limits]
+        if packing.rounded is not None:
+            found["multiples"] = arrays.multiple(packing.rounded)
+        return found
+
     def stated(proof: Proof) -> dict[str, object]:
         if isinstance(proof, Hopeless):
             return {"hopeless": number(proof.cut)}
         if isinstance(proof, Packing):
-            weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in proof.weights)
-            limits = sorted((limit(row), arrays.stated(weight)) for row, weight in proof.limits)
-            packed: dict[str, object] = {"weights": [list(pair) for pair in weights]}
-            if limits:
-                packed["limits"] = [list(pair) for pair in limits]
-            if proof.rounded is not None:
-                packed["multiples"] = arrays.multiple(proof.rounded)
-            return packed
+            return packed(proof)
         if isinstance(proof, Broken):
             return {"broken": proof.rule}
+        if isinstance(proof, Dear):
+            dear = [arrays.member(action) for action in proof.actions]
+            return {"dear": dear, **packed(proof.packing), "others": stated(proof.others)}
         return {
             "branch": arrays.member(proof.action),
             "without": stated(proof.without),

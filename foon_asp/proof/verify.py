@@ -32,9 +32,10 @@ from foon_asp.proof.constraint import LIBRARY, OWN, Meaning, Question, Rule, loo
 from foon_asp.proof.ruled import Ruled
 
 FORMAT = "foon-asp certificate"
-VERSION = 4
+VERSION = 5
 _WITH_PRICES = 3  # the first version with a digest of them
 _WITH_RULES = 4  # the first version with more rules than motions and objects that are forbidden
+_WITH_DEAR = 5  # the first version whose proofs leave out what is too dear
 _NOTHING = "nothing"  # what a tree that is not there is measured by
 OBJECTIVES = ("units", "inputs", "inputs+ingredients", "success", "kitchen", "attempts", "price")
 
@@ -531,29 +532,48 @@ class Check:
                 broken = never or (barring and not used.isdisjoint(self._barred(place, used, without)))
                 require(broken, "a rule called broken is kept")
                 continue
-            without = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))
+            barred = without.union(*(self._barred(place, used, without) for place in self.ruled.barred))
             if keys == {"hopeless"}:
-                crossing = self._crossing(node["hopeless"], used, without)
+                crossing = self._crossing(node["hopeless"], used, barred)
                 require(not crossing, "a cut called hopeless is crossed")
                 continue
+            dear: list[int] | None = None
+            if "dear" in keys and self.certificate["version"] >= _WITH_DEAR:
+                dear = self._dear(node["dear"], used | without)
+                require("others" in keys, "expected a proof for what is without the dear")
+                waiting.append((node["others"], used, without.union(dear)))
+                keys -= {"dear", "others"}
             require(
                 {"weights"} <= keys <= {"weights", "limits", "multiples"},
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
-            packed = self._packed(node["weights"], node.get("limits", []), used, without)
-            packed = self._rounded(packed, node.get("multiples", {}))
-            bound = self._sum([packed, *map(self._cost, used)])
-            if least is None:
-                enough = self._sign(bound) > 0
-            else:
-                enough = self._sign(self._sum([bound, negative(least)])) >= 0
-            require(enough, "the weights do not add up to enough")
+            packed, left = self._packed(node["weights"], node.get("limits", []), used, barred)
+            paid = self._sum(map(self._cost, used))
+            for rest in [{}] if dear is None else map(left, dear):
+                total = self._rounded(self._sum([packed, rest]), node.get("multiples", {}))
+                require(self._enough([total, paid], least), "the weights do not add up to enough")
 
-    def _packed(self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]) -> Amount:
-        """Add up the weights of cuts after checking that no member is overloaded.
+    def _dear(self, choices: Any, decided: frozenset[int]) -> list[int]:
+        """Read members that are said to be too dear for any tree that counts."""
+        dear = [self._branch(choice) for choice in read_list(choices)]
+        require(len(dear) > 0, "nothing is too dear")
+        require(decided.isdisjoint(dear) and len(set(dear)) == len(dear), "what is dear is decided twice")
+        return dear
+
+    def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
+        """Whether a bound is one on all trees that are left."""
+        if least is None:
+            return self._sign(self._sum(bound)) > 0
+        return self._sign(self._sum([*bound, negative(least)])) >= 0
+
+    def _packed(
+        self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
+    ) -> tuple[Amount, Callable[[int], Amount]]:
+        """Add up the weights of cuts after checking that no member is overloaded; give also what is left.
 
         Where something is limited, what takes of it may carry more: so much for all of it that it takes. What
-        all that is left of the limit carries is then not part of the bound.
+        all that is left of the limit carries is then not part of the bound. What is left of what a member can
+        carry is what trees with it cost more than the sum at least.
         """
         total: Amount = {}
         loads: dict[int, Amount] = {}
@@ -572,16 +592,22 @@ class Check:
             self._add(total, weight)
             for member in self._crossing(number, used, without):
                 self._add(loads.setdefault(member, {}), weight)
-        for member, load in loads.items():
+
+        def allowed(member: int) -> Amount:
             # a member that is used anyway was paid for, and can carry nothing more
-            allowed = {} if member in used else self._cost(member)
+            most = {} if member in used else self._cost(member)
             if carried and member not in used:
                 more = (self._times(w, amounts[member]) for w, amounts in carried if member in amounts)
-                allowed = self._sum([allowed, *more])
-            if allowed != load:
-                fits = self._sign(self._sum([allowed, negative(load)])) >= 0
-                require(fits, f"unit or item {member} carries more than it costs")
-        return total
+                most = self._sum([most, *more])
+            return most
+
+        def left(member: int) -> Amount:
+            return self._sum([allowed(member), negative(loads.get(member, {}))])
+
+        for member, load in loads.items():
+            if allowed(member) != load:
+                require(self._sign(left(member)) >= 0, f"unit or item {member} carries more than it costs")
+        return total, left
 
     def _rounded(self, amount: Amount, stated: Any) -> Amount:
         """Round up a bound on what units cost together, if what each costs is a multiple of what is stated.

@@ -56,7 +56,8 @@ class Reduced(NamedTuple):
     says that ctrl-C ended it, or that time was up before anything was left out: ``units`` says nothing then.
     ``wide`` tells which units trees up to a cost can have, whatever rules leave of these trees. ``shared``
     are the cuts among which costs were shared out as well as can be, where the others left too much.
-    ``cases`` are those that a proof by branching tells apart.
+    ``cases`` are those that a proof by branching tells apart. ``tight`` are cuts of all relaxed solutions by
+    which something was left out, over the units left at the time.
     """
 
     tree: frozenset[int] | None
@@ -69,6 +70,7 @@ class Reduced(NamedTuple):
     wide: Wide | None = None
     shared: "SharedCosts | None" = None
     cases: "Cases" = None
+    tight: Collection[frozenset[int]] = ()
 
 
 class Listener:
@@ -187,6 +189,7 @@ class _Reducer:
         self.wide: Wide | None = None
         self.shared: SharedCosts | None = None
         self.tight: Sequence[frozenset[int]] = ()  # cuts to share costs out among
+        self.once: dict[frozenset[int], None] = {}  # cuts that were, at any time
         self.chance = random.Random(0)
         self.cases: Cases = None
         self.brief = False  # whether cuts alone are wanted
@@ -469,6 +472,7 @@ class _Reducer:
         from foon_asp.bounds.shared_costs import PARTS  # noqa: PLC0415 (few questions need it)
 
         total = self._total(costs)
+        self.once.update(dict.fromkeys(shared.tight))
         bound = min(-(-shared.bound // PARTS), total)
         if bound > self.bound:
             self.bound, self.shared = bound, shared
@@ -560,4 +564,5 @@ class _Reducer:
             self.wide,
             self.shared,
             self.cases,
+            self.once,
         )

@@ -14,7 +14,8 @@ def proof_json(problem: Problem, content: Json) -> Json:
     """Give a certificate, its cases, and the names of the units and object nodes that these are about.
 
     A case is a part of the proof without branches: what is ``given`` in it, and the cuts that carry weight,
-    or the one that nobody crosses, each with its members. Weights and costs are those by the first objective,
+    or the one that nobody crosses, each with its members. Of what is ``dear``, a tree has one in this case;
+    in those after it, trees have none. Weights and costs are those by the first objective,
     and approximate: for products of rates, negative logarithms. Nodes that rules of the claim add are left
     out.
     """
@@ -32,10 +33,14 @@ def proof_json(problem: Problem, content: Json) -> Json:
             ]
         else:
             cases.append(_case(problem, content, part, given))
+            if "dear" in part:
+                left_out = ({**each, "taken": False} for each in cases[-1]["dear"])
+                waiting.append((part["others"], (*given, *left_out)))
     known = {o for case in cases for cut in case["cuts"] for o in cut["nodes"]}
     units = {member for case in cases for cut in case["cuts"] for member in cut["members"]}
-    units |= {each["id"] for case in cases for each in case["given"] if each["kind"] == "unit"}
-    known |= {each["id"] for case in cases for each in case["given"] if each["kind"] == "item"}
+    named = [each for case in cases for each in (*case["given"], *case["dear"])]
+    units |= {each["id"] for each in named if each["kind"] == "unit"}
+    known |= {each["id"] for each in named if each["kind"] == "item"}
     return {
         "certificate": content,
         "cost": _cost(content),
@@ -58,8 +63,12 @@ def _case(problem: Problem, content: Json, part: Json, given: tuple[Json, ...]) 
                 "members": sorted(_members(problem, cut) - left_out),
             }
         )
+    dear = [
+        {"kind": kind, "id": number} for choice in part.get("dear", ()) for kind, number in choice.items()
+    ]
+    ends = next(key for key in ("hopeless", "broken", "weights") if key in part)
     paid = _paid(problem, content, given)
-    return {"given": list(given), "ends": "/".join(sorted(part)), "paid": paid, "cuts": cuts}
+    return {"given": list(given), "dear": dear, "ends": ends, "paid": paid, "cuts": cuts}
 
 
 def _members(problem: Problem, cut: Iterable[int]) -> set[int]:

@@ -84,7 +84,7 @@ class ProofPanel {
   }
 
   go(number) {
-    const { cuts, given, paid } = this.case;
+    const { cuts, given, dear, paid } = this.case;
     this.at = Math.min(cuts.length, Math.max(1, number));
     this.slider.value = this.at;
     this.said.textContent = cuts.length ? `cut ${this.at} of ${cuts.length}` : "no cut";
@@ -103,15 +103,17 @@ class ProofPanel {
       if (paid) this.sum.append(part(paid, ""));
       for (const cut of shown) this.sum.append(part(cut.weight, ""));
       this.sum.append(part(Math.max(0, whole - sum), "open"));
-      const done = sum >= cost * (1 - 1e-9);
+      const done = sum >= cost * (1 - 1e-9) && !dear.length;
       this.total.replaceChildren(el("strong", {}, `${this.worth(sum)} of ${this.worth(cost)}`), ` ${this.by}`,
-        done ? (this.case.given.length ? ": in this case, no tree costs less." : this.conclusion(cost, whole)) : "");
+        dear.length ? `: with what a unit of this case costs beyond its cuts, no tree costs less.` : "", done ? (this.case.given.length ? ": in this case, no tree costs less." : this.conclusion(cost, whole)) : "");
       this.sum.setAttribute("aria-label", `${this.worth(sum)} of ${this.worth(cost)}`);
     } else this.sum.hidden = true;
     const cut = cuts[this.at - 1];
     const parts = [];
-    if (given.length) parts.push(el("h3", {}, "this case: every tree that"), el("ul", {}, given.map((each) => el("li", {}, each.kind === "item"
-      ? [each.taken ? "takes " : "does without ", ...this.label(each.id)] : `${each.taken ? "has" : "has not"} ${this.unit(each.id)}`))));
+    if (given.length) parts.push(el("h3", {}, "this case: every tree that"), some(given, (each) => each.kind === "item"
+      ? [each.taken ? "takes " : "does without ", ...this.label(each.id)] : `${each.taken ? "has" : "has not"} ${this.unit(each.id)}`));
+    if (dear.length) parts.push(el("h3", {}, given.length ? "and has one of these" : "this case: every tree that has one of these"),
+      some(dear, (each) => each.kind === "item" ? this.label(each.id) : this.unit(each.id)));
     if (this.case.ends === "broken") parts.push(el("p", {}, "Such a tree breaks a rule that was asked for."));
     if (cut) {
       parts.push(el("h2", {}, cut.weight === null ? "The cut that nobody crosses" : `Cut ${this.at}, weight ${this.worth(cut.weight)}`));
@@ -135,6 +137,13 @@ class ProofPanel {
     const first = [...classes].find(([, look]) => look[0] === "crossing");
     if (first) this.picture.reveal(first[0]);
   }
+}
+
+// A list of the first few.
+function some(all, words) {
+  const shown = all.slice(0, 20).map((each) => el("li", {}, words(each)));
+  if (all.length > 20) shown.push(el("li", {}, `and ${all.length - 20} more`));
+  return el("ul", {}, shown);
 }
 
 TABS.push([data.answer?.units?.length ? "The proof" : "The proof that there is none", () => Boolean(data.proof), (panel) => new ProofPanel(panel)]);
