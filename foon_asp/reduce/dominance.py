@@ -1,9 +1,11 @@
 """Actions that another one can always stand in for."""
 
 from collections import Counter
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from foon_asp.reduce.graph import Graph
+
+_FEW = 20  # actions that are looked at one by one
 
 
 def undominated(graph: Graph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
@@ -20,26 +22,57 @@ def undominated(graph: Graph, actions: Collection[int], cost: Callable[[int], in
     left = set(actions)
     takers = Counter(o for needs in needed.values() for o in needs)
     made = Counter(o for gives in given.values() for o in gives)
-    # by what they give and the need that fewest have: one that stands in for another shares that need with it
-    makers: dict[tuple[int, int | None], list[int]] = {}
-    for action in actions:
-        need = min(needed[action], key=lambda o: (takers[o], o), default=None)
-        for o in given[action]:
-            makers.setdefault((o, need), []).append(action)
-    for action in sorted(actions, key=lambda a: (cost(a), -a), reverse=True):
-        gives = given[action]
+    rare = {o: place for place, o in enumerate(sorted(takers, key=lambda o: (takers[o], o)))}
+    ordered = {a: sorted(needed[a], key=rare.__getitem__) for a in actions}
+    alike = _Needs(ordered, given)
+    made_by = {o: (made[o], o) for o in made}.__getitem__
+    prices = {a: cost(a) for a in actions}
+    for action in sorted(actions, key=lambda a: (prices[a], -a), reverse=True):
+        gives, price = given[action], prices[action]
         if not gives:
             left.discard(action)
             continue
-        rarest = min(gives, key=lambda o: (made[o], o))
-        if any(
-            other != action
-            and other in left
-            and needed[other] <= needed[action]
-            and gives <= given[other]
-            and cost(other) <= cost(action)
-            for need in (None, *needed[action])
-            for other in makers.get((rarest, need), ())
-        ):
-            left.discard(action)
+        rarest = min(gives, key=made_by)
+        for other in alike.within(ordered[action], rarest):
+            if other != action and prices[other] <= price and other in left and gives <= given[other]:
+                left.discard(action)
+                break
     return left
+
+
+class _Needs:
+    """Actions by their needs, in a tree of sets (a set-trie, Savnik 2013): rare needs branch first."""
+
+    def __init__(self, ordered: Mapping[int, Sequence[int]], given: Mapping[int, frozenset[int]]) -> None:
+        self._given = given
+        self._below: dict[tuple[int, int], int] = {}  # by place and need, the place below it
+        self._at: list[list[int]] = [[]]
+        self._by_given: dict[int, dict[int, list[int]]] = {}
+        for action, needs in ordered.items():
+            place = 0
+            for need in needs:
+                below = self._below.setdefault((place, need), len(self._at))
+                if below == len(self._at):
+                    self._at.append([])
+                place = below
+            self._at[place].append(action)
+
+    def within(self, needs: Sequence[int], gives: int) -> Iterator[int]:
+        """Give the actions that need no more; of many, only those that give something."""
+        at, below = self._at, self._below
+        places = [0]  # those below which the needs so far lead
+        yield from at[0] if len(at[0]) <= _FEW else self._giving(0).get(gives, ())
+        for need in needs:
+            for place in [below[place, need] for place in places if (place, need) in below]:
+                places.append(place)
+                found = at[place]
+                yield from found if len(found) <= _FEW else self._giving(place).get(gives, ())
+
+    def _giving(self, place: int) -> dict[int, list[int]]:
+        if place not in self._by_given:
+            givers: dict[int, list[int]] = {}
+            for action in self._at[place]:
+                for o in self._given[action]:
+                    givers.setdefault(o, []).append(action)
+            self._by_given[place] = givers
+        return self._by_given[place]

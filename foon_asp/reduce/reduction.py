@@ -368,6 +368,8 @@ class _Reducer:
         total, (parts, enough) = self._total(costs), _NEAR
         if len(self.left) <= _SMALL or self.bound * parts < total * enough:
             return False
+        self._improve_on(costs)
+        total = self._total(costs)
         from foon_asp.bounds.branching import Branching  # noqa: PLC0415 (few questions need it)
 
         graph, left = self.graph, self.left
@@ -527,6 +529,16 @@ class _Reducer:
         better = improved(self.graph, few | self.tree, self.tree, costs, rest, self.expired, thorough)
         if better is not self.tree:
             self._take(better)
+
+    def _improve_on(self, costs: ExactCosts) -> None:
+        """Look thoroughly for better trees, again from each that is found, up to an effort."""
+        effort, before = _EFFORT, set[int]()
+        while self.tree != before and not self.expired():
+            before = self.tree
+            effort -= len(before) * len(self.left)
+            if effort < 0:
+                break
+            self._improve(costs, self.cuts or Cuts(0, {}, []), thorough=True)
 
     def _drop_dear(self, costs: ExactCosts, cuts: Cuts) -> None:
         """Leave out what only trees have that are no better than the one in hand."""
