@@ -1,9 +1,11 @@
 """Which actions others stand in for, and what is beside those that every tree has: small cases."""
 
+import random
 from dataclasses import replace
 
 import pytest
 
+from foon_asp.reduce import dominance
 from foon_asp.reduce.dominance import undominated
 from foon_asp.reduce.forced import beside_forced
 from tests.plain_graphs import Action, plain
@@ -52,6 +54,37 @@ def test_what_another_stands_in_for_goes(
     assert {a for a in left if a < count} == expected
     assert {a for a in left if a >= count} == set(range(count, count + 5))
     assert undominated(graph, left, price) == left
+
+
+@pytest.mark.parametrize("few", [0, 3, 99])
+def test_those_that_stand_in_are_found_as_by_looking_at_all(
+    few: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dominance, "_FEW", few)
+    gone = 0
+    for seed in range(60):
+        chance = random.Random(seed)
+        objects = range(2, chance.randint(5, 9))
+        some: list[Action] = [
+            (chance.sample(objects, chance.randint(0, 3)), chance.sample(objects, chance.randint(1, 3)))
+            for _ in range(40)
+        ]
+        prices = [chance.randint(1, 3) for _ in some]
+        graph = plain(some, chance.sample(objects, 2), [0])
+        wanted = set(graph.goals).union(*graph.needs)
+        left = set(range(40))
+        for action in sorted(left, key=lambda a: (-prices[a], a)):
+            needs, gives = set(graph.needs[action]), wanted.intersection(graph.gives[action])
+            if not gives or any(
+                needs.issuperset(graph.needs[other])
+                and gives.issubset(graph.gives[other])
+                and prices[other] <= prices[action]
+                for other in left - {action}
+            ):
+                left.discard(action)
+        assert undominated(graph, range(40), prices.__getitem__) == left
+        gone += 40 - len(left)
+    assert gone > 400
 
 
 def test_only_what_is_left_stands_in_and_only_its_needs_count() -> None:

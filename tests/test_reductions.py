@@ -20,6 +20,7 @@ from foon_asp.reduce import ALL, NONE, SAFE, Listener, Reduction, reduce, reduct
 from foon_asp.reduce.exact_costs import ExactCosts
 from tests.gap_problem import gap_problem
 from tests.oracle import best, key, measure, trees
+from tests.plain_graphs import plain_problem
 from tests.random_problems import random_problem, random_steps
 from tests.test_optimum import assert_agrees
 
@@ -177,6 +178,37 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
                 optimal = [tree for tree in found if tree.key(names) == expected]
                 assert all(tree.units <= left for tree in optimal), (seed, names)
     assert bad > 5
+
+
+@pytest.mark.parametrize(
+    ("effort", "stop", "turns"),
+    [
+        (10**6, 9, 3),  # twice a better tree, and once none
+        (12, 9, 3),  # each time, 4 units are looked at for one of the tree
+        (11, 9, 2),
+        (3, 9, 0),
+        (10**6, 1, 1),
+    ],
+)
+def test_better_trees_are_looked_for_from_each_that_is_found(
+    effort: int, stop: int, turns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = plain_problem([([0], [1])] * 4, [1])
+    reducer = reduction._Reducer(
+        problem, (Objective.UNITS,), ALL, lambda: len(asked) >= stop, Listener(), spare=False, rest=False
+    )
+    asked: list[bool] = []
+
+    def improve(costs: Any, cuts: Any, thorough: bool) -> None:
+        asked.append(thorough)
+        if len(asked) < 3:
+            reducer.tree = {len(asked)}
+
+    monkeypatch.setattr(reduction, "_EFFORT", effort)
+    monkeypatch.setattr(reducer, "_improve", improve)
+    reducer.left, reducer.tree = range(4), {0}
+    reducer._improve_on(ExactCosts(problem, (Objective.UNITS,), range(4)))
+    assert asked == [True] * turns
 
 
 @pytest.mark.parametrize("encodings", [None, Path("by_need")])
