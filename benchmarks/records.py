@@ -244,20 +244,24 @@ def report(found: list[dict[str, Any]]) -> str:
         names = list(dict.fromkeys(row["instance"] for row in some))
         limit = some[0]["limit"]
         closed = {row["instance"] for row in some if row["status"] != "open"}
-        header = ["engine", "asked", "proved", "of the open", "median s", "cost over the best", "certified"]
+        header = [
+            *("engine", "asked", "proved", "of the open", "median s", "cost over the best", "proved wrongly"),
+            "certified",
+        ]
         lines = []
-        best: dict[str, Fraction] = {}
+        best: dict[str, dict[str, Any]] = {}
         for row in some:
             if row.get("cost"):
-                cost = Fraction(row["cost"])
-                best[row["instance"]] = min(cost, best.get(row["instance"], cost))
+                first = best.setdefault(row["instance"], row)
+                best[row["instance"]] = min(first, row, key=lambda each: Fraction(each["cost"]))
         for engine in dict.fromkeys(row["engine"] for row in some):
             own = [row for row in some if row["engine"] == engine]
-            proved = [row for row in own if row.get("proved")]
+            dear = [row for row in own if row.get("cost") and _apart(row, best[row["instance"]])]
+            wrongly = [row for row in dear if row["proved"]]
+            proved = [row for row in own if row.get("proved") and row not in wrongly]
             in_time = sum(row["instance"] in closed for row in proved)
             asked = sum(row["instance"] in closed for row in own)
-            over = sum(Fraction(row["cost"]) > best[row["instance"]] for row in own if row.get("cost"))
-            ended = [row["took"] if row.get("proved") else limit for row in own if "took" in row]
+            ended = [row["took"] if row in proved else limit for row in own if "took" in row]
             took = statistics.median(ended or [limit])
             sure = sum(bool(row.get("certified")) for row in proved)
             lines.append(
@@ -267,7 +271,8 @@ def report(found: list[dict[str, Any]]) -> str:
                     f"{in_time} of {asked}",
                     f"{len(proved) - in_time} of {len(own) - asked}",
                     f"{'> ' * (took >= limit)}{took:.2f}",
-                    f"{over}",
+                    f"{len(dear)}",
+                    f"{len(wrongly)}",
                     f"{sure} of {len(proved)}" if engine == OURS else "",
                 ]
             )
