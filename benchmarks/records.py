@@ -237,7 +237,11 @@ def is_new(row: dict[str, Any]) -> bool:
 
 
 def report(found: list[dict[str, Any]]) -> str:
-    """Lay out what was run, a table for each kind of instance."""
+    """Lay out what was run, a table for each kind of instance.
+
+    *Times* is how many times as long as the program an engine takes, the median over what both prove, and
+    *sooner* how often it was the first of the two.
+    """
     parts = []
     for kind in dict.fromkeys(row["kind"] for row in found):
         some = [row for row in found if row["kind"] == kind]
@@ -245,9 +249,19 @@ def report(found: list[dict[str, Any]]) -> str:
         limit = some[0]["limit"]
         closed = {row["instance"] for row in some if row["status"] != "open"}
         header = [
-            *("engine", "asked", "proved", "of the open", "median s", "cost over the best", "proved wrongly"),
-            "certified",
+            *(
+                "engine",
+                "asked",
+                "proved",
+                "of the open",
+                "median s",
+                "times",
+                "sooner",
+                "cost over the best",
+            ),
+            *("proved wrongly", "certified"),
         ]
+        ours = {row["instance"]: row["took"] for row in some if row["engine"] == OURS and row["proved"]}
         lines = []
         best: dict[str, dict[str, Any]] = {}
         for row in some:
@@ -262,15 +276,21 @@ def report(found: list[dict[str, Any]]) -> str:
             in_time = sum(row["instance"] in closed for row in proved)
             asked = sum(row["instance"] in closed for row in own)
             ended = [row["took"] if row in proved else limit for row in own if "took" in row]
-            took = statistics.median(ended or [limit])
+            middle = statistics.median(ended or [limit])
             sure = sum(bool(row.get("certified")) for row in proved)
+            beside = [(row["took"], ours[row["instance"]]) for row in proved if row["instance"] in ours]
+            beside = [] if engine == OURS else beside
+            times = statistics.median(theirs / took for theirs, took in beside) if beside else None
+            sooner = sum(theirs < took for theirs, took in beside)
             lines.append(
                 [
                     engine,
                     f"{len(own)}",
                     f"{in_time} of {asked}",
                     f"{len(proved) - in_time} of {len(own) - asked}",
-                    f"{'> ' * (took >= limit)}{took:.2f}",
+                    f"{'> ' * (middle >= limit)}{middle:.2f}",
+                    "" if times is None else f"{times:.3g}",
+                    f"{sooner} of {len(beside)}" if beside else "",
                     f"{len(dear)}",
                     f"{len(wrongly)}",
                     f"{sure} of {len(proved)}" if engine == OURS else "",

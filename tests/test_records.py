@@ -119,5 +119,14 @@ def test_values_that_cannot_be_right_are_found() -> None:
     assert records.is_new(row("foon-asp", "9", True, "open", "9"))
     assert not records.is_new(row("foon-asp", "9", False, "open", "9"))
     table = records.report([right, row("HiGHS", "5", False)])
-    assert "| foon-asp | 1 | 1 of 1 | 0 of 0 | 1.00 | 0 | 1 of 1 |" in table
-    assert "| HiGHS | 1 | 0 of 1 | 0 of 0 | > 5.00 | 0 |  |" in table
+    assert "| foon-asp | 1 | 1 of 1 | 0 of 0 | 1.00 |  |  | 0 | 0 | 1 of 1 |" in table
+    assert "| HiGHS | 1 | 0 of 1 | 0 of 0 | > 5.00 |  |  | 0 | 0 |  |" in table
+
+
+def test_what_is_dearer_than_a_tree_of_another_engine_was_proved_wrongly() -> None:
+    theirs = [row("HiGHS", "9", True), {**row("CP-SAT", "8", True), "took": 3.0}]
+    table = records.report([row("foon-asp", "8", False), *theirs])
+    assert "| HiGHS | 1 | 0 of 1 | 0 of 0 | > 5.00 |  |  | 1 | 1 |  |" in table
+    assert "| CP-SAT | 1 | 1 of 1 | 0 of 0 | 3.00 |  |  | 0 | 0 |  |" in table
+    table = records.report([row("foon-asp", "8", True), *theirs])
+    assert "| CP-SAT | 1 | 1 of 1 | 0 of 0 | 3.00 | 3 | 0 of 1 | 0 | 0 |  |" in table
