@@ -576,5 +576,5 @@ class _Reducer:
             self.wide,
             self.shared,
             self.cases,
-            self.once,
+            tuple(self.once),
         )
