@@ -462,10 +462,12 @@ def test_rounded_weights_prove_each_of_the_cases_that_are_told_apart(
     monkeypatch.setattr(lower_bound, "_WORTH", worth)
 
     share: Any = share_costs
+    shares: list[bool] = []
 
     def with_some_decided(*asked: Any, often: int) -> object:
         """At first, where all actions are there, the weights would be enough."""
         at_first = len(asked[2]) == len(asked[0].needs)
+        shares.append(at_first)
         return None if kind is Branch and at_first else share(*asked, often=often)
 
     monkeypatch.setattr(lower_bound, "share_costs", with_some_decided)
@@ -488,6 +490,36 @@ def test_rounded_weights_prove_each_of_the_cases_that_are_told_apart(
             assert math.ceil(proved) == len(best)
             met += isinstance(proof, kind)
     assert met > 8
+    assert any(shares)
+    assert not all(shares)
+
+
+def test_what_is_used_is_never_too_dear(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lower_bound, "_WORTH", 0.0)
+    prover = Prover(KITCHEN, [4], costs(3, 3, 5, 1, 1), COUNT, multiples=[Fraction(1)])
+    asked: list[frozenset[int]] = []
+    rest = Hopeless(Cut((2, 3), ()))
+
+    def others(dear: frozenset[int], known: object) -> Proof:
+        asked.append(dear)
+        return rest
+
+    packing = Packing(((Cut((4,), (0,)), (Fraction(1),)),))
+    # the weights come to 1 of 4, and leave 2 of the first action: of the others, 3 and more is too dear
+    for used in (frozenset[int](), frozenset({2})):
+        how = (
+            Cutter(KITCHEN, [4]),
+            used,
+            (Fraction(4),),
+            packing,
+            {0: (Fraction(2),)},
+            others,
+            (),
+            Fraction(1),
+        )
+        found = prover._narrowed(*how)
+        assert found == Dear((1,), packing._replace(rounded=0), rest)  # the only one that crosses the cut
+    assert asked == [{1, 2}, {1}]
 
 
 def test_known_cuts_before_no_target_are_not_weighed() -> None:

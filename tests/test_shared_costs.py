@@ -298,6 +298,12 @@ def test_a_solution_amid_others_is_enough_where_its_weights_are(monkeypatch: pyt
     assert (shared_of_five(near, 50, monkeypatch), near.solved) == (50 * PARTS, 1)
 
 
+def test_where_a_solution_amid_others_misses_no_cut_a_corner_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    some = Told([4.0, 4.0], [1.0] * 5, [1.0] * 5)
+    some.amid = True
+    assert (shared_of_five(some, 50, monkeypatch), some.solved) == (50 * PARTS, 2)
+
+
 def test_where_time_is_up_the_last_solution_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     class Ended(Told):
         def inside(self, expired: Callable[[], bool]) -> Weighed | None:
