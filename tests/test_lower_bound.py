@@ -23,6 +23,7 @@ from foon_asp.bounds.lower_bound import (
     Packing,
     Proof,
     Prover,
+    _cuts,
     _Node,
 )
 from foon_asp.bounds.relaxation import Covering, Relaxed
@@ -520,6 +521,14 @@ def test_what_is_used_is_never_too_dear(monkeypatch: pytest.MonkeyPatch) -> None
         found = prover._narrowed(*how)
         assert found == Dear((1,), packing._replace(rounded=0), rest)  # the only one that crosses the cut
     assert asked == [{1, 2}, {1}]
+
+
+def test_the_cuts_of_a_proof_are_those_of_all_its_parts() -> None:
+    first, second, third, fourth = (Cut((number,), ()) for number in range(4))
+    weight = (Fraction(1),)
+    dear = Dear((1,), Packing(((first, weight), (second, weight))), Packing(((third, weight),)))
+    assert {*_cuts(Branch(0, Hopeless(fourth), dear))} == {first, second, third, fourth}
+    assert {*_cuts(Branch(0, dear, Broken(0)))} == {first, second, third}
 
 
 def test_known_cuts_before_no_target_are_not_weighed() -> None:
