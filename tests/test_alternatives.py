@@ -73,6 +73,7 @@ def drawn(seed: int) -> list[str]:
     return [*map(str, random_objectives(random.Random(seed), random.Random(seed).choice((1, 1, 2))))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
 def test_all_optimal_trees_and_the_best_in_order(rule: ContainerRule) -> None:

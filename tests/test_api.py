@@ -186,6 +186,7 @@ QUESTIONS: dict[str, tuple[list[str], list[str], str, Ask]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("question", QUESTIONS)
 @pytest.mark.sampled(12)
 def test_the_answer_is_that_of_the_command_line(question: str, source: Path, cli: Cli) -> None:
@@ -279,6 +280,7 @@ def test_help_takes_rates_by_motion_and_from_a_file(foon: Foon, tmp_path: Path) 
         foon_asp.assist(problem, reach=0)
 
 
+@pytest.mark.slow
 def test_the_chart_of_a_front(foon: Foon, tmp_path: Path) -> None:
     front = foon_asp.pareto(foon.problem("macaroni"))
     assert [tree.units for tree in front.task_trees] == [
@@ -317,6 +319,7 @@ def test_trees_in_files_are_checked_and_compared(source: Path, cli: Cli, tmp_pat
     assert foon_asp.diff(best, foon_asp.Tree.read(problem, answer_file)).partings == ()
 
 
+@pytest.mark.slow
 def test_a_tree_with_units_of_no_network(source: Path) -> None:
     problem = foon_asp.load(source).problem("ice")
     answer = foon_asp.solve(problem)

@@ -132,6 +132,7 @@ def check_rows(
     return expected
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("trees", [None, 0], ids=["one by one", "counted"])
@@ -174,6 +175,7 @@ def test_every_number_of_units(
     assert len(looked_at) >= 5 // part
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
@@ -211,6 +213,7 @@ def test_rows_end_where_they_are_asked_to(part: int, rule: ContainerRule) -> Non
     assert short >= 1 // part
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
@@ -268,6 +271,7 @@ def test_a_constraint_can_look_at_who_does_a_unit(part: int, rule: ContainerRule
     assert late >= 2 // part  # trees that there are with help alone
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 def test_no_tree_has_a_unit_twice(part: int, rule: ContainerRule, tmp_path: Path) -> None:
@@ -495,6 +499,7 @@ def test_units_with_rates_of_their_own(rule: ContainerRule) -> None:
     assert differing >= 5
 
 
+@pytest.mark.slow
 def test_a_rule_that_would_see_units_twice_is_refused(cli: Cli) -> None:
     """For rules about rates, a unit that the person does better is there twice: a count of all is off."""
     few = ":- use(U), motion(U,M), #count { V : motion(V,M) } < 2."

@@ -41,6 +41,7 @@ def test_sums_that_differ_in_the_last_digit_are_told_apart() -> None:
         assert (found.status, found.units) == (Status.OPTIMAL, best)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", ContainerRule)
 def test_the_best_are_those_of_brute_force_and_proved(rule: ContainerRule) -> None:
     proved = 0

@@ -118,6 +118,7 @@ def test_long_numbers_stand_upright(tmp_path: Path) -> None:
     assert len(upright) == 4
 
 
+@pytest.mark.slow
 def test_the_figure_grows_to_the_width_of_a_page_and_then_in_rows(tmp_path: Path) -> None:
     three, six, fifteen = (Drawing(large(n), tmp_path / f"{n}.svg") for n in (3, 6, 15))
     assert three.width < six.width

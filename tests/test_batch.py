@@ -307,6 +307,7 @@ def some_rows(count: int) -> Iterator[tuple[Asked, dict[str, Any]]]:
         yield asked, {**one, **asked.shown()}
 
 
+@pytest.mark.slow
 def test_parquet_holds_the_same_rows(cli: Cli, questions: Path, tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     cli("batch", questions, "--results", tmp_path / "a.jsonl")
@@ -515,6 +516,7 @@ def test_a_worker_opens_equal_data_once() -> None:
     assert hash(one) == hash(other)
 
 
+@pytest.mark.slow
 def test_a_store_gives_the_same_rows(cli: Cli, questions: Path, tmp_path: Path) -> None:
     with questions.open("a") as more:
         more.write('{"goal": "@goals", "containers": "implied"}\n')

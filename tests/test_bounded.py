@@ -48,6 +48,7 @@ def within(problem: Problem, bounds: Bounds) -> oracle.Allowed:
     return allowed
 
 
+@pytest.mark.slow
 @SERIES
 @pytest.mark.parametrize("rule", RULES)
 def test_the_best_tree_within_bounds(part: int, rule: ContainerRule) -> None:

@@ -51,6 +51,7 @@ def leaves(proof: dict[str, Any]) -> int:
     return leaves(proof["without"]) + leaves(proof["using"]) if "branch" in proof else 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)
 def test_every_optimum_of_random_networks(rule: ContainerRule) -> None:
@@ -74,6 +75,7 @@ def test_every_optimum_of_random_networks(rule: ContainerRule) -> None:
     assert trees > 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("corners", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in (4, 5))])
 def test_branching_closes_gaps(corners: int) -> None:
     branched = 0
@@ -438,6 +440,7 @@ def test_a_bound_is_said_to_be_one(cli: Cli, tmp_path: Path) -> None:
     assert "not covered, so among all trees: mine.lp" in checked.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", [1, 2])
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.sampled(2)

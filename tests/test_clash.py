@@ -243,6 +243,7 @@ def test_other_rules_always_hold(cli: Cli, tmp_path: Path) -> None:
     assert "no task tree is left whatever is dropped" in ran.out
 
 
+@pytest.mark.slow
 def test_soft_constraints(cli: Cli, two_files: tuple[Path, Path]) -> None:
     one, two = two_files
     words = ["solve", "--goal", "whipped cream", "--soft", f"{one}=3", "--soft", f"{two}=2"]

@@ -437,6 +437,7 @@ def test_kitchens_and_goals(tmp_path_factory: pytest.TempPathFactory, text: str,
     assert same == (not (MEANING - only_words) & set(lost))
 
 
+@pytest.mark.slow
 @steady
 @given(texts(), st.sampled_from(Dialect), st.booleans())
 def test_no_text_is_too_dirty(text: str, target: Dialect, lenient: bool) -> None:

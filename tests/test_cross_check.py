@@ -191,6 +191,7 @@ def test_success_is_compared_as_far_as_engines_can_tell() -> None:
         agree(with_success("0.9999999"), answer(outcome, outcome.units))
 
 
+@pytest.mark.slow
 def test_the_command_line_says_who_agrees(cli: Cli) -> None:
     ran = cli("solve", "--goal", "macaroni", "--objective", "success", "--cross-check")
     assert ran.code == 0

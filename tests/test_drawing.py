@@ -179,6 +179,7 @@ ANY_TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=30) | st.t
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(label=ANY_TEXT, motion=ANY_TEXT, caption=ANY_TEXT)
 def test_svg_shows_any_text_as_it_is(label: str, motion: str, caption: str) -> None:

@@ -221,6 +221,7 @@ def test_written_by_and_read_by_are_what_the_files_say(predicate: Signature) -> 
 OBJECTIVES = tuple(objective for objective in Objective if objective is not Objective.SUCCESS)
 
 
+@pytest.mark.slow
 def test_facts_are_what_the_table_says() -> None:
     """All predicates but those of the second step are printed for a bundled goal, and no others."""
     data = read_data(find_data(bundled_kitchen()))

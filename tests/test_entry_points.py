@@ -202,6 +202,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.slow
 def test_what_is_no_tree_is_refused_by_name(cli: Cli, packages: Packages) -> None:
     packages.install("foon-hostile", HOSTILE, {name: name for name in REFUSED})
     for name, words in REFUSED.items():
@@ -219,6 +220,7 @@ def test_what_is_no_tree_is_refused_by_name(cli: Cli, packages: Packages) -> Non
     assert cli("compare", "--goal", "ice").code == 2
 
 
+@pytest.mark.slow
 def test_what_it_does_it_does_elsewhere(packages: Packages) -> None:
     packages.install("foon-hostile", HOSTILE, {"noisy": "noisy", "wrong": "wrong", "none": "none"})
     ran = run(packages.folder, "compare", "--goal", "ice", "--goal", "tea", "--format", "json")
@@ -418,6 +420,7 @@ def test_an_engine_of_another_package_is_asked_too(cli: Cli, packages: Packages)
     assert checks[-1][::4] == ("every-set", "foon-example 1.0")
 
 
+@pytest.mark.slow
 def test_what_an_engine_claims_is_shown_as_its_own(cli: Cli, packages: Packages) -> None:
     packages.install("foon-hostile", ENGINES, engines={name: name for name in SAID})
     ran = cli("solve", "--goal", "ice", "--objective", "success", "--cross-check")

@@ -321,6 +321,7 @@ def test_rounding_alone_would_choose_the_worse_tree() -> None:
     assert motions(problem, ["success"]) == {"other"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", list(ContainerRule))
 @pytest.mark.parametrize("scale", [1, 7])
 @pytest.mark.sampled(6)
@@ -347,6 +348,7 @@ rates_strategy = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True)
 @given(rates_strategy)
 def test_weights_round_down_by_less_than_one(rates: list[Fraction]) -> None:

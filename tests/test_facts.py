@@ -118,6 +118,7 @@ def test_numbers_too_large_for_clingo_are_refused() -> None:
         write_product(4, {0: 2**31})
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_tree(tmp_path: Path) -> None:
     outputs = set()
     for seed in ("0", "1", "2", "random"):

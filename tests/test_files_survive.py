@@ -67,6 +67,7 @@ def test_results_are_kept_in_files_of_ours_alone(
     assert file.read_bytes() == content
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verb", ["batch", "compare"])
 def test_what_is_begun_or_cut_short_is_gone_on_with(
     cli: Cli, questions: Path, tmp_path: Path, verb: str

@@ -54,6 +54,7 @@ def test_networks_are_read_without(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert gc.isenabled()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lenient", [True, False])
 def test_lines_that_are_not_understood_leave_none(tmp_path: Path, lenient: bool) -> None:
     lines = "".join(f"O\twater\nX nonsense {i}\nM\tboil\nO\tsoup {i}\n//\n" for i in range(100))

@@ -231,6 +231,7 @@ def test_goals_go_from_easy_to_hard(family: str, written: Written) -> None:
     assert max(layer.values()) <= generator.DEEPEST
 
 
+@pytest.mark.slow
 def test_the_families_differ(written: Written) -> None:
     networks = {family: read(written(family, 6000)).network for family in FAMILIES}
     largest = {family: components(network)[0] for family, network in networks.items()}

@@ -95,6 +95,7 @@ def within(least: float, most: float) -> Iterator[None]:
     assert least <= time.monotonic() - began <= most
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rules", [ENDLESS, HUGE])
 def test_the_command_line_stops(rules: str, tmp_path: Path) -> None:
     file = tmp_path / "rules.lp"
@@ -251,6 +252,7 @@ def test_what_is_kept_in_a_session_outlives_a_stop(endless: Path) -> None:
     assert (again.status, again.costs) == (first.status, first.costs) == (Status.OPTIMAL, first.costs)
 
 
+@pytest.mark.slow
 @LINUX
 def test_grounding_stops_at_the_memory_limit(endless: Path) -> None:
     with nothing_left():
@@ -445,6 +447,7 @@ def work(until: float) -> int:
     return count
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("in_thread", [False, True])
 @pytest.mark.sampled(2)
 def test_a_watch_strikes_in_its_block_and_never_after(in_thread: bool) -> None:

@@ -58,6 +58,7 @@ def ask(files: list[HostileFile], folder: Path, sessions: bool = False) -> Count
     return endings
 
 
+@pytest.mark.slow
 def test_some_hostile_files(tmp_path: Path) -> None:
     files = some_hostile_files(len(our_names()) // 2, seed=1)
     endings = ask(files, tmp_path)

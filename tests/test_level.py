@@ -130,6 +130,7 @@ def test_what_can_be_made_can_be_made_at_every_level_below_and_costs_no_more(
     assert best.costs.key((objective,)) <= outcome.costs.key((objective,))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", [1, 2])
 @settings(deadline=None, derandomize=True, max_examples=100)
 @given(seed=st.integers(0, 10_000))

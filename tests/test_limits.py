@@ -163,6 +163,7 @@ def test_progress_is_shown_on_a_terminal_only(hard_folder: Path, tmp_path: Path)
 ENDLESS = "p(0). p(f(X)) :- p(X). :- use(U), p(U), not p(f(U)).\n"
 
 
+@pytest.mark.slow
 def test_grounding_without_an_end_is_stopped(tmp_path: Path) -> None:
     rules = tmp_path / "endless.lp"
     rules.write_text(ENDLESS)
@@ -395,6 +396,7 @@ def test_ctrl_c_while_the_program_is_imported_ends_it_quietly(
     assert capsys.readouterr() == ("", "interrupted before there was an answer\n")
 
 
+@pytest.mark.slow
 def test_nothing_strikes_while_a_library_is_imported_but_right_after() -> None:
     whole: list[str] = []
 

@@ -474,6 +474,7 @@ def test_json_has_all(tmp_path: Path, cli: Cli) -> None:
     }
 
 
+@pytest.mark.slow
 def test_json_does_not_repeat_a_long_line_for_each_finding(tmp_path: Path, cli: Cli) -> None:
     names = ", ".join(f"ingredient {number}" for number in range(2000))
     (file,) = written(tmp_path, f"O\ta\nS\tcontains\t{{{names}}}\nM\tgo\nO\ta\nS\tbig\n//\n")

@@ -184,6 +184,7 @@ def test_the_best_tree_is_that_of_brute_force(objectives: list[str], reductions:
         assert found == min(keys, default=None), seed
 
 
+@pytest.mark.slow
 def test_a_measure_equal_to_ours_gives_the_same_answers() -> None:
     problem = foon_asp.load(ROOT / "data" / "kitchen", measures=MINE).problem("macaroni")
     ours, mine = (solve(problem, parse_objectives([name], problem.measures)) for name in ("inputs", "mine"))

@@ -452,6 +452,7 @@ def random_look(rng: random.Random, one: str) -> Settings:
     return Settings((RuleText(rng.choice(texts)),))
 
 
+@pytest.mark.slow
 @SERIES
 def test_random_problems_under_rules_that_see_the_kitchen(part: int, tmp_path: Path) -> None:
     compared = mattered = little = 0

@@ -367,6 +367,7 @@ def random_ways(rng: random.Random) -> list[tuple[str, str, str]]:
     return more
 
 
+@pytest.mark.slow
 @SERIES
 def test_random_ways_to_what_rules_ask_for(
     part: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

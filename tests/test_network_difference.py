@@ -64,6 +64,7 @@ def test_a_label_counts_once_wherever_it_stands() -> None:
     assert unit_differences(one, other) == (("label", "cup", "mug", ""),)
 
 
+@pytest.mark.slow
 @settings(steady, max_examples=40)
 @given(left=units(), right=units())
 def test_pairs_are_of_different_units_each_once(

@@ -229,6 +229,7 @@ def total_drawn(rng: random.Random) -> tuple[str, Sequence[bool], Callable[[Sequ
     return f"{rules} {word} {bound}.", fact, holds, sum(map(abs, weights))
 
 
+@pytest.mark.slow
 @seeds(40, 2000)
 def test_sums_are_exact_or_refused(seeds: range) -> None:
     met: Counter[bool] = Counter()

@@ -270,6 +270,7 @@ def criteria(problem: Problem, tree: list[int], objectives: list[Objective]) -> 
     return costs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("objective", Objective)
 @pytest.mark.sampled(18)

@@ -112,6 +112,7 @@ def test_what_cannot_be_replaced_is_refused(folder: Path, cli: Cli, name: str, w
     assert ran.out == ""
 
 
+@pytest.mark.slow
 def test_a_shopping_list_needs_its_own_encoding(folder: Path, cli: Cli) -> None:
     words = ["shopping-list", "--goal", "macaroni", "--kitchen", str(folder / "empty.txt")]
     (folder / "empty.txt").write_text("")

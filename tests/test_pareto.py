@@ -258,6 +258,7 @@ def test_a_chart_has_all_points_and_lines_only_where_the_front_is_whole(tmp_path
     assert (tmp_path / "three.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_fronts_on_the_universal_foon(cli: Cli, universal: Path) -> None:
     words = ("pareto", "--data", universal, "--containers", "implied", "--format", "json", "--goal")
     ran = cli(*words, "macaroni")

@@ -26,6 +26,7 @@ def network(tmp_path: Path) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_all_bytes_of_a_network_are_told_piece_by_piece(network: Path) -> None:
     told: list[int] = []
     with telling(told.append):

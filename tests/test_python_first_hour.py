@@ -114,6 +114,7 @@ def test_a_value_of_the_wrong_type_is_refused_in_words(
         ask(foon, foon.problem("ice"))
 
 
+@pytest.mark.slow
 def test_commands_hand_over_what_they_have_read(cli: Cli) -> None:
     rule = ("--rule", ':- use(U), motion(U,"crush").', "--time-limit", "60")
     for verb in ("why-not", "clash", "shopping-list", "alternatives", "regret"):

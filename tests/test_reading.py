@@ -282,6 +282,7 @@ PIECES += [
 ]
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True, max_examples=300)
 @given(st.lists(st.sampled_from(PIECES) | st.text(max_size=6), max_size=25), st.sampled_from(["\n", "\r\n"]))
 def test_no_text_crashes_the_reader_and_nothing_is_lost_silently(lines: list[str], end: str) -> None:

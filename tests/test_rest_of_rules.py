@@ -415,6 +415,7 @@ def test_of_units_that_mattered_before_those_that_rules_remove_are_gone() -> Non
     assert first.reduced.wide.left_of([2, 3, 4, 99]) == {2, 4}
 
 
+@pytest.mark.slow
 def test_units_that_mattered_before_may_be_any() -> None:
     """Also those that are not here, or that rules remove."""
     met: Counter[Status] = Counter()

@@ -150,6 +150,7 @@ def test_a_rate_of_a_unit_that_only_serves_what_cannot_be_made() -> None:
     assert solve(problem, (Objective.SUCCESS,), Settings((rule,))).status is Status.INFEASIBLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seeds", [range(15), pytest.param(range(15, 200), marks=pytest.mark.slow)])
 def test_the_rules_that_a_tree_breaks_are_named(seeds: range) -> None:
     broken = 0

@@ -84,6 +84,7 @@ def test_no_line_is_a_command_to_a_log(text: str, shown: str) -> None:
     assert escaped_lines(text) == shown
 
 
+@pytest.mark.slow
 def test_escaping_takes_no_time() -> None:
     for text in ("#" * 1_000_000, " " * 1_000_000, ":" * 1_000_000, " :" * 500_000, "\x1b" * 1_000_000):
         escaped_lines(text)

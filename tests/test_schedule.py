@@ -349,6 +349,7 @@ def random_task(seed: int) -> ScheduleTask:
     )
 
 
+@pytest.mark.slow
 @needs_solver
 @pytest.mark.parametrize("seeds", [range(30), pytest.param(range(30, 1000), marks=pytest.mark.slow)], ids=str)
 def test_nothing_is_shorter_by_brute_force(seeds: range) -> None:
@@ -471,6 +472,7 @@ def test_without_an_order_one_step_is_done_after_the_other(monkeypatch: pytest.M
 ICE: dict[str, Any] = {"twist": "10", "crush": 0.5}
 
 
+@pytest.mark.slow
 @needs_solver
 def test_the_bundled_kitchen(cli: Cli, tmp_path: Path) -> None:
     plan = tmp_path / "plan.json"

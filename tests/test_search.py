@@ -135,6 +135,7 @@ def depths(problem: Problem) -> dict[int, int]:
     return depth
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("units", [8, pytest.param(30, marks=pytest.mark.slow)])
 def test_deepening_returns_a_tree_of_least_depth_or_says_that_none_exists(
@@ -176,6 +177,7 @@ def test_limits_end_in_unknown() -> None:
     assert iterative_deepening(problem, PLAIN).ending is Ending.TREE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 def test_no_tree_that_executes_beats_the_optimum(rule: ContainerRule) -> None:
     for seed in range(200):

@@ -281,6 +281,7 @@ def test_wrong_answers_are_found(rule: ContainerRule, objective: Objective, tmp_
     assert found > 3
 
 
+@pytest.mark.slow
 def test_wrong_answers_under_soft_rules_are_found(tmp_path: Path) -> None:
     mine = tmp_path / "mine.lp"
     mine.write_text(':- use(U), motion(U,"draw").\n:- use(U), motion(U,"clear").\n')
@@ -363,6 +364,7 @@ def test_endless_grounding_is_ended(tmp_path: Path) -> None:
     assert not [file for file in Path("/proc").glob("[0-9]*/cmdline") if str(mine).encode() in said_by(file)]
 
 
+@pytest.mark.slow
 def test_memory_that_runs_out_is_not_checked(tmp_path: Path) -> None:
     if not hasattr(__import__("resource"), "prlimit"):
         pytest.skip("only Linux limits the memory of another process")
@@ -416,6 +418,7 @@ def test_nothing_of_the_working_folder_is_run(tmp_path: Path, monkeypatch: pytes
 # --- On the command line.
 
 
+@pytest.mark.slow
 def test_a_worse_tree_is_our_bug_with_all_that_is_needed(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -462,6 +465,7 @@ def test_a_worse_tree_is_our_bug_with_all_that_is_needed(
     )
 
 
+@pytest.mark.slow
 def test_a_tree_that_is_denied_is_our_bug(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from foon_asp.asp import soft  # noqa: PLC0415
 
@@ -502,6 +506,7 @@ def test_what_is_found_is_said_where_no_file_can_be_written(
     assert "we say no tree exists, clingo says a tree exists; the data could not be written" in ran.err
 
 
+@pytest.mark.slow
 def test_not_checked_is_said(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bare_clingo, "MOST_KINDS", 0)
     words = ("solve", "--goal", "macaroni", "--objective", "success", "--cross-check")

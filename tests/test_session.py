@@ -157,6 +157,7 @@ def test_a_constraint_file_that_changed_is_read_again(tmp_path: Path) -> None:
         assert solve(problem, (Objective.UNITS,), settings).status is expected
 
 
+@pytest.mark.slow
 def test_a_rate_too_small_for_the_scale_of_others() -> None:
     """Which units there are decides how finely rates are scaled; constraints can see it."""
     seed, problem = next(

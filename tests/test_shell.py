@@ -189,6 +189,7 @@ kitchen: 111 object nodes
     )
 
 
+@pytest.mark.slow
 def test_other_questions_take_what_stands(shell: Cli, cli: Cli) -> None:
     ran = shell(
         "goal macaroni tea",

@@ -118,6 +118,7 @@ def whole_node(node: ObjectNode) -> str:
     return str(node) if ";" in str(node) else f"{node};"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "seeds", [range(7000, 7040), pytest.param(range(7040, 7120), marks=pytest.mark.slow)]
 )
@@ -162,6 +163,7 @@ def test_lists_against_brute_force(rule: ContainerRule, seeds: range) -> None:
     assert none
 
 
+@pytest.mark.slow
 def test_the_universal_whipped_cream_is_made_possible(cli: Cli, universal: Path) -> None:
     for rule in ContainerRule:
         words = ["shopping-list", "--data", universal, "--goal", "whipped cream", "--containers", rule]

@@ -47,6 +47,7 @@ def test_parts_share_no_node() -> None:
     assert parts(network_of()) == []
 
 
+@pytest.mark.slow
 def test_a_long_chain_is_no_trouble() -> None:
     builder = NetworkBuilder()
     nodes = [ObjectNode.of(str(number)) for number in range(20_000)]

@@ -286,6 +286,7 @@ def test_a_network_without_units(tmp_path: Path) -> None:
         find_goal("soup", Store(tmp_path / "empty.foon"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", list(ContainerRule))
 @pytest.mark.sampled(2)
 def test_the_cone_has_the_optimum_of_the_whole(rule: ContainerRule, tmp_path: Path) -> None:
@@ -795,6 +796,7 @@ def everything(store: Path) -> list[object]:
     return answers
 
 
+@pytest.mark.slow
 def test_damaged_bytes_are_seen_or_do_no_harm(soup: tuple[DataFiles, Path]) -> None:
     _, store = soup
     whole = store.read_bytes()
@@ -899,6 +901,7 @@ def test_a_checksum_knows_its_place() -> None:
     assert seal(Table.UNIT, 1, [1]) != seal(Table.UNIT, 2, [1]) != seal(Table.NODE, 2, [1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", list(ContainerRule))
 def test_the_real_universal_foon(universal: Path, tmp_path: Path, rule: ContainerRule) -> None:
     """Clingo is given the same about any object, whether the whole network was read or its cone."""

@@ -88,6 +88,7 @@ def posed(seed: int, folder: Path) -> tuple[Problem, Problem, Rules]:
 QUESTIONS: list[Asked] = [best, optima, alternatives, pareto, assist, sensitivity, regret, menu]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 300), marks=pytest.mark.slow)])
 def test_a_store_has_the_answers_of_the_whole(

@@ -132,6 +132,7 @@ RULES: dict[str, dict[str, str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", [8, pytest.param(1, marks=pytest.mark.slow)])
 def test_answers_under_random_rules_of_the_users_own(part: int) -> None:
     met = set()

@@ -49,6 +49,7 @@ def certify_and_verify(problem: Problem, objective: Objective) -> Status:
     return outcome.status
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("rule", RULES)
 def test_every_goal_of_the_goals_file(data: Data, rule: ContainerRule) -> None:

@@ -26,6 +26,7 @@ KNOWN = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("goal", "rule"), KNOWN)
 @pytest.mark.sampled(3)
 def test_known_optima(cli: Cli, universal: Path, goal: str, rule: str) -> None:

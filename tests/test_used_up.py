@@ -430,6 +430,7 @@ def test_rules_that_the_search_keeps_to_see_rates_and_sources() -> None:
         assert foon_asp.solve(problem, constraints=[rule]).status is not Status.OPTIMAL
 
 
+@pytest.mark.slow
 def test_a_limit_of_prices_counts_each_execution(tmp_path: Path) -> None:
     prices = tmp_path / "prices.txt"
     motions = sorted(set(foon_asp.load().network.motions))
@@ -455,6 +456,7 @@ def test_a_plan_without_steps_keeps_to_the_rules() -> None:
 # --- Other questions.
 
 
+@pytest.mark.slow
 def test_other_questions_answer_for_plans_too(cli: Cli, tmp_path: Path) -> None:
     store = tmp_path / "bundled.foon"
     assert cli("import", "--data", bundled_kitchen(), "--store", store).code == 0
@@ -609,6 +611,7 @@ def test_rules_on_many_small_networks() -> None:
     assert min(statuses[Status.OPTIMAL], statuses[Status.INFEASIBLE]) > 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 5, 21, 102, 266, 292])
 def test_which_rules_a_plan_breaks(seed: int) -> None:
     problem = random_problem(seed)

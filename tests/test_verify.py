@@ -384,6 +384,7 @@ def test_branches_without_end_are_refused() -> None:
         check({**content, "proof": proof}, problem)
 
 
+@pytest.mark.slow
 def test_an_infeasible_claim_needs_a_cut_that_nothing_crosses() -> None:
     problem = next(p for p, content in subjects() if content["claim"] == "optimal")
     infeasible = next((p, c) for p, c in subjects() if c["claim"] == "infeasible")

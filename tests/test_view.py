@@ -143,6 +143,7 @@ def test_what_stands_beside_the_tree_is_what_its_questions_answer() -> None:
         foon_asp.view(problem, beside=["everything"])
 
 
+@pytest.mark.slow
 def test_without_a_tree_the_page_says_why() -> None:
     problem = foon_asp.load().problem("apple pie")
     shown = in_page(foon_asp.view(problem).html())

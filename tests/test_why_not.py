@@ -193,6 +193,7 @@ def test_a_node_at_hand_that_is_one_edit_away_is_pointed_at() -> None:
     assert near.slip.kind == "relation"
 
 
+@pytest.mark.slow
 def test_exit_codes(cli: Cli) -> None:
     there = cli("why-not", "--goal", "ice")
     assert (there.code, "there is a task tree" in there.out) == (0, True)
@@ -232,6 +233,7 @@ def test_the_last_line_is_the_cheapest_fix(cli: Cli, monkeypatch: pytest.MonkeyP
     assert ran.out.splitlines()[-1].startswith("foon-asp shopping-list with the same options")
 
 
+@pytest.mark.slow
 def test_the_text_is_a_small_tree(cli: Cli, universal: Path) -> None:
     for rule in ContainerRule:
         words = ["why-not", "--data", universal, "--goal", "whipped cream", "--containers", rule]

@@ -48,7 +48,7 @@ class _Program:
             ("threads", 1),
             ("mip_rel_gap", 0.0),
             ("mip_abs_gap", 1e-9),
-            ("mip_detect_symmetry", False),  # version 1.16.0 with it takes values for proved that are not the best
+            ("mip_detect_symmetry", False),  # with it, version 1.16.0 proves what is not the best
         ):
             highs.setOptionValue(option, value)
         needs, gives, levels = problem.needs, problem.gives, len(scope.objects) + 1

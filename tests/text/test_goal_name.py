@@ -131,6 +131,7 @@ def test_a_candidate_survives_the_shell(label: str) -> None:
     assert [find_goal(name, network) for name in pasted(refused(label, network))] == [0, 1]
 
 
+@pytest.mark.slow
 @steady
 @given(units())
 def test_every_candidate_means_its_node(written: list[FunctionalUnit]) -> None:

@@ -181,6 +181,7 @@ def test_units_are_read_either_way_the_same() -> None:
     assert (unit.motion, unit.sources) == ("pour", listed.sources)
 
 
+@pytest.mark.slow
 @steady
 @given(units())
 def test_any_units_in_the_form_with_ids_come_back(written: list[FunctionalUnit]) -> None:
@@ -550,6 +551,7 @@ _json = st.recursive(
 )
 
 
+@pytest.mark.slow
 @steady
 @given(
     st.lists(st.tuples(st.lists(_json, max_size=2) | _json, _json, st.lists(_json, max_size=2)), max_size=3),

@@ -858,6 +858,7 @@ def test_units_read_by_their_blocks_and_line_by_line_are_the_same(
     both_ways("\n//\n".join([*pieces, *(pieces[i % len(pieces)] for i in order)]), lenient)
 
 
+@pytest.mark.slow
 @steady
 @given(st.lists(unit_texts(), min_size=1, max_size=4), st.lists(st.integers(0, 3), max_size=8))
 def test_whole_units_with_a_little_dirt_are_the_same_either_way(some: list[str], order: list[int]) -> None:
@@ -867,6 +868,7 @@ def test_whole_units_with_a_little_dirt_are_the_same_either_way(some: list[str],
     assert reader.left_out == 0
 
 
+@pytest.mark.slow
 @steady
 @given(units(), st.integers(1, 3), st.booleans())
 def test_units_that_come_again_are_the_same_either_way(
@@ -916,6 +918,7 @@ def test_listed_units_of_a_text_with_errors_are_refused() -> None:
 # --- any network
 
 
+@pytest.mark.slow
 @steady
 @given(units())
 def test_ids_flags_times_comments_and_line_ends_change_nothing(written: list[FunctionalUnit]) -> None:
@@ -931,6 +934,7 @@ def test_ids_flags_times_comments_and_line_ends_change_nothing(written: list[Fun
     assert [d.code for d in reader.diagnostics] == [d.code for d in plain_reader.diagnostics]
 
 
+@pytest.mark.slow
 @steady
 @given(units(), st.randoms(use_true_random=False))
 def test_the_order_of_lines_within_a_side_changes_nothing(

@@ -1,5 +1,6 @@
 """Writing FOON text: the canonical form, which the reader takes back without loss."""
 
+import pytest
 from hypothesis import given
 
 from foon_asp.network import FunctionalUnit, ObjectNode
@@ -70,6 +71,7 @@ def test_what_is_written_does_not_depend_on_the_order_of_attributes() -> None:
     assert write_node(turned) == write_node(BOWL)
 
 
+@pytest.mark.slow
 @steady
 @given(units())
 def test_units_come_back_the_same_in_the_same_order(written: list[FunctionalUnit]) -> None:
