@@ -248,19 +248,10 @@ def report(found: list[dict[str, Any]]) -> str:
         names = list(dict.fromkeys(row["instance"] for row in some))
         limit = some[0]["limit"]
         closed = {row["instance"] for row in some if row["status"] != "open"}
-        header = [
-            *(
-                "engine",
-                "asked",
-                "proved",
-                "of the open",
-                "median s",
-                "times",
-                "sooner",
-                "cost over the best",
-            ),
-            *("proved wrongly", "certified"),
-        ]
+        words = (
+            "engine, asked, proved, of the open, median s, times, sooner, cost over the best, proved wrongly"
+        )
+        header = [*words.split(", "), "certified"]
         ours = {row["instance"]: row["took"] for row in some if row["engine"] == OURS and row["proved"]}
         lines = []
         best: dict[str, dict[str, Any]] = {}
@@ -278,8 +269,8 @@ def report(found: list[dict[str, Any]]) -> str:
             ended = [row["took"] if row in proved else limit for row in own if "took" in row]
             middle = statistics.median(ended or [limit])
             sure = sum(bool(row.get("certified")) for row in proved)
-            beside = [(row["took"], ours[row["instance"]]) for row in proved if row["instance"] in ours]
-            beside = [] if engine == OURS else beside
+            both = [row for row in proved if row["instance"] in ours and engine != OURS]
+            beside = [(row["took"], ours[row["instance"]]) for row in both]
             times = statistics.median(theirs / took for theirs, took in beside) if beside else None
             sooner = sum(theirs < took for theirs, took in beside)
             lines.append(

@@ -105,7 +105,8 @@ class ProofPanel {
       this.sum.append(part(Math.max(0, whole - sum), "open"));
       const done = sum >= cost * (1 - 1e-9) && !dear.length;
       this.total.replaceChildren(el("strong", {}, `${this.worth(sum)} of ${this.worth(cost)}`), ` ${this.by}`,
-        dear.length ? `: with what a unit of this case costs beyond its cuts, no tree costs less.` : "", done ? (this.case.given.length ? ": in this case, no tree costs less." : this.conclusion(cost, whole)) : "");
+        dear.length ? ": with what a unit of this case costs beyond its cuts, no tree costs less." : "",
+        done ? (given.length ? ": in this case, no tree costs less." : this.conclusion(cost, whole)) : "");
       this.sum.setAttribute("aria-label", `${this.worth(sum)} of ${this.worth(cost)}`);
     } else this.sum.hidden = true;
     const cut = cuts[this.at - 1];
